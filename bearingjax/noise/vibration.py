@@ -229,7 +229,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
     return max(1, math.ceil(sample * fastest / STEP))
 
 
-@program
+@program(quick=True)
 def _of_cage(model) -> Scalar:
     """Return a bound of the frequency of cage and balls on the pitch circle [rad/s]."""
     system = model.still_system()

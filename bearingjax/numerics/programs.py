@@ -32,11 +32,12 @@ from jax.core import Tracer
 from . import lapack
 from .structure import UnknownStructure, structure
 
-OPTIONS = {
-    "xla_backend_optimization_level": 0,
-    "xla_cpu_use_fusion_emitters": False,
-}
-"""XLA's options for a program whose run is short compared with its compilation."""
+OPTIONS = tuple(
+    {"xla_backend_optimization_level": level, "xla_cpu_use_fusion_emitters": False}
+    for level in range(2)
+)
+"""XLA's options for programs whose runs are short compared with their compilation, by
+levels."""
 
 LARGEST = 512 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
@@ -109,7 +110,7 @@ def user_cache() -> Path:
     return Path(base) / "bearingjax"
 
 
-def program(function: F | None = None, *, quick: bool = False) -> F:
+def program(function: F | None = None, *, quick: bool = False, level: int = 0) -> F:
     """Compile as `equinox.filter_jit`; programs are kept if `keep_programs` is called.
 
     Args:
@@ -117,9 +118,12 @@ def program(function: F | None = None, *, quick: bool = False) -> F:
             on its arguments only.
         quick: Whether kept programs are compiled for the shortest wait, `OPTIONS`, as
             suits a short run.
+        level: Which of `OPTIONS` then: 0 for a run of less than a second, 1 for one of
+            seconds, which is as fast as if compiled with all effort where matrices are
+            small.
     """
     if function is None:
-        return functools.partial(program, quick=quick)  # pyright: ignore
+        return functools.partial(program, quick=quick, level=level)  # pyright: ignore
     jitted = eqx.filter_jit(function)
 
     @functools.wraps(function)
@@ -128,7 +132,7 @@ def program(function: F | None = None, *, quick: bool = False) -> F:
         name = _name(call, given) if _can_keep(given) else None
         if name is None:
             return jitted(*args, **kwargs)
-        return _kept(name, function, given, OPTIONS if quick else {})
+        return _kept(name, function, given, OPTIONS[level] if quick else {})
 
     return call  # pyright: ignore
 
@@ -149,7 +153,7 @@ def called(function: Callable, *arguments: Any) -> Any:
     name = _name(function, given) if _can_keep(given) else None
     if name is None:
         return function(*arguments)
-    return _kept(name, function, given, OPTIONS)
+    return _kept(name, function, given, OPTIONS[0])
 
 
 def _can_keep(given: tuple) -> bool:
@@ -312,7 +316,7 @@ def _surroundings() -> Iterator[str]:
     places = ("jax_compilation_cache_dir", "jax_logging_level")
     yield repr(sorted((k, v) for k, v in jax.config.values.items() if k not in places))
     yield os.environ.get("XLA_FLAGS", "")
-    yield repr(sorted(OPTIONS.items()))
+    yield repr(OPTIONS)
     yield repr([device.device_kind for device in jax.devices()])
     yield _processor()
 

@@ -1,10 +1,10 @@
-"""Evaluation of all supports of a rotor: like ones share one program.
+"""Evaluation of all supports of a rotor, or other parts: like ones share one program.
 
 The program of a bearing is by far the largest part of a rotor's; two bearings of one
 structure, whatever their numbers, are traced and compiled once.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import equinox as eqx
@@ -14,22 +14,20 @@ import jax.numpy as jnp
 from .parts import AbstractSupport
 
 
-def of_each(
-    function: Callable, supports: tuple[AbstractSupport, ...], *arrays: Any
-) -> Any:
-    """Map function(support, *its arrays) over all supports.
+def of_each(function: Callable, parts: Sequence[Any], *arrays: Any) -> Any:
+    """Map function(part, *its arrays) over all parts, such as supports.
 
     Args:
-        function: It must not read station or housing of the support.
-        supports: One or more.
-        *arrays: With `support` as first axis.
+        function: It must not read station or housing of a support.
+        parts: One or more pytrees.
+        *arrays: With `part` as first axis.
 
     Returns:
-        What it returns, with `support` as first axis.
+        What it returns, with `part` as first axis.
     """
-    kinds: list[tuple[list[int], list[AbstractSupport]]] = []
-    for k, support in enumerate(supports):
-        one = support.anywhere()
+    kinds: list[tuple[list[int], list[Any]]] = []
+    for k, part in enumerate(parts):
+        one = part.anywhere() if isinstance(part, AbstractSupport) else part
         same = (kind for kind in kinds if _alike(kind[1][0], one))
         members, alike = next(same, ([], []))
         if not members:
@@ -46,7 +44,7 @@ def of_each(
 def _of_kind(function, alike, given):
     if len(alike) == 1:
         return [function(alike[0], *(array[0] for array in given))]
-    parts = [eqx.partition(support, eqx.is_array) for support in alike]
+    parts = [eqx.partition(part, eqx.is_array) for part in alike]
     rest = parts[0][1]
     stacked = jax.tree.map(lambda *leaf: jnp.stack(leaf), *(part[0] for part in parts))
 
@@ -59,7 +57,7 @@ def _of_kind(function, alike, given):
 
 
 def _alike(one, other):
-    """Return whether two supports differ in numbers only."""
+    """Return whether two parts differ in numbers only."""
     if jax.tree.structure(one) != jax.tree.structure(other):
         return False
     (a, rest), (b, others) = (eqx.partition(s, eqx.is_array) for s in (one, other))

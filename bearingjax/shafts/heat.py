@@ -10,7 +10,7 @@ preload of warm rings, shafts and housings.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -21,6 +21,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design import FitConditions
 from ..design.checks import check, in_range, is_traced, number, positive
+from ..element.inertia import Speed
 from ..lubrication import Lubricant
 from ..numerics.implicit import attach_by, stop
 from ..numerics.lapack import eigvals, solve_any
@@ -28,6 +29,7 @@ from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
+from ..rotor.held import of_each
 from ..statics.friction import friction_torque
 from ..statics.friction_skf import skf_friction_torque
 from ..statics.solution import Solution
@@ -221,47 +223,12 @@ def steady_rises(
         conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
         steps; whether it was found. Rises are those of the last step if it was not.
     """
-    still = stop((args, conductance, capacity))
-    shortest = jnp.min(still[2] / jnp.diagonal(still[1]))
+    still, *network = stop((args, conductance, capacity))
 
-    def state(rise):
-        def out(rise):
-            made = heat(rise, still[0])
-            left = made - still[1] @ rise
-            return left, (left, jnp.sum(jnp.abs(made)))
+    def evaluated(rise):
+        return _with_slope(lambda rise: (heat(rise, still), ()), rise)
 
-        slope, rest = jax.jacfwd(out, has_aux=True)(rise)
-        return slope, *rest
-
-    def going(carry):
-        _, rise, _, residual, _, steps = carry
-        cool = jnp.all(rise < _HOTTEST)
-        return (residual > _TOLERANCE) & cool & (steps < _STEPS)
-
-    def step(carry):
-        rise, _, _, residual, time, steps = carry
-        slope, left, made = state(rise)
-        size = jnp.max(jnp.abs(left))
-        new = jnp.where(size > 0, size / jnp.maximum(made, 1e-30), 0.0)
-        # Nodes of little capacity settle first; the others need steps that grow.
-        nearer = residual / new
-        least = jnp.where(nearer < 1.0, 0.5, _LEAST)
-        factor = jnp.clip(nearer, least, _GROWTH)
-        grown = jnp.where(steps > 0, factor, 1.0) * time
-        # A step past the growth of what is not stable would lead anywhere.
-        fastest = jnp.max(jnp.real(eigvals(slope / still[2][:, None])))
-        limit = 0.5 / jnp.where(fastest > 0, fastest, 1.0)
-        grown = jnp.where(fastest > 0, jnp.minimum(grown, limit), grown)
-        after = rise + solve_any(jnp.diag(still[2] / grown) - slope, left)
-        return after, rise, slope, new, grown, steps + 1
-
-    rise = jnp.zeros_like(still[2])
-    far = jnp.full_like(shortest, jnp.inf)
-    begin = rise, rise, -still[1], far, 0.3 * shortest, jnp.zeros((), jnp.int32)
-    _, rise, slope, residual, _, steps = lax.while_loop(going, step, begin)
-    rates = eigvals(slope / still[2][:, None])
-    slowest = -jnp.max(jnp.real(rates))
-    solved = (residual <= _TOLERANCE) & (slowest > 0)
+    found, _ = _searched(evaluated, network, (), lax.while_loop)
 
     def balance(rise, args):
         heat_args, conductance = args
@@ -271,8 +238,109 @@ def steady_rises(
         matrix = jax.jacfwd(of_rise)(rise)
         return -solve_any(matrix, change)
 
-    rise = attach_by(balance, rise, (args, conductance), undone)
-    return rise, slowest, residual, steps, solved
+    rise = attach_by(balance, found.rise, (args, conductance), undone)
+    return rise, -found.fastest, found.residual, found.steps, found.solved
+
+
+def _with_slope(heat, rise):
+    """Return heat made at every node, its slope over the rises, and something else.
+
+    Args:
+        heat: Rises -> heat made at every node, and something else.
+        rise: Rises (node,) [K].
+    """
+
+    def both(rise):
+        made, more = heat(rise)
+        return made, (made, more)
+
+    slope, (made, more) = jax.jacfwd(both, has_aux=True)(rise)
+    return made, slope, more
+
+
+class _Search(NamedTuple):
+    """State of the search of `steady_rises`.
+
+    Attributes:
+        after: Rises to be looked at next (node,) [K].
+        rise: Rises that were looked at last (node,) [K].
+        fastest: Rate at which the fastest disturbance of them grows [1/s].
+        residual: Heat out of balance over the heat made [1].
+        time: Length of the step in time [s].
+        steps: Number of steps.
+        going: Whether to go on.
+    """
+
+    after: Array
+    rise: Array
+    fastest: Array
+    residual: Array
+    time: Array
+    steps: Array
+    going: Array
+
+    @property
+    def solved(self):
+        return (self.residual <= _TOLERANCE) & (self.fastest < 0)
+
+
+def _searched(evaluated, network, nothing, while_loop):
+    """Search the temperatures that a system reaches from the cold.
+
+    Args:
+        evaluated: Rises -> heat made, its slope, and something else.
+        network: Conductance and capacity as in `steady_rises`.
+        nothing: In place of what else is evaluated, before the first step.
+        while_loop: `lax.while_loop`, or `_while_loop`.
+
+    Returns:
+        Last state, and what else was evaluated at its `rise`.
+    """
+
+    def step(carry):
+        made, slope, more = evaluated(carry[0].after)
+        return _advanced(carry[0], made, slope, network), more
+
+    begin = _beginning(network)
+    return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
+
+
+def _while_loop(going, step, carry):
+    """`lax.while_loop` of steps that are compiled one by one."""
+    while going(carry):
+        carry = step(carry)
+    return carry
+
+
+@program(quick=True)
+def _beginning(network):
+    conductance, capacity = network
+    zero, none = jnp.zeros_like(capacity), jnp.zeros((), capacity.dtype)
+    shortest = jnp.min(capacity / jnp.diagonal(conductance))
+    counted = jnp.zeros((), jnp.int32), jnp.ones((), bool)
+    return _Search(zero, zero, none, none + jnp.inf, 0.3 * shortest, *counted)
+
+
+@program(quick=True)
+def _advanced(state, made, slope, network):
+    """Return the state after a step, from heat and slope at `state.after`."""
+    rise, (conductance, capacity) = state.after, network
+    slope, left = slope - conductance, made - conductance @ rise
+    size, total = jnp.max(jnp.abs(left)), jnp.sum(jnp.abs(made))
+    new = jnp.where(size > 0, size / jnp.maximum(total, 1e-30), 0.0)
+    # Nodes of little capacity settle first; the others need steps that grow.
+    nearer = state.residual / new
+    least = jnp.where(nearer < 1.0, 0.5, _LEAST)
+    factor = jnp.clip(nearer, least, _GROWTH)
+    grown = jnp.where(state.steps > 0, factor, 1.0) * state.time
+    # A step past the growth of what is not stable would lead anywhere.
+    fastest = jnp.max(jnp.real(eigvals(slope / capacity[:, None])))
+    limit = 0.5 / jnp.where(fastest > 0, fastest, 1.0)
+    grown = jnp.where(fastest > 0, jnp.minimum(grown, limit), grown)
+    after = rise + solve_any(jnp.diag(capacity / grown) - slope, left)
+    going = (new > _TOLERANCE) & jnp.all(after < _HOTTEST)
+    going = going & (state.steps + 1 < _STEPS)
+    return _Search(after, rise, fastest, new, grown, state.steps + 1, going)
 
 
 def rises_over_time(
@@ -290,28 +358,73 @@ def rises_over_time(
 
     Source: Verwer's ROS2, linearly implicit, of second order and L-stable.
     """
-    gamma = 1.0 - np.sqrt(0.5)
-    eye = jnp.eye(capacity.shape[0], dtype=capacity.dtype)
 
-    def rate(rise):
-        out = (heat(rise, args) - conductance @ rise) / capacity
-        return out, out
+    def evaluated(rise):
+        return _with_slope(lambda rise: (heat(rise, args), ()), rise)[:2]
+
+    def made(rise):
+        return heat(rise, args)
+
+    return _integrated(evaluated, made, [conductance, capacity], times, n, lax.scan)
+
+
+_GAMMA = 1.0 - np.sqrt(0.5)
+
+
+def _integrated(evaluated, made, network, times, n, scan):
+    """Return rises over time (time, node) [K].
+
+    Args:
+        evaluated: Rises -> heat made, and its slope.
+        made: Rises -> heat made.
+        network: Conductance and capacity as in `rises_over_time`.
+        times, n: As there.
+        scan: `lax.scan`, or `_scan`.
+    """
 
     def step(rise, length):
-        slope, first = jax.jacfwd(rate, has_aux=True)(rise)
-        matrix = eye - gamma * length * slope
-        k1 = solve_any(matrix, first)
-        k2 = solve_any(matrix, rate(rise + length * k1)[0] - 2.0 * k1)
-        after = rise + length * (1.5 * k1 + 0.5 * k2)
-        return jnp.where(jnp.all(after < _HOTTEST), after, jnp.nan), after
+        there, slope = evaluated(rise)
+        between, k1, matrix = _half_way(rise, there, slope, length, network)
+        known = rise, k1, matrix, between
+        return _whole_way(known, made(between), length, network)
 
     def interval(rise, length):
-        after, _ = lax.scan(step, rise, jnp.full(n, length / n))
+        after, _ = scan(step, rise, jnp.full(n, length / n))
         return after, after
 
-    start = jnp.zeros_like(capacity)
-    _, found = lax.scan(interval, start, jnp.diff(times))
+    start = jnp.zeros_like(network[1])
+    _, found = scan(interval, start, jnp.diff(times))
     return jnp.concatenate([start[None], found])
+
+
+def _scan(step, carry, given):
+    """`lax.scan` of steps that are compiled one by one."""
+    found = []
+    for one in np.asarray(given):
+        carry, out = step(carry, jnp.asarray(one))
+        found.append(out)
+    return carry, jnp.asarray(np.stack(found))
+
+
+@program(quick=True)
+def _half_way(rise, made, slope, length, network):
+    """Return rises at which heat is wanted once more, and what is known by then."""
+    conductance, capacity = network
+    rate = (made - conductance @ rise) / capacity
+    eye = jnp.eye(capacity.shape[0], dtype=capacity.dtype)
+    matrix = eye - _GAMMA * length * (slope - conductance) / capacity[:, None]
+    k1 = solve_any(matrix, rate)
+    return rise + length * k1, k1, matrix
+
+
+@program(quick=True)
+def _whole_way(known, made, length, network):
+    """Return rises after a step, NaN where they run away, and as they are."""
+    (rise, k1, matrix, between), (conductance, capacity) = known, network
+    rate = (made - conductance @ between) / capacity
+    k2 = solve_any(matrix, rate - 2.0 * k1)
+    after = rise + length * (1.5 * k1 + 0.5 * k2)
+    return jnp.where(jnp.all(after < _HOTTEST), after, jnp.nan), after
 
 
 def solve_heat(
@@ -336,11 +449,22 @@ def solve_heat(
     """
     _check(system, network)
     cold = adjusted(system)
-    rise, slowest, residual, steps, solved = _steady(cold, network)
-    # Of what has run away numbers stay within those of materials.
-    known = jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST)
-    solution, _ = system_state(with_temperatures(cold, network, known))
-    flow = network.conductance() @ rise
+    if _is_traced(cold, network):
+        rise, slowest, residual, steps, solved = _steady(cold, network)
+        known = _within(rise)
+        solution, _ = system_state(with_temperatures(cold, network, known))
+    else:
+
+        def evaluated(rise):
+            return _evaluated(cold, network, rise)
+
+        given = [_conductance(network), _capacity(network)]
+        found, solution = _searched(evaluated, given, None, _while_loop)
+        rise, slowest, residual = found.rise, -found.fastest, found.residual
+        steps, solved, known = found.steps, found.solved, _within(rise)
+        if np.any(np.asarray(known) != np.asarray(rise)):
+            solution = evaluated(known)[2]
+    flow = _conductance(network) @ rise
     warm = jnp.where(solved, rise, jnp.nan) + network.ambient
     rings = warm[: 2 * len(network.paths)].reshape(-1, 2)
     result = jnp.where(solved, solution.result, int(Result.STEP_LIMIT))
@@ -396,8 +520,18 @@ def warm_up(
         then the housing if it has a node; NaN from where they run away.
     """
     _check(system, network)
-    rises = _transient(adjusted(system), network, as_real(times), steps)
-    return network.ambient + rises
+    cold, times = adjusted(system), as_real(times)
+    if _is_traced(cold, network, times):
+        return network.ambient + _transient(cold, network, times, steps)
+
+    def evaluated(rise):
+        return _evaluated(cold, network, rise)[:2]
+
+    def made(rise):
+        return evaluated(rise)[0]
+
+    given = [_conductance(network), _capacity(network)]
+    return network.ambient + _integrated(evaluated, made, given, times, steps, _scan)
 
 
 def runaway_speed(
@@ -446,6 +580,35 @@ def _check(system, network) -> None:
         not is_traced(system.drive.speed) and float(system.drive.speed) == 0.0
     ):
         raise ValueError("solve_heat: the system is at rest; nothing warms it.")
+
+
+def _is_traced(*trees: Any) -> bool:
+    return any(is_traced(leaf) for leaf in jax.tree.leaves(trees))
+
+
+def _within(rise):
+    """Return rises at which materials have numbers, of what has run away."""
+    return jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST)
+
+
+@program(quick=True)
+def _evaluated(system, network, rise):
+    """Return heat made at every node, its slope, and the equilibrium there.
+
+    The one program of search and warming up, where nothing is traced: their loops run
+    in Python, as compiling takes far longer than running.
+    """
+    return _with_slope(lambda rise: heat_and_state(rise, system, network), rise)
+
+
+@program(quick=True)
+def _conductance(network):
+    return network.conductance()
+
+
+@program(quick=True)
+def _capacity(network):
+    return network.capacity()
 
 
 @program(quick=True)
@@ -530,18 +693,39 @@ def heat_made(
         rises: Of the nodes above the ambience (node,) [K].
         args: The system, from `adjusted`, and its network.
     """
-    system, network = args
+    return heat_and_state(rises, *args)[0]
+
+
+def heat_and_state(
+    rises: Float[Array, " node"], system: ShaftSystem, network: HeatNetwork
+) -> tuple[Float[Array, " node"], SystemSolution]:
+    """Return the heat made at every node [W], and the equilibrium there.
+
+    Args:
+        rises: Of the nodes above the ambience (node,) [K].
+        system: The system, from `adjusted`.
+        network: Paths of its heat.
+    """
     warm = with_temperatures(system, network, rises)
     solution, _ = system_state(warm)
-    made = []
-    for k, (seat, path) in enumerate(zip(warm.seats, network.paths, strict=True)):
-        if seat.installed is None or path is None:
-            made += [jnp.zeros_like(rises[0])] * 2
-            continue
-        speed, inertia = speed_of(warm, k, solution.power.speed)
-        found = in_place(seat.installed, solution.motion[k], speed, inertia, 2)
-        oil = network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1])
-        made += [0.5 * friction_power(path, found, oil)] * 2
+    none = jnp.zeros_like(rises[0])
+    made = [none] * network.nodes
     if network.housing is not None:
-        made.append(solution.power.loss)
-    return jnp.stack(made)
+        made[-1] = solution.power.loss
+    turning = [k for k, path in enumerate(network.paths) if path is not None]
+    if not turning:
+        return jnp.stack(made), solution
+    speeds = [speed_of(warm, k, solution.power.speed)[0].inner for k in turning]
+    oil = [network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1]) for k in turning]
+
+    def lost(both, motion, turns, temperature):
+        installed, path = both
+        given = motion, Speed(inner=turns), warm.inertia, 2
+        return friction_power(path, in_place(installed, *given), temperature)
+
+    # Like bearings share one program.
+    parts = [(warm.seats[k].installed, network.paths[k]) for k in turning]
+    given = solution.motion[np.array(turning, int)], jnp.stack(speeds), jnp.stack(oil)
+    for k, power in zip(turning, of_each(lost, parts, *given), strict=True):
+        made[2 * k] = made[2 * k + 1] = 0.5 * power
+    return jnp.stack(made), solution

@@ -178,7 +178,7 @@ def failure(found: SteadyMotion) -> str:
     return f"{int(found.steps)} steps; {out}, {power}"
 
 
-@program
+@program(quick=True)
 def end_state(
     model: SkidModel,
     solution: Any,

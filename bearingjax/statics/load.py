@@ -164,7 +164,7 @@ def solve(
     return _solve(element, element.model(speed) if known else None, case, options)
 
 
-@program
+@program(quick=True, level=1)
 def _solve(
     element: BearingElement,
     model: BearingModel | None,

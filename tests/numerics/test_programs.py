@@ -404,7 +404,7 @@ def test_a_kept_program_that_does_not_run_is_compiled_anew(kept, monkeypatch):
 
 
 def test_an_option_that_xla_does_not_know(kept, monkeypatch):
-    monkeypatch.setattr(programs, "OPTIONS", {"xla_no_such_option": True})
+    monkeypatch.setattr(programs, "OPTIONS", ({"xla_no_such_option": True},))
     assert kept() and not kept()
 
 

@@ -153,7 +153,7 @@ def follow(
     )
 
 
-@program
+@program(quick=True, level=1)
 def _traced(system, method, motion, begin, end, parameter, steps, points) -> Traced:
     z, unit = method.unknowns(motion), system.reference_frequency
     return trace(
@@ -167,7 +167,7 @@ def _traced(system, method, motion, begin, end, parameter, steps, points) -> Tra
     )
 
 
-@program
+@program(quick=True, level=1)
 def _along(system, method, x, tangent, length):
     """Return the point of the branch at a length along its tangent from `x`."""
     return place(system, method, x + length * tangent, tangent, tangent)

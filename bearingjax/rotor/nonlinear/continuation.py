@@ -226,6 +226,10 @@ def trace(
     forward = jnp.where(end > start, along, -along)
     low, high = jnp.minimum(start, end), jnp.maximum(start, end)
 
+    @jax.jit  # traced once, for the shapes and in the loop
+    def placed(*given):
+        return place(system, method, *given)
+
     def predicted(state):
         """Return prediction, correction plane, step, and whether it is at a limit."""
         guess, normal = parameter.direction(state.last.tangent, state.before)
@@ -248,7 +252,7 @@ def trace(
         x, normal, length, at_limit = predicted(state)
         limit = jnp.where(first, _FIRST_NEWTON, _NEWTON)
         towards = jnp.where(first, forward, state.last.tangent)
-        new, result = place(system, method, x, normal, towards, limit)
+        new, result = placed(x, normal, towards, limit)
         near = jnp.linalg.norm(new.x - x) <= 0.5 * length
         straight = new.tangent @ state.last.tangent >= jnp.cos(steps.turn)
         finite = jnp.all(jnp.isfinite(new.monodromy)) & jnp.all(
@@ -301,10 +305,10 @@ def trace(
             ending,
         )
 
-    shapes, _ = jax.eval_shape(place, system, method, begin, along, along)
+    none = jnp.int32(0)
+    shapes, _ = jax.eval_shape(placed, begin, along, along, none)
     blank = jax.tree.map(lambda one: jnp.zeros(one.shape, one.dtype), shapes)
     room = jax.tree.map(lambda one: jnp.zeros((points, *one.shape), one.dtype), blank)
-    none = jnp.int32(0)
     state = _State(
         room, blank, forward, steps.first, none, none,
         jnp.int32(_GOING),

@@ -102,25 +102,31 @@ class HarmonicBalance(AbstractMethod):
         at, series = self._basis(z.dtype), self._series(z)
         return at.value[0] @ series, at.rate[0] @ series
 
-    def residual(self, system, z, ratio):
+    def _motion(self, z):
+        """Return u, u' and u'' at all phases, each (sample, n)."""
         at, series = self._basis(z.dtype), self._series(z)
-        motion = at.value @ series, at.rate @ series, at.second @ series
+        return at.value @ series, at.rate @ series, at.second @ series
+
+    def residual(self, system, z, ratio):
+        at = self._basis(z.dtype)
         left = jax.vmap(
             lambda phase, *motion: out_of_balance(system, phase, ratio, *motion)
-        )(at.phase, *motion)
+        )(at.phase, *self._motion(z))
         return (at.analysis @ left).reshape(-1)
 
     def slopes(self, system, z, ratio):
-        """Return Jacobians of forces in u, u' and u'' at all phases (sample, n, n)."""
-        at, series = self._basis(z.dtype), self._series(z)
+        """Return what is left out of balance at all phases (sample, n), and its
+        Jacobians in u, u', u'' (sample, n, n) and ν (sample, n)."""
 
         def one(phase, *motion):
-            return jax.jacfwd(
-                lambda *motion: out_of_balance(system, phase, ratio, *motion), (0, 1, 2)
-            )(*motion)
+            def both(*given):
+                left = out_of_balance(system, phase, given[-1], *given[:-1])
+                return left, left
 
-        motion = at.value @ series, at.rate @ series, at.second @ series
-        return jax.vmap(one)(at.phase, *motion)
+            return jax.jacfwd(both, (0, 1, 2, 3), has_aux=True)(*motion, ratio)
+
+        slopes, left = jax.vmap(one)(self._basis(z.dtype).phase, *self._motion(z))
+        return left, slopes
 
     def projected(self, slopes, bases):
         """Return the Jacobian in the coefficients, from slopes in values of `bases`."""
@@ -133,18 +139,13 @@ class HarmonicBalance(AbstractMethod):
 
     def linearised(self, system, z, ratio):
         at = self._basis(z.dtype)
-        slopes = self.slopes(system, z, ratio)
+        left, (*slopes, speed) = self.slopes(system, z, ratio)
         columns = self.projected(slopes, (at.value, at.rate, at.second))
-        left, speed = jax.jvp(
-            lambda ratio: self.residual(system, z, ratio),
-            (ratio,),
-            (jnp.ones_like(ratio),),
-        )
-        return left, jnp.concatenate([columns, speed[:, None]], axis=1)
+        both = (at.analysis @ jnp.stack([left, speed])).reshape(2, -1)
+        return both[0], jnp.concatenate([columns, both[1][:, None]], axis=1)
 
     def motion(self, system, z, ratio):
-        at, series = self._basis(z.dtype), self._series(z)
-        return at.value @ series, at.rate @ series
+        return self._motion(z)[:2]
 
     def monodromy(self, system, z, ratio, jacobian):
         series = self._series(z)
@@ -189,8 +190,8 @@ def hill_multipliers(
     Source: Hill (1886); Lazarus & Thomas, C. R. Mecanique 338 (2010) 510.
     """
     at = method._basis(z.dtype)
-    restoring, damping, inertia = method.slopes(system, z, ratio)
-    parts = restoring, damping, inertia
+    _, (*parts, _) = method.slopes(system, z, ratio)
+    _, damping, inertia = parts
     still = method.projected(parts, (at.value, at.rate, at.second))
     first = method.projected((damping, inertia), (at.value, 2.0 * at.rate))
     square = method.projected((inertia,), (at.value,))

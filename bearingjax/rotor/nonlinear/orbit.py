@@ -148,18 +148,21 @@ def newton(
 
     def going(state):
         here, _, steps = state
-        return ~solved(here) & jnp.isfinite(here[3]) & (steps < limit)
+        on = ~solved(here) & jnp.isfinite(here[3]) & (steps < limit)
+        return on | (steps < 0)
 
     def step(state):
         here, move, steps = state
         there = evaluated(here[0] + move)
         # Half a step where a whole one leads away; a number that is none does.
-        better = there[3] <= 2.0 * here[3]
+        better = (there[3] <= 2.0 * here[3]) | (steps < 0)
         kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
         return kept, jnp.where(better, there[4], 0.5 * move), steps + 1
 
-    here = evaluated(x)
-    here, _, steps = lax.while_loop(going, step, (here, here[4], jnp.int32(0)))
+    # The first evaluation is a turn of the loop: compiled once, not twice.
+    none = jnp.zeros_like(x)
+    blank = x, none, jnp.zeros((x.size, x.size), x.dtype), none[0], none
+    here, _, steps = lax.while_loop(going, step, (blank, none, jnp.int32(-1)))
     x, left, jacobian, size, _ = here
     codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
     result = jnp.where(solved(here), *codes)

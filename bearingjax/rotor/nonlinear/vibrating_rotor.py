@@ -142,7 +142,7 @@ def vibrating_rotor(
     )
 
 
-@program
+@program(quick=True)
 def _assembled(rotor, scale, speed, modes, about):
     """Return matrices without supports, support rows, scales, unreduced motions."""
     matrices = rotor.linearised(0.0 if speed is None else speed, about)
