@@ -6,6 +6,7 @@ before, and writes, prints and reports problems after.
 
 import contextlib
 import dataclasses
+import functools
 import io
 import json
 import shlex
@@ -69,6 +70,15 @@ class Outcome:
     table_on_page: bool = False
     problems: Sequence[str] = ()
     interrupted: Callable[[], tuple[str, int] | None] = lambda: None
+
+    def __post_init__(self):
+        # A file and the page show the same: what both need is made once.
+        drawn = {name: functools.cache(draw) for name, draw in self.pictures.items()}
+        object.__setattr__(self, "pictures", drawn)
+        for name in ("columns", "drawing"):
+            made = getattr(self, name)
+            if made is not None:
+                object.__setattr__(self, name, functools.cache(made))
 
 
 @dataclasses.dataclass(frozen=True)

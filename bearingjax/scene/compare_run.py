@@ -4,22 +4,20 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
-import jax
 import numpy as np
 
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
-from ..statics.life import LIFE_OUTPUTS, Life
+from ..statics.life import LIFE_OUTPUTS
 from ..statics.solution import Solution
 from ..statics.sweep import SUMMARIES
 from ..statics.sweep_table import OPERATING_CLEARANCE, spread
-from .bearing_run import run_scene, with_set_preload
-from .fit_table import fit_facts
+from .bearing_run import solve_scene
 from .html_report import flat
-from .life_report import scene_life, solved_warnings
 from .read import Scene
 from .report import without_round_off
 from .report_model import Column, Grid, Part, Report
+from .solved import SolvedScene
 from .sweep_run import kind
 
 _FIELDS = "displacement", "force", "stiffness"
@@ -62,22 +60,17 @@ def run_compare(scenes: Sequence[Scene]) -> Comparison:
     Args:
         scenes: Two or more, from `read_scene`.
     """
-    solutions = [jax.device_get(run_scene(scene)) for scene in scenes]
-    ready = [
-        with_set_preload(scene) if solution.converged else scene
-        for scene, solution in zip(scenes, solutions, strict=True)
-    ]
-    pairs = list(zip(ready, solutions, strict=True))
-    lives = [
-        scene_life(scene, solution) if scene.life and solution.converged else None
-        for scene, solution in pairs
-    ]
-    found = [_numbers(*pair, life) for pair, life in zip(pairs, lives, strict=True)]
-    told = [solved_warnings(*p, life) for p, life in zip(pairs, lives, strict=True)]
+    solved = [solve_scene(scene) for scene in scenes]
     names = [scene.name for scene in scenes]
     if len(set(names)) < len(names):
         names = [f"{name} ({k + 1})" for k, name in enumerate(names)]
-    return Comparison(names, ready, solutions, told, _side_by_side(found))
+    return Comparison(
+        names,
+        [one.scene for one in solved],
+        [one.solution for one in solved],
+        [one.warnings for one in solved],
+        _side_by_side([_numbers(one) for one in solved]),
+    )
 
 
 def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
@@ -111,9 +104,10 @@ def difference(values: np.ndarray) -> float:
     return found if found > _ROUND_OFF else 0.0
 
 
-def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, float]:
+def _numbers(one: SolvedScene) -> dict[str, float]:
     """Return the compared numbers of a scene by header; empty if not solved."""
-    if not solution.converged:
+    scene, solution, life = one.scene, one.solution, one.life
+    if not one.converged:
         return {}
     told: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
     told |= {name: SUMMARIES[name](solution) for name in _SUMMARIES}
@@ -121,7 +115,7 @@ def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, f
         told |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
         del told["damage_share"]
     if scene.fits is not None:
-        left = fit_facts(scene.fits, scene.element.bearing).operating
+        left = scene.fits.facts.operating
         told[OPERATING_CLEARANCE] = left.radial_clearance
     fixed, moving = f"_{scene.fixed_ring}_", f"_{scene.moving_ring}_"
     diagonal = {f"stiffness{moving}{name}{moving}{name}" for name in FREEDOMS}

@@ -31,13 +31,14 @@ from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
-from .fit_table import fit_facts, turning
-from .life_report import life_as_dict, solved_warnings
+from .fit_table import turning
+from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_told
 from .shaft_table import ShaftScene
+from .solved import solved_warnings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,7 +75,7 @@ class InPlace:
         if self.scene.fits is None:
             row = rows_of(bearing)[0].bearing
             return None if row.is_thrust else float(radial_clearance(row))
-        return float(fit_facts(self.scene.fits, bearing).operating.radial_clearance)
+        return float(self.scene.fits.facts.operating.radial_clearance)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -444,12 +445,12 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     hours = run.hours[k]
     told["life_hours"] = _number(hours)
     if scene.oil is not None:
-        told |= oil_as_dict(scene.oil, solution, scene.catalogue)
+        told |= oil_as_dict(bearing.oil)
         told["temperature"] = scene.oil.temperature
     told["friction_torque"] = _number(bearing.friction_torque)
     told["clearance"] = bearing.clearance
     if scene.fits is not None:
-        told["fit"] = fit_as_dict(scene.fits, scene.element.bearing)
+        told["fit"] = fit_as_dict(scene.fits)
     return told
 
 
