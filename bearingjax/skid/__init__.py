@@ -73,10 +73,16 @@ elastohydrodynamic or too thin, gross skidding.
 from .conditions import Conditions as Conditions
 from .conditions import by_raceway as by_raceway
 from .conditions import conditions as conditions
+from .contact_ellipse import Ellipse as Ellipse
+from .contact_ellipse import sliding_ellipse as sliding_ellipse
 from .history import SkidHistory as SkidHistory
 from .history import SkidRollerHistory as SkidRollerHistory
+from .history import SlidingSpectrum as SlidingSpectrum
+from .history import sliding_spectrum as sliding_spectrum
 from .model import SkidModel as SkidModel
 from .motion import SkidState as SkidState
+from .orbit_zones import Zone as Zone
+from .orbit_zones import zones as zones
 from .ring_load import LoadHistory as LoadHistory
 from .ring_load import SinusoidalLoad as SinusoidalLoad
 from .ring_speed import SpeedTable as SpeedTable
