@@ -1,6 +1,7 @@
 """Run the scene of a system of shafts; its numbers in SI and its table."""
 
 import dataclasses
+import functools
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -112,7 +113,7 @@ class ShaftRun:
         """Whether all cases were solved."""
         return not self.problem
 
-    @property
+    @functools.cached_property
     def hours(self) -> np.ndarray:
         """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
         system = self.task.system
@@ -128,7 +129,7 @@ class ShaftRun:
             found.append(np.nan if life is None else float(life))
         return np.array(found)
 
-    @property
+    @functools.cached_property
     def system_hours(self) -> float | None:
         """Life that all bearings reach together [h]; `None` at rest or unsolved."""
         hours = self.hours
