@@ -236,21 +236,20 @@ def finish(ax: Any, title: str, across: str, up: str = "", axis: str = "both") -
         ax.set_ylabel(up)
 
 
-def chart(
-    panel: Callable[P, Panel],
-) -> Callable[P, Any]:
+def chart(panel: Callable[P, Panel]) -> "Callable[P, Axes]":
     """Return a function that draws what a function returns.
 
     Args:
-        panel: Function of results and of the axes `ax`, which it leaves alone; a new
-            figure if they are `None`.
+        panel: Function of results and of the axes `ax`; a new figure if they are
+            `None`. It is kept as attribute `panel` of the result.
     """
     known = inspect.signature(panel)
 
     @functools.wraps(panel)
-    def draw(*args: P.args, **kwargs: P.kwargs):
-        ax = known.bind(*args, **kwargs).arguments.get("ax")
-        return panel(*args, **kwargs).draw(ax)
+    def draw(*args: P.args, **kwargs: P.kwargs) -> Axes:
+        made = panel(*args, **kwargs)
+        return made.draw(known.bind(*args, **kwargs).arguments.get("ax"))
 
-    draw.panel = panel  # type: ignore[attr-defined]
+    draw.__signature__ = known.replace(return_annotation=Axes)  # type: ignore
+    draw.panel = panel  # type: ignore
     return draw

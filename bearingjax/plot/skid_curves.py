@@ -1,4 +1,9 @@
-"""Skidding balls and rollers over time and along their orbit."""
+"""Skidding balls and rollers over time and along their orbit.
+
+Of all plots `found` is a result, of `skid.simulate` over time, of `skid.steady` (with
+places) over the orbit; `ax` are axes, `None` for a new figure; `ball` is the index of a
+ball or roller.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -50,12 +55,7 @@ _PAD = 20
 
 @chart
 def speed_over_time(found: History, ax: Ax = None) -> Panel:
-    """Plot cage speed and orbital speeds of the balls, with pure rolling [rad/s].
-
-    Args:
-        found: From `skid.simulate`; so in all plots over time.
-        ax: Axes; a new figure if `None`.
-    """
+    """Plot cage speed and orbital speeds of the balls, with pure rolling [rad/s]."""
     rolling = np.asarray(found.rolling_orbit_speed).mean(axis=1)
     marks = [
         *_spread(found, found.orbit_speed),
@@ -213,12 +213,7 @@ def sliding_spectrum(
 
 @chart
 def load_over_orbit(found: Steady, ax: Ax = None) -> Panel:
-    """Plot contact loads [N] against azimuth [deg], zones B and D shaded.
-
-    Args:
-        found: From `skid.steady`, with places; so in all plots over the orbit.
-        ax: Axes; a new figure if `None`.
-    """
+    """Plot contact loads [N] against azimuth [deg], zones B and D shaded."""
     of = Axis.of(found, "contact_load", NEWTONS)
     marks = _both(found, found.contact_load)
     told = "\nB, D: more load than by the axial load alone" if zones(found) else ""
