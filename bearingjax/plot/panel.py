@@ -168,7 +168,7 @@ class Panel:
             The axes.
         """
         ax = axes_or_new(ax, self.size)
-        pairs = [(self, ax)]
+        pairs: list[tuple[Panel, Any]] = [(self, ax)]
         if self.beside is not None:
             pairs.append((self.beside, without_offset(ax.twinx())))
         for panel, own in pairs:

@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing
-from ..design.profile import drops, sagitta
+from ..design.profile import between_arcs, drops
 from .panel import ALONG, finish
 from .style import COLOURS, ROLLER, SMALL, Ax, Axes, axes_or_new
 
@@ -61,5 +61,5 @@ def arc_gaps(bearing: AbstractRollerBearing, position) -> np.ndarray:
     """
     if bearing.arc_radii is None:
         return np.zeros((2, len(position)))
-    own, *raceways = (np.asarray(sagitta(position, r)) for r in bearing.arc_radii)
-    return np.stack([own - raceway for raceway in raceways])
+    own, *raceways = bearing.arc_radii
+    return np.stack([between_arcs(position, (own, radius)) for radius in raceways])

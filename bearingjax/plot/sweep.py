@@ -1,7 +1,7 @@
 """Plots of the results of a sweep over its inputs."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -68,7 +68,7 @@ def sweep_overview(
         ax = without_offset(figure.add_subplot(down, across, k + 1))
         words, scale = _shown(header, values)
         number, many = label == _NUMBER, len(good) > 60
-        look = {"linewidth": 1.0, "markersize": 3.0 if many else 7.0}
+        look: Any = {"linewidth": 1.0, "markersize": 3.0 if many else 7.0}
         for curve in curves:
             y, style = scale * values[curve.cases], "." if number else ".-"
             colour = CURVES[curve.colour]

@@ -9,7 +9,6 @@ import numpy as np
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS
-from ..statics.solution import Solution
 from ..statics.sweep import SUMMARIES
 from ..statics.sweep_table import OPERATING_CLEARANCE, spread
 from .bearing_run import solve_scene
@@ -38,9 +37,7 @@ class Comparison:
 
     Attributes:
         names: Names of the scenes; duplicates are numbered.
-        scenes: From `read_scene`, with the preloads of sets on their seats.
-        solutions: Solution of each scene, converged or not, in NumPy.
-        warnings: Warnings of each scene, as given by `solve`.
+        solved: From `solve_scene`, converged or not.
         quantities: By header, "name [unit]": the value for each scene in SI (scene,),
             NaN where a scene does not have it or was not solved; sorted by decreasing
             difference. Values small relative to others of their kind, such as a
@@ -48,9 +45,7 @@ class Comparison:
     """
 
     names: list[str]
-    scenes: list[Scene]
-    solutions: list[Solution]
-    warnings: list[list[str]]
+    solved: list[SolvedScene]
     quantities: dict[str, np.ndarray]
 
 
@@ -64,13 +59,7 @@ def run_compare(scenes: Sequence[Scene]) -> Comparison:
     names = [scene.name for scene in scenes]
     if len(set(names)) < len(names):
         names = [f"{name} ({k + 1})" for k, name in enumerate(names)]
-    return Comparison(
-        names,
-        [one.scene for one in solved],
-        [one.solution for one in solved],
-        [one.warnings for one in solved],
-        _side_by_side([_numbers(one) for one in solved]),
-    )
+    return Comparison(names, solved, _side_by_side([_numbers(one) for one in solved]))
 
 
 def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
@@ -156,15 +145,15 @@ def compare_report(found: Comparison) -> Report:
     told += [f"{same} results are the same"] if same else []
     warned = [
         f"{name}: {text}"
-        for name, texts in zip(found.names, found.warnings, strict=True)
-        for text in texts
+        for name, one in zip(found.names, found.solved, strict=True)
+        for text in one.warnings
     ]
     return Report({"Scenes": [_inputs(found)], "Results": told}, warned)
 
 
 def _inputs(found: Comparison) -> Part:
     """List the keys that differ between the scenes."""
-    read = [dict(flat(scene.inputs)) for scene in found.scenes]
+    read = [dict(flat(one.scene.inputs)) for one in found.solved]
     keys = dict.fromkeys(key for scene in read for key in scene)
     apart = [key for key in keys if len({scene.get(key) for scene in read}) > 1]
     if not apart:
@@ -188,11 +177,11 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
 
     return {
         "scenes": found.names,
-        "result": [Result(int(s.result)).label for s in found.solutions],
-        "warnings": found.warnings,
+        "result": [Result(int(s.solution.result)).label for s in found.solved],
+        "warnings": [one.warnings for one in found.solved],
         "quantities": {h: v.tolist() for h, v in found.quantities.items()},
         "difference": {h: difference(v) for h, v in found.quantities.items()},
-        "inputs": [scene.inputs for scene in found.scenes],
+        "inputs": [one.scene.inputs for one in found.solved],
         "version": __version__,
     }
 

@@ -552,7 +552,8 @@ def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
     assert ax.get_ylim()[1] > 4e-3 * 1.4 and ax.get_xlim() == (0.0, 2.0)
     bars = [Bars([1e3, 3e3], "b", told="%.0f")]
     ax = Panel("", time, force, bars, names="pq", legend=None).draw()
-    assert [bar.get_height() for bar in ax.patches] == [1.0, 3.0]
+    drawn: Any = ax.patches
+    assert [bar.get_height() for bar in drawn] == [1.0, 3.0]
     assert [text.get_text() for text in ax.texts] == ["1", "3"]
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["p", "q"]
     assert ax.get_legend() is None
