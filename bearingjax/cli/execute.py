@@ -221,6 +221,8 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
 def save(figure, path, **format) -> None:
     """Write a picture, to a file or a stream."""
     figure.savefig(path, dpi=150, **format)
+    # Laid out once: a layout of what has its place already would shift it.
+    figure.set_layout_engine("none")
 
 
 def _in_words(error: Exception) -> str:
