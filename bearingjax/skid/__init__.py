@@ -42,6 +42,10 @@ states in one call: benchmarks/skid_map.py. Where others use the processor too, 
 `OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
 wait for each other.
 
+`sliding_spectrum(history)` has the lines of a ball's sliding, `zones(steady)` the parts
+of the orbit with loads above those of the axial load alone, `sliding_ellipse` slip and
+heat over one contact; `raceway_heat` of an end state is the sum over all contacts.
+
 Rollers
 -------
 

@@ -386,6 +386,15 @@ def lines(ax):
     return [np.asarray(line.get_ydata()) for line in ax.get_lines()]
 
 
+def test_means_of_the_end_state(end):
+    """The heat is that of the power balance, the speed that of `cage_slip`."""
+    found = end.found
+    heat, rolling = found.raceway_heat, found.rolling_cage_speed
+    assert heat.shape == (2,) and (heat > 0).all()
+    np.testing.assert_allclose(heat.sum(), found.power.contacts, rtol=1e-8)
+    np.testing.assert_allclose(1.0 - found.cage_speed / rolling, found.cage_slip)
+
+
 def test_pictures_along_the_orbit(end):
     found = end.found
     outer, inner = lines(plot.load_over_orbit(found))
