@@ -1,4 +1,8 @@
-"""Plots of bearings and solutions; matplotlib is imported at the first plot."""
+"""Plots of bearings and solutions; matplotlib is imported at the first plot.
+
+A plot draws on the axes `ax`, on those of a new figure if they are `None`, and returns
+them; a page returns its figure.
+"""
 
 from ..rotor.nonlinear import Spectra as Spectra
 from ..rotor.nonlinear import envelope as envelope

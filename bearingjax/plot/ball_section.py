@@ -27,7 +27,6 @@ def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
 
     Args:
         bearing: Of balls.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, radius upwards.

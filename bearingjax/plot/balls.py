@@ -39,7 +39,6 @@ def contact_angles(solution: BallSolution, ax: Ax = None) -> Axes:
 
     Args:
         solution: A single solution of a ball bearing.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; theirs is a span of two degrees at least.

@@ -72,7 +72,6 @@ def contact_map(solution: ContactSolution, ax: Ax = None) -> Axes:
 
     Args:
         solution: A single solution.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; the colour bar is next to it.

@@ -38,7 +38,6 @@ def centre_pressure(
 
     Args:
         solutions: Of one roller.
-        ax: Axes; a new figure if `None`.
         slices: Results of slices under each load, dashed.
     """
     ax = axes_or_new(ax, (8.0, 5.0))

@@ -28,7 +28,6 @@ def contact_stress(
 
     Args:
         solution: A single solution with a contact.
-        ax: Axes; a new figure if `None`.
         section: "across" the roller, or "along" it at x = 0.
         y: Position of the "across" section [m]; `None`: at the centre of the load.
         kind: "von_mises" or "greatest_shear".

@@ -170,7 +170,6 @@ def load_displacement(
         load_name: One of `LOADS`; forces are drawn in kN, moments in N m.
         freedom: One of `FREEDOMS`; shifts are drawn in µm, tilts in mrad.
         converged: Whether each case has a result (case,); the others are gaps.
-        ax: Axes; a new figure if `None`.
 
     Raises:
         ValueError: If a name is unknown or the lengths differ.
@@ -221,7 +220,6 @@ def stiffness_over_speed(
         speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
         stiffness: Of both rings (case, 12, 12) [N/m, N, N m].
         moving_ring: Ring whose stiffness is shown, "outer" or "inner".
-        ax: Axes; a new figure if `None`.
 
     Raises:
         ValueError: If the shapes do not fit or the ring is unknown.

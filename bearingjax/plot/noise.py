@@ -37,7 +37,6 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
 
     Args:
         record: From `vibration`.
-        ax: Axes; a new figure if `None`.
     """
     turns = np.asarray(record.time) * float(record.shaft_frequency)
     values = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
@@ -70,7 +69,6 @@ def noise_spectrum(
     Args:
         spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
         lines: From `name_lines`; the largest have their names.
-        ax: Axes; a new figure if `None`.
         reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
     """
     ax = axes_or_new(ax)
@@ -144,7 +142,6 @@ def band_bars(
     Args:
         bands: The bands.
         level: (band, direction) [dB]; NaN for bands that are not held.
-        ax: Axes; a new figure if `None`.
         norm: Largest allowed level of each band (band,) [dB].
         reference: Acceleration of 0 dB [m/s²].
     """
@@ -186,7 +183,6 @@ def contact_state_map(
     Args:
         record: From `vibration`.
         states: From `contact_states`.
-        ax: Axes; a new figure if `None`.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -242,7 +238,6 @@ def level_distribution(
 
     Args:
         level: Of each bearing (bearing, direction) [dB]; NaN of those that failed.
-        ax: Axes; a new figure if `None`.
         reference: Acceleration of 0 dB [m/s²].
     """
     marks = []
@@ -264,7 +259,6 @@ def source_bars(shares: Shares, ax: Ax = None) -> Any:
 
     Args:
         shares: From `shares`.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; the largest source is at the top. Thin lines are standard errors.

@@ -36,7 +36,6 @@ def pressure_profiles(
 
     Args:
         solution: A single solution of a roller bearing.
-        ax: Axes; a new figure if `None`.
         count: Number of rollers, most loaded first.
         raceway: "inner", "outer" or "both".
         row: Index of the row in a set.
@@ -125,7 +124,6 @@ def pressure_map(
 
     Args:
         solution: A single solution of a roller bearing.
-        ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
         row: Index of the row in a set.
         top: Pressure at the end of the colour scale [Pa]; the highest one of the row

@@ -18,7 +18,6 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
 
     Args:
         bearing: The design.
-        ax: Axes; a new figure if `None`.
     """
     ax = axes_or_new(ax)
     length, diameter = bearing.roller_length, bearing.roller_diameter

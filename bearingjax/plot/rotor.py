@@ -28,7 +28,6 @@ def rotor_section(rotor: Rotor, ax: Ax = None) -> Axes:
 
     Args:
         rotor: The rotor.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, x or y upwards.

@@ -31,7 +31,6 @@ def mode_shapes(
     Args:
         rotor: The rotor.
         found: From `modes`, at one speed.
-        ax: Axes; a new figure if `None`.
         count: Most modes; those that do not oscillate are left out.
     """
     ax = axes_or_new(ax, (8.0, 6.0))
@@ -113,7 +112,6 @@ def campbell_diagram(
         found: From `campbell`.
         critical: Critical speeds to be marked; those of forward whirl, which unbalance
             excites, with their number.
-        ax: Axes; a new figure if `None`.
     """
     ax = axes_or_new(ax)
     rpm = SPEED.scale * np.asarray(speeds, dtype=float)

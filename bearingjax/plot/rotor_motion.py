@@ -25,7 +25,6 @@ def orbits(
 
     Args:
         motion: x and y over the time (time, station, 2) [m].
-        ax: Axes; a new figure if `None`.
         names: Of the stations.
         points: Poincaré points, once a period of the excitation (point, station, 2)
             [m].
@@ -67,7 +66,6 @@ def waveforms(
 
     Args:
         motion: (sample, curve) [m, rad].
-        ax: Axes; a new figure if `None`.
         time: Of the samples (sample,) [s]; `None`: they are at even phases of a period
             from 0 on.
         names: Of the curves.
@@ -109,7 +107,6 @@ def waterfall(
 
     Args:
         spectra: From `rotor.nonlinear.spectra_over_time` or `steady_spectra`.
-        ax: Axes; a new figure if `None`.
         highest: Frequency up to which it is drawn [Hz]; default: three times the
             highest speed.
         unit: Of the amplitude: "um", or "mrad" for a tilt.

@@ -53,7 +53,6 @@ def response_curve(
         branch: From `follow`.
         amplitude: Of its points, such as a column of `branch.amplitude` (point,) [m,
             rad].
-        ax: Axes; a new figure if `None`.
         unit: Of the amplitude: "um", or "mrad" for a tilt.
         linear: Frequencies [rad/s] and amplitudes [m, rad] of the linear response.
     """
@@ -92,7 +91,6 @@ def linear_curve(
     Args:
         frequency: Of the excitation (point,) [rad/s].
         amplitude: (point,) [m, rad].
-        ax: Axes; a new figure if `None`.
         unit: Of the amplitude: "um", or "mrad" for a tilt.
     """
     marks = [Curve(frequency, amplitude, "_linear")]
@@ -124,7 +122,6 @@ def speed_curve(
     Args:
         speed: (point,) [rad/s].
         amplitude: (point,) or (point, curve) [m, rad].
-        ax: Axes; a new figure if `None`.
         unit: Of the amplitude: "um", or "mrad" for tilts.
         names: Of the curves.
         title: Of the axes.

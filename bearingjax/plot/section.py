@@ -24,7 +24,6 @@ def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
 
     Args:
         bearing: The design; of a set all rows, with the dimensions of the first one.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, radius upwards.

@@ -145,7 +145,6 @@ def power_bars(found: SteadySkid | SteadyRollerSkid, ax: Ax = None) -> Panel:
 
     Args:
         found: From `skid.steady`.
-        ax: Axes; a new figure if `None`.
     """
     power, (outer, inner) = found.power, found.raceway_heat
     bars = {

@@ -13,7 +13,6 @@ def sliding_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
 
     Args:
         ellipse: From `skid.sliding_ellipse`.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; both directions have scales of their own.
@@ -49,7 +48,6 @@ def heat_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
 
     Args:
         ellipse: From `skid.sliding_ellipse`.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; both directions have scales of their own.

@@ -181,7 +181,6 @@ def sliding_spectrum(
 
     Args:
         found: From `skid.simulate`, at even times.
-        ax: Axes; a new figure if `None`.
         ball, raceway, begin: As in `skid.sliding_spectrum`.
 
     Raises:
