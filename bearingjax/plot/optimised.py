@@ -162,7 +162,7 @@ def _cases(found) -> Panel:
     def limits(ax):
         if len(sides[0]) <= 12:
             ax.set_xticks(np.arange(len(sides[0])))
-        ax.margins(y=0.16)
+        ax.margins(y=0.25)  # room for the legend
         known = sides[1][np.isfinite(sides[1])]
         if lives and known.size and known.max() > _FAR * known.min():
             ax.set_yscale("log")

@@ -129,8 +129,9 @@ class SteadyMotion(eqx.Module):
 
     @property
     def rolling_cage_speed(self) -> np.ndarray:
-        """Mean orbital speed of pure rolling [rad/s]."""
-        return 1.0 / np.mean(1.0 / np.asarray(self.rolling_orbit_speed), axis=-1)
+        """Mean orbital speed of pure rolling, in time [rad/s]."""
+        slow = np.mean(1.0 / np.asarray(self.rolling_orbit_speed), axis=-1)
+        return np.asarray(1.0 / slow)
 
 
 class SteadySkid(SteadyMotion):
