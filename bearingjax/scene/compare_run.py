@@ -95,7 +95,7 @@ def difference(values: np.ndarray) -> float:
 
 def _numbers(one: SolvedScene) -> dict[str, float]:
     """Return the compared numbers of a scene by header; empty if not solved."""
-    scene, solution, life = one.scene, one.solution, one.life
+    scene, solution, life = one.scene, one.numbers, one.life
     if not one.converged:
         return {}
     told: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}

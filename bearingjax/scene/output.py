@@ -74,7 +74,7 @@ def as_dict(found: SolvedScene) -> dict[str, Any]:
     """
     scene = found.scene
     return {
-        **(_numbers(found.solution) if found.converged else {}),
+        **(_numbers(found.numbers) if found.converged else {}),
         **oil_as_dict(found.oil),
         **fits_as_dict(scene),
         **_catalogue(scene),
@@ -96,7 +96,7 @@ def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
     """
     from .. import __version__
 
-    scene, solution = found.scene, found.solution
+    scene, solution = found.scene, found.numbers
     residual = float(solution.stats.residual)
     return {
         "result": Result(int(solution.result)).label,

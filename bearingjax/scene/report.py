@@ -41,7 +41,7 @@ def report(found: SolvedScene) -> Report:
     Returns:
         Sections by their titles; `str` of the report is the terminal text.
     """
-    scene, solution, life, oil = found.scene, found.solution, found.life, found.oil
+    scene, solution, life, oil = found.scene, found.numbers, found.life, found.oil
     sections = {
         "Bearing": [bearing_text(scene, solution.element.bearing, solution)],
         "Operation, materials and laws": [operation(scene, solution)],

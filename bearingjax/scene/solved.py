@@ -21,20 +21,21 @@ class SolvedScene:
 
     Attributes:
         scene: Solved scene, with the preload of its set where it has fits.
-        solution: Its solution, converged or not; kept in NumPy.
+        solution: Its solution, converged or not.
     """
 
     scene: Scene
     solution: Solution
 
-    def __post_init__(self):
-        # In NumPy: JAX would compile every small operation.
-        object.__setattr__(self, "solution", jax.device_get(self.solution))
+    @functools.cached_property
+    def numbers(self) -> Solution:
+        """The solution in NumPy: JAX would compile every small operation."""
+        return jax.device_get(self.solution)
 
     @property
     def converged(self) -> bool:
         """Whether it was solved."""
-        return bool(self.solution.converged)
+        return bool(self.numbers.converged)
 
     @functools.cached_property
     def life(self) -> Life | None:
@@ -45,7 +46,7 @@ class SolvedScene:
         """
         if self.scene.life is None or not self.converged:
             return None
-        return scene_life(self.scene, self.solution)
+        return scene_life(self.scene, self.numbers)
 
     @functools.cached_property
     def oil(self) -> OilFacts | None:
@@ -53,12 +54,12 @@ class SolvedScene:
         scene = self.scene
         if scene.oil is None or not self.converged:
             return None
-        return oil_facts(scene.oil, self.solution, scene.catalogue)
+        return oil_facts(scene.oil, self.numbers, scene.catalogue)
 
     @functools.cached_property
     def warnings(self) -> list[str]:
         """Warnings about the scene, its solution and its life."""
-        return solved_warnings(self.scene, self.solution, self.life)
+        return solved_warnings(self.scene, self.numbers, self.life)
 
 
 def scene_life(scene: Scene, solution: Solution) -> Life:
