@@ -184,7 +184,7 @@ def in_time(model, varying, begin, duration, rate):
         derivatives="forward",
     )
     late = np.asarray(found.time) >= begin
-    lines = bj.plot.spectrum(found, begin=begin)
+    lines = bj.skid.sliding_spectrum(found, begin=begin)
     angle = np.unwrap(np.asarray(found.azimuth)[:, 0])[late]
     sliding = 1e3 * np.asarray(found.sliding_speed)[late, 0, INNER]
     force = float(np.abs(np.asarray(found.cage_force)[late]).max())

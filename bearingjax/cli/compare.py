@@ -38,20 +38,14 @@ def run(options, tools: Tools) -> Outcome:
         raise SceneError("compare: give two scenes or more")
     scenes = [read_scene(source, options.set) for source in options.scenes]
     found = run_compare(scenes)
-    named = list(zip(found.names, found.scenes, found.solutions, strict=True))
+    named = list(zip(found.names, found.solved, strict=True))
     return Outcome(
         " and ".join(found.names),
-        {
-            f"{name}: {k}": v
-            for name, scene, _ in named
-            for k, v in scene.inputs.items()
-        },
+        {f"{name}: {k}": v for name, one in named for k, v in one.scene.inputs.items()},
         lambda: compare_as_dict(found),
         compare_report(found),
         lambda: compare_columns(found),
         problems=[
-            f"{name}: {why_unsolved(scene, solution)}"
-            for name, scene, solution in named
-            if not solution.converged
+            f"{name}: {why_unsolved(one)}" for name, one in named if not one.converged
         ],
     )

@@ -37,6 +37,7 @@ def run(options, tools: Tools) -> Outcome:
     """Solve a single contact, or one of a bearing."""
     from ..scene import (
         SceneError,
+        SolvedScene,
         as_dict,
         contact_as_dict,
         contact_report,
@@ -51,16 +52,16 @@ def run(options, tools: Tools) -> Outcome:
 
     if is_bearing(options.scene, options.set):
         bearing = read_scene(options.scene, options.set)
-        solution = run_scene(bearing)
-        if not solution.converged:
+        found = SolvedScene(bearing, run_scene(bearing))
+        if not found.converged:
             return Outcome(
                 bearing.name,
                 bearing.inputs,
-                lambda: as_dict(bearing, solution),
-                problems=[why_unsolved(bearing, solution)],
+                lambda: as_dict(found),
+                problems=[why_unsolved(found)],
             )
         scene, cases = run_refined(
-            bearing, solution, options.roller, options.raceway, options.free_ends
+            bearing, found.solution, options.roller, options.raceway, options.free_ends
         )
     elif options.roller is not None or options.raceway is not None:
         raise SceneError("--roller and --raceway are for the scene of a bearing")

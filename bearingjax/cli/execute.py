@@ -6,6 +6,7 @@ before, and writes, prints and reports problems after.
 
 import contextlib
 import dataclasses
+import functools
 import io
 import json
 import shlex
@@ -69,6 +70,15 @@ class Outcome:
     table_on_page: bool = False
     problems: Sequence[str] = ()
     interrupted: Callable[[], tuple[str, int] | None] = lambda: None
+
+    def __post_init__(self):
+        # A file and the page show the same: what both need is made once.
+        drawn = {name: functools.cache(draw) for name, draw in self.pictures.items()}
+        object.__setattr__(self, "pictures", drawn)
+        for name in ("columns", "drawing"):
+            made = getattr(self, name)
+            if made is not None:
+                object.__setattr__(self, name, functools.cache(made))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -211,6 +221,8 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
 def save(figure, path, **format) -> None:
     """Write a picture, to a file or a stream."""
     figure.savefig(path, dpi=150, **format)
+    # Laid out once: a layout of what has its place already would shift it.
+    figure.set_layout_engine("none")
 
 
 def _in_words(error: Exception) -> str:

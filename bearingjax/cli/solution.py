@@ -8,17 +8,14 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
 
     Args:
         scene: From `read_scene`.
-        numbers: Returns the JSON of a scene and its solution; default: `as_dict`.
+        numbers: Returns the JSON of the solved scene; default: `as_dict`.
         brief: Sections of the report shown on the terminal; default: all.
     """
-    from ..scene import as_dict, report, run_scene, with_set_preload
+    from ..scene import as_dict, report, solve_scene
 
-    solution = run_scene(scene)
-    solved = bool(solution.converged)
-    if solved:
-        scene = with_set_preload(scene)
-
-    told = report(scene, solution) if solved else None
+    found = solve_scene(scene)
+    solution = found.solution
+    told = report(found) if found.converged else None
 
     def draw():
         from ..plot import overview
@@ -29,30 +26,29 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
         from ..plot import drawing
 
         # Mounted and preloaded if given in the scene.
-        element = solution.element if solved else scene.element
+        element = solution.element if found.converged else scene.element
         return drawing(element.bearing, scene.name)
 
     return Outcome(
         scene.name,
         scene.inputs,
-        lambda: (numbers or as_dict)(scene, solution),
+        lambda: (numbers or as_dict)(found),
         told if brief is None or told is None else told.only(brief),
         page=None if told is None else lambda: told,
-        pictures={"Section, load zone, contacts": draw} if solved else {},
+        pictures={"Section, load zone, contacts": draw} if found.converged else {},
         drawing=draw_bearing,
-        problems=[] if solved else [why_unsolved(scene, solution)],
+        problems=[] if found.converged else [why_unsolved(found)],
     )
 
 
-def why_unsolved(scene, solution) -> str:
+def why_unsolved(found) -> str:
     """Return the reason why a bearing was not solved.
 
     Args:
-        scene: The scene.
-        solution: Its solution, not converged.
+        found: From `solve_scene`, not converged.
     """
     from ..numerics import Result
     from ..statics.solution import message
 
-    label = Result(int(solution.result)).label
-    return f"{label}: {message(solution, scene.moving_ring)}"
+    label = Result(int(found.solution.result)).label
+    return f"{label}: {message(found.solution, found.scene.moving_ring)}"

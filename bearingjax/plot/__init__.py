@@ -1,5 +1,15 @@
-"""Plots of bearings and solutions; matplotlib is imported at the first plot."""
+"""Plots of bearings and solutions; matplotlib is imported at the first plot.
 
+A plot draws on the axes `ax`, on those of a new figure if they are `None`, and returns
+them; a page returns its figure.
+"""
+
+from ..rotor.nonlinear import Spectra as Spectra
+from ..rotor.nonlinear import envelope as envelope
+from ..rotor.nonlinear import spectra_over_time as spectra_over_time
+from ..rotor.nonlinear import steady_spectra as steady_spectra
+from ..skid import sliding_ellipse as sliding_ellipse
+from ..skid import zones as zones
 from .balls import contact_angles as contact_angles
 from .balls import ellipses as ellipses
 from .contact import contact_map as contact_map
@@ -28,14 +38,10 @@ from .profiles import profile as profile
 from .rotor import rotor_section as rotor_section
 from .rotor_modes import campbell_diagram as campbell_diagram
 from .rotor_modes import mode_shapes as mode_shapes
-from .rotor_motion import Spectra as Spectra
 from .rotor_motion import orbits as orbits
-from .rotor_motion import spectra_over_time as spectra_over_time
-from .rotor_motion import steady_spectra as steady_spectra
 from .rotor_motion import waterfall as waterfall
 from .rotor_motion import waveforms as waveforms
 from .rotor_page import rotor_overview as rotor_overview
-from .rotor_response import envelope as envelope
 from .rotor_response import linear_curve as linear_curve
 from .rotor_response import response_curve as response_curve
 from .rotor_response import speed_curve as speed_curve
@@ -46,21 +52,19 @@ from .skid import cage_speed as cage_speed
 from .skid import power_bars as power_bars
 from .skid import skid_overview as skid_overview
 from .skid_contact import heat_map as heat_map
-from .skid_contact import sliding_ellipse as sliding_ellipse
 from .skid_contact import sliding_map as sliding_map
-from .skid_orbit import cage_force_over_orbit as cage_force_over_orbit
-from .skid_orbit import heat_over_orbit as heat_over_orbit
-from .skid_orbit import load_over_orbit as load_over_orbit
-from .skid_orbit import sliding_over_orbit as sliding_over_orbit
-from .skid_orbit import spin_over_orbit as spin_over_orbit
-from .skid_orbit import zones as zones
-from .skid_time import cage_force_over_time as cage_force_over_time
-from .skid_time import load_over_time as load_over_time
-from .skid_time import power_over_time as power_over_time
-from .skid_time import sliding_over_time as sliding_over_time
-from .skid_time import sliding_spectrum as sliding_spectrum
-from .skid_time import slip_over_time as slip_over_time
-from .skid_time import spectrum as spectrum
-from .skid_time import speed_over_time as speed_over_time
-from .skid_time import spin_over_time as spin_over_time
+from .skid_curves import cage_force_over_orbit as cage_force_over_orbit
+from .skid_curves import cage_force_over_time as cage_force_over_time
+from .skid_curves import heat_over_orbit as heat_over_orbit
+from .skid_curves import load_over_orbit as load_over_orbit
+from .skid_curves import load_over_time as load_over_time
+from .skid_curves import power_over_time as power_over_time
+from .skid_curves import sliding_over_orbit as sliding_over_orbit
+from .skid_curves import sliding_over_time as sliding_over_time
+from .skid_curves import sliding_spectrum as sliding_spectrum
+from .skid_curves import slip_over_time as slip_over_time
+from .skid_curves import spectrum as spectrum
+from .skid_curves import speed_over_time as speed_over_time
+from .skid_curves import spin_over_orbit as spin_over_orbit
+from .skid_curves import spin_over_time as spin_over_time
 from .sweep import sweep_overview as sweep_overview

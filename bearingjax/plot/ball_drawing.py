@@ -1,7 +1,5 @@
 """Dimensions of one row of balls, on its axial section."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import (
@@ -23,18 +21,13 @@ from .dimension import (
     radius,
     squeeze,
 )
-from .style import COLOURS, RACEWAYS, SMALL
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import COLOURS, RACEWAYS, SMALL, Axes
 
 _GAP = 0.07
 """Drawn gap of the clearance, ball diameters."""
 
 
-def dimensioned_balls(
-    ax: "matplotlib.axes.Axes", bearing: AbstractBallBearing, size
-) -> None:
+def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size) -> None:
     """Draw the axial section of a row, to scale, with all its dimensions.
 
     Args:
@@ -156,7 +149,7 @@ def _offset(ax, bearing, high):
     return Label(label(bearing, "row_offset"), at)
 
 
-def ball_clearance_view(ax: "matplotlib.axes.Axes", bearing, size) -> None:
+def ball_clearance_view(ax: Axes, bearing, size) -> None:
     """Draw the clearance of a row of balls, magnified.
 
     Args:

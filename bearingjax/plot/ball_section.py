@@ -1,7 +1,5 @@
 """Axial section of a ball bearing or a set of them, to scale."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import (
@@ -12,10 +10,7 @@ from ..design import (
     rows_of,
 )
 from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
-from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import COLOURS, GREY, ROLLER, SMALL, Ax, Axes, axes_or_new
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
@@ -25,16 +20,13 @@ SHOULDER = 0.2
 """Schematic height of an unspecified shoulder, ball diameters."""
 
 
-def ball_section(
-    bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     """Draw the axial section through one ball of every row.
 
     Balls and raceways are to scale, unloaded; the ring bodies are schematic.
 
     Args:
         bearing: Of balls.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, radius upwards.

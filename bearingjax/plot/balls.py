@@ -1,16 +1,17 @@
 """Balls: contact angles around the bearing, ellipses on the raceways."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import AbstractBallBearing, AbstractBearing, BearingSet
 from ..statics.solution import BallSolution
+from .panel import finish
 from .style import (
     COLOURS,
     GREY,
     RACEWAYS,
     SMALL,
+    Ax,
+    Axes,
     axes_or_new,
     degrees,
     raceway_index,
@@ -18,9 +19,6 @@ from .style import (
     row_slices,
     widened,
 )
-
-if TYPE_CHECKING:
-    import matplotlib.axes
 
 _MARKERS = ("o", "s", "^", "D")
 _LEAST_SPAN = 2.0
@@ -32,9 +30,7 @@ _ARC = 0.48
 _AZIMUTHS = (-15.0, 375.0)
 
 
-def contact_angles(
-    solution: BallSolution, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def contact_angles(solution: BallSolution, ax: Ax = None) -> Axes:
     """Plot the contact angle of every loaded contact [deg] against azimuth [deg].
 
     The area of a marker grows with the load of the contact. Markers of the outer
@@ -43,7 +39,6 @@ def contact_angles(
 
     Args:
         solution: A single solution of a ball bearing.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; theirs is a span of two degrees at least.
@@ -80,11 +75,8 @@ def contact_angles(
     ax.set_xlim(*_AZIMUTHS)
     ax.set_ylim(*widened(angle[loaded], _LEAST_SPAN))
     ax.set_xticks(np.arange(0, 361, 60))
-    ax.grid(color="0.9")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("azimuth [deg]")
-    ax.set_ylabel("contact angle [deg]")
-    ax.set_title("Contact angles (area of a marker: load)")
+    title = "Contact angles (area of a marker: load)"
+    finish(ax, title, "azimuth [deg]", "contact angle [deg]")
     ax.legend(
         fontsize=SMALL,
         frameon=False,
@@ -102,8 +94,8 @@ def ellipses(
     *,
     raceway: str = "inner",
     row: int = 0,
-    ax: "matplotlib.axes.Axes | None" = None,
-) -> "matplotlib.axes.Axes":
+    ax: Ax = None,
+) -> Axes:
     """Draw contact ellipses on a developed raceway, with its shoulders.
 
     The vertical axis is the arc of the groove from its bottom [mm], the other azimuth.
@@ -117,9 +109,6 @@ def ellipses(
         raceway: "outer" or "inner".
         row: Index of the row in a set.
         ax: Axes; a new figure if `None`. Their height becomes 0.62 of their width.
-
-    Returns:
-        The axes.
 
     Raises:
         TypeError: If the bearing has no balls.

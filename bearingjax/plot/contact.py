@@ -15,11 +15,9 @@ from .contact_lines import (
     load_text,
     scale,
 )
-from .style import axes_or_new, head, pyplot
+from .style import Ax, Axes, Figure, axes_or_new, head, pyplot
 
 if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.figure
     import mpl_toolkits.mplot3d.axes3d
 
 _MAP = "viridis"
@@ -29,7 +27,7 @@ def contact_overview(
     solutions: Sequence[ContactSolution],
     slices: Sequence[Slices],
     title: str = "",
-) -> "matplotlib.figure.Figure":
+) -> Figure:
     """Plot pressure over the contact, and along the roller compared with slices.
 
     Args:
@@ -66,9 +64,7 @@ def contact_overview(
     return figure
 
 
-def contact_map(
-    solution: ContactSolution, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def contact_map(solution: ContactSolution, ax: Ax = None) -> Axes:
     """Map the pressure [MPa] over the contact, stretched across the roller.
 
     White is no contact. End cells that are pressed far more than the rest are off the
@@ -76,7 +72,6 @@ def contact_map(
 
     Args:
         solution: A single solution.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; the colour bar is next to it.
@@ -124,9 +119,6 @@ def contact_surface(
     Args:
         solution: A single solution.
         ax: Axes with three dimensions; a new figure if `None`.
-
-    Returns:
-        The axes.
 
     Raises:
         ValueError: If `ax` has two dimensions.

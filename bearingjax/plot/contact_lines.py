@@ -1,16 +1,14 @@
 """Pressure and load per length along a roller, compared with slices."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..contact.halfspace import ContactSolution
 from ..contact.slices import Slices
-from .style import GREY, OUTER, SMALL, axes_or_new, force_text, towards_white
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .panel import ALONG, finish
+from .style import GREY, OUTER, SMALL, Ax, Axes, axes_or_new, force_text, towards_white
 
 _NEAR = 0.02
 """Share of the length at each end that is ignored for the scale."""
@@ -30,9 +28,9 @@ _ON_THE_LINE: dict[str, Any] = {
 
 def centre_pressure(
     solutions: Sequence[ContactSolution],
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     slices: Sequence[Slices] = (),
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot the pressure [MPa] at x = 0 along the roller, for several loads.
 
     The legend gives the values of the end cells, and their length. A triangle marks
@@ -40,15 +38,14 @@ def centre_pressure(
 
     Args:
         solutions: Of one roller.
-        ax: Axes; a new figure if `None`.
         slices: Results of slices under each load, dashed.
     """
     ax = axes_or_new(ax, (8.0, 5.0))
     values = [1e-6 * np.asarray(s.centre_pressure) for s in solutions]
     others = [1e-6 * np.asarray(s.pressure) for s in slices]
     _lines(solutions, values, others, ax, ends)
-    ax.set_ylabel("contact pressure at x = 0 [MPa]")
-    ax.set_title("Pressure along the roller")
+    label = "contact pressure at x = 0 [MPa]"
+    finish(ax, "Pressure along the roller", ALONG.label, label)
     ax.legend(
         title=f"load: at the ends [MPa], cells of {end_length(solutions[0])}",
         ncols=1 if len(solutions) < 3 else 2,
@@ -61,9 +58,9 @@ def centre_pressure(
 
 def contact_line_load(
     solutions: Sequence[ContactSolution],
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     slices: Sequence[Slices] = (),
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot the load per length [N/mm] along the roller, for several loads.
 
     Each line is labelled with its load.
@@ -75,8 +72,8 @@ def contact_line_load(
     values = [1e-3 * np.asarray(s.line_load) for s in solutions]
     others = [1e-3 * np.asarray(s.line_load) for s in slices]
     _lines(solutions, values, others, ax, None)
-    ax.set_ylabel("load per length [N/mm]")
-    ax.set_title("Load per length along the roller")
+    title = "Load per length along the roller"
+    finish(ax, title, ALONG.label, "load per length [N/mm]")
     dashed = [line for line in ax.get_lines() if line.get_label() == _SLICES]
     if dashed:
         ax.legend(handles=dashed, fontsize=SMALL, loc="lower center")
@@ -117,9 +114,6 @@ def _lines(solutions, values, others, ax, told):
         ax.plot([], [], "--", color=GREY, linewidth=1.0, label=_SLICES)
     ax.set_xlim(edges[0], edges[-1])
     ax.set_ylim(0.0, 1.1 * top)
-    ax.grid(color="0.9")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("position along the roller [mm]")
 
 
 def scale(

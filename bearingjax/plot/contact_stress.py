@@ -1,15 +1,10 @@
 """Stress below the contact of a roller, in a section."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..contact.halfspace import ContactSolution, stress_below
 from .contact_lines import load_text
-from .style import axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import Ax, Axes, axes_or_new
 
 _POINTS = 61, 41
 STRESSES = {"von_mises": "von Mises stress", "greatest_shear": "largest shear stress"}
@@ -18,13 +13,13 @@ SECTIONS = ("across", "along")
 
 def contact_stress(
     solution: ContactSolution,
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     *,
     section: str = "across",
     y: float | None = None,
     kind: str = "von_mises",
     poisson: float = 0.3,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot von Mises or largest shear stress [MPa] in a section below the contact.
 
     The depth is three half widths of the contact. A cross marks the largest value
@@ -33,7 +28,6 @@ def contact_stress(
 
     Args:
         solution: A single solution with a contact.
-        ax: Axes; a new figure if `None`.
         section: "across" the roller, or "along" it at x = 0.
         y: Position of the "across" section [m]; `None`: at the centre of the load.
         kind: "von_mises" or "greatest_shear".

@@ -1,14 +1,11 @@
 """Dimension lines of drawings, and labels at the sides of the view."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..numerics.units import unit_of
-from .style import GREY, SMALL
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import GREY, SMALL, Axes
 
 ARROW: dict[str, Any] = {
     "arrowstyle": "<|-|>",
@@ -82,7 +79,7 @@ def width(text: str) -> float:
     return max(line.get_extents().width for line in lines) / 72.0
 
 
-def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
+def fit(ax: Axes, points, size, middle=(0.48, 0.86)) -> None:
     """Set the limits of a view, to scale, with its parts in the middle.
 
     Args:
@@ -101,7 +98,7 @@ def fit(ax: "matplotlib.axes.Axes", points, size, middle=(0.48, 0.86)) -> None:
     ax.set_axis_off()
 
 
-def put_labels(ax: "matplotlib.axes.Axes", labels: list[Label], size, column=0.25):
+def put_labels(ax: Axes, labels: list[Label], size, column=0.25):
     """Write labels in columns at both sides of a view, each with a line to its point.
 
     Args:
@@ -174,7 +171,7 @@ def _cross(one, other):
     )
 
 
-def middle_only(ax: "matplotlib.axes.Axes", column: float) -> None:
+def middle_only(ax: Axes, column: float) -> None:
     """Clip a view to its middle, leaving the columns of labels free.
 
     Args:
@@ -215,7 +212,7 @@ def spread(wanted, heights) -> np.ndarray:
     return np.clip(pooled, low, max(low, high)) + steps
 
 
-def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.ndarray:
+def between(ax: Axes, start, stop, shift=(0.0, 0.0)) -> np.ndarray:
     """Draw a dimension line between two points, offset by extension lines.
 
     Args:
@@ -236,7 +233,7 @@ def between(ax: "matplotlib.axes.Axes", start, stop, shift=(0.0, 0.0)) -> np.nda
     return 0.5 * (ends[0] + ends[1])
 
 
-def squeeze(ax: "matplotlib.axes.Axes", start, stop, tail: float) -> None:
+def squeeze(ax: Axes, start, stop, tail: float) -> None:
     """Draw the dimension of a short distance by arrows from outside.
 
     Args:
@@ -253,7 +250,7 @@ def squeeze(ax: "matplotlib.axes.Axes", start, stop, tail: float) -> None:
         )
 
 
-def radius(ax: "matplotlib.axes.Axes", centre, point) -> np.ndarray:
+def radius(ax: Axes, centre, point) -> np.ndarray:
     """Draw an arrow from the centre of an arc to the arc.
 
     Returns:
@@ -266,7 +263,7 @@ def radius(ax: "matplotlib.axes.Axes", centre, point) -> np.ndarray:
     return centre + 0.8 * (point - centre)
 
 
-def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
+def angle(ax: Axes, centre, size: float, ends) -> np.ndarray:
     """Draw the angle between two lines through a point.
 
     Args:
@@ -287,7 +284,7 @@ def angle(ax: "matplotlib.axes.Axes", centre, size: float, ends) -> np.ndarray:
     return centre + size * _way(0.5 * (ends[0] + ends[1]))
 
 
-def pitch_arrow(ax: "matplotlib.axes.Axes", at, diameter: Any) -> None:
+def pitch_arrow(ax: Axes, at, diameter: Any) -> None:
     """Draw an arrow from the axis, which is out of view, to the pitch circle.
 
     Args:
@@ -317,7 +314,7 @@ def pitch_arrow(ax: "matplotlib.axes.Axes", at, diameter: Any) -> None:
 
 
 def contact_angle(
-    ax: "matplotlib.axes.Axes",
+    ax: Axes,
     centre,
     contact: float,
     top,
@@ -356,9 +353,7 @@ def contact_angle(
     )
 
 
-def on_line(
-    ax: "matplotlib.axes.Axes", at, text: str, turn: float = 0.0, ha: str = "center"
-) -> None:
+def on_line(ax: Axes, at, text: str, turn: float = 0.0, ha: str = "center") -> None:
     """Write a label on or next to its dimension line within a rolling element.
 
     Args:

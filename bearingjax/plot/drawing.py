@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 
@@ -26,10 +26,7 @@ from .roller_drawing import (
     roller_clearance_view,
 )
 from .set_drawing import arrangement_view
-from .style import head, pyplot
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .style import Figure, head, pyplot
 
 MATERIALS = "material", "ring_material"
 IN_WORDS = (*MATERIALS, "rated_contact_angle")
@@ -77,9 +74,7 @@ class _Strip(NamedTuple):
     bold: bool = False
 
 
-def drawing(
-    bearing: AbstractBearing | BearingSet, title: str = ""
-) -> "matplotlib.figure.Figure":
+def drawing(bearing: AbstractBearing | BearingSet, title: str = "") -> Figure:
     """Draw a design, with every parameter at the place where it is measured.
 
     Labels are the names of the Python interface, with values. Sections and the view

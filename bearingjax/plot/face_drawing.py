@@ -1,15 +1,10 @@
 """View of a row of rolling elements along the axis, and their deviations."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import AbstractBearing
 from .dimension import AXIS, angle, between, fit, label
-from .style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, Axes, axes_or_new
 
 DEVIATIONS = {
     "azimuth_deviation": (180.0 / np.pi, "deg"),
@@ -20,7 +15,7 @@ DEVIATIONS = {
 """Factor and unit of fields that differ between rolling elements."""
 
 
-def face_view(ax: "matplotlib.axes.Axes", bearing: AbstractBearing, size) -> None:
+def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
     """Draw the pitch circle and its rolling elements along the axis, to scale.
 
     Args:
@@ -123,9 +118,7 @@ def _in_corner(ax, corner, text, at):
     )
 
 
-def deviation_view(
-    ax: "matplotlib.axes.Axes", bearing: AbstractBearing, name: str
-) -> None:
+def deviation_view(ax: Axes, bearing: AbstractBearing, name: str) -> None:
     """Plot the deviations of each rolling element from the design.
 
     Args:

@@ -1,14 +1,12 @@
 """Lives and damage of the cases of a load spectrum."""
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from .style import COLOURS, GREY, ROLLER, SMALL, head, pyplot
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .panel import finish
+from .style import COLOURS, GREY, ROLLER, SMALL, Figure, head, pyplot
 
 _MOST = 16
 """Most cases drawn."""
@@ -26,7 +24,7 @@ _COLOURS = {
 }
 
 
-def life_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+def life_overview(run: Any, title: str = "") -> Figure:
     """Plot the life of every case alone, and its share in time and damage.
 
     Of many cases those that use most of the life.
@@ -80,9 +78,8 @@ def _lives(run, order, ax):
     ax.set_yscale("log")
     if known.size:
         ax.set_ylim(0.3 * known.min(), 10.0 * top)
-    ax.set_ylabel("life [million revolutions]")
-    ax.set_title("Life of each case, if it were alone")
-    _finish(run, order, ax)
+    title, of = "Life of each case, if it were alone", "life [million revolutions]"
+    _finish(run, order, ax, title, of)
 
 
 def _shares(run, order, ax):
@@ -105,22 +102,19 @@ def _shares(run, order, ax):
         if len(order) <= 8:
             ax.bar_label(drawn, fmt="%.3g", fontsize=SMALL, padding=2)
     ax.margins(y=0.25)  # room for the legend above all bars
-    ax.set_ylabel("share [%]")
-    ax.set_title("Shares of the cases")
-    _finish(run, order, ax)
+    _finish(run, order, ax, "Shares of the cases", "share [%]")
     ax.legend(fontsize=SMALL, ncols=2, loc="upper center")
 
 
-def _finish(run, order, ax):
+def _finish(run, order, ax, title, of):
     left = run.table.cases.count - len(order)
     names = [str(k) for k in order]
     if len(order) <= _NAMED:
         across = _ACROSS // len(order)
         names = [_named(k, run.words(int(k)), across) for k in order]
     ax.set_xticks(np.arange(len(order)), names, fontsize=SMALL)
-    ax.set_xlabel(f"case (the worst; {left} more are not drawn)" if left else "case")
-    ax.grid(axis="y", color="0.9")
-    ax.set_axisbelow(True)
+    over = f"case (the worst; {left} more are not drawn)" if left else "case"
+    finish(ax, title, over, of, axis="y")
     ax.legend(fontsize=SMALL)
 
 

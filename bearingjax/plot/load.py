@@ -1,32 +1,29 @@
 """Loads of the rolling elements, displacement against load, stiffness over speed."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..element.frame import FREEDOMS, LOADS
+from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS
 from ..statics.solution import BallSolution, Solution
+from .panel import Ax, Axis, Curve, Panel, chart
 from .style import (
     COLOURS,
     GREY,
     RACEWAYS,
     SMALL,
+    Axes,
     axes_or_new,
     raceway_index,
     row_slices,
 )
 
-if TYPE_CHECKING:
-    import matplotlib.axes
-
 _RADIUS, _TICK_LABEL = 1.6, (0.3, 0.15)
 """Radius of a load zone on a page; width and height of a tick label [inch]."""
 
 
-def load_zone(
-    solution: Solution, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def load_zone(solution: Solution, ax: Ax = None) -> Axes:
     """Plot the load of every roller or ball on both raceways at its azimuth, N or kN.
 
     Azimuth 0 is +x, to the right; it grows counter-clockwise, towards +y.
@@ -34,9 +31,6 @@ def load_zone(
     Args:
         solution: A single solution.
         ax: Polar axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax, (7.0, 5.2), polar=True)
     azimuth = np.asarray(solution.azimuth, dtype=float)
@@ -158,6 +152,7 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
     return 0.0
 
 
+@chart
 def load_displacement(
     load: ArrayLike,
     displacement: ArrayLike,
@@ -165,8 +160,8 @@ def load_displacement(
     load_name: str = "Fy",
     freedom: str = "uy",
     converged: ArrayLike | None = None,
-    ax: "matplotlib.axes.Axes | None" = None,
-) -> "matplotlib.axes.Axes":
+    ax: Ax = None,
+) -> Panel:
     """Plot the displacement of a ring against its load.
 
     Args:
@@ -175,10 +170,6 @@ def load_displacement(
         load_name: One of `LOADS`; forces are drawn in kN, moments in N m.
         freedom: One of `FREEDOMS`; shifts are drawn in µm, tilts in mrad.
         converged: Whether each case has a result (case,); the others are gaps.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
 
     Raises:
         ValueError: If a name is unknown or the lengths differ.
@@ -191,84 +182,66 @@ def load_displacement(
             raise ValueError(
                 f"`{name}` is {value!r}; it must be one of {', '.join(names)}."
             )
-    x_scale, x_unit = (1e-3, "kN") if load_name[0] == "F" else (1.0, "N m")
-    y_scale, y_unit = (1e6, "µm") if freedom[0] == "u" else (1e3, "mrad")
-    x = x_scale * np.atleast_1d(np.asarray(load, dtype=float))
-    y = y_scale * np.atleast_1d(np.asarray(displacement, dtype=float))
+    x = np.atleast_1d(np.asarray(load, dtype=float))
+    y = np.atleast_1d(np.asarray(displacement, dtype=float))
     good = np.ones(x.shape, bool) if converged is None else np.asarray(converged, bool)
     if x.ndim != 1 or x.shape != y.shape or x.shape != np.atleast_1d(good).shape:
         raise ValueError(
             "`load`, `displacement` and `converged` must be one-dimensional and of the"
             f" same length; they are {x.shape}, {y.shape} and {good.shape}."
         )
-    ax = axes_or_new(ax)
-    ax.plot(
-        x,
-        np.where(good, y, np.nan),
-        color=COLOURS["inner"],
-        marker="o",
-        markersize=4,
-    )
-    if not np.all(good):
-        ax.plot(
-            x[~good],
-            np.full(np.count_nonzero(~good), 0.02),
-            transform=ax.get_xaxis_transform(),
-            linestyle="none",
-            marker="x",
-            color=GREY,
-            label="not converged",
-        )
-        ax.legend(fontsize=SMALL)
-    ax.grid(color="0.9")
-    ax.set_xlabel(f"load {load_name} [{x_unit}]")
-    ax.set_ylabel(f"displacement {freedom} [{y_unit}]")
-    ax.set_title("Displacement against load")
-    return ax
+    over = Axis(f"load {load_name}", LOAD_UNITS[LOADS.index(load_name)])
+    of = Axis(f"displacement {freedom}", MOTION_UNITS[FREEDOMS.index(freedom)])
+    inner, look = COLOURS["inner"], {"marker": "o", "markersize": 4}
+
+    def lost(ax):
+        if not np.all(good):
+            ax.plot(
+                over.scale * x[~good], np.full(np.count_nonzero(~good), 0.02), "x",
+                color=GREY, label="not converged", transform=ax.get_xaxis_transform(),
+            )  # fmt: skip
+            ax.legend(fontsize=SMALL)
+
+    known = Curve(x, np.where(good, y, np.nan), "", inner, look=look)
+    return Panel("Displacement against load", over, of, [known], also=lost)
 
 
+@chart
 def stiffness_over_speed(
     speed: ArrayLike,
     stiffness: ArrayLike,
     *,
     moving_ring: str = "inner",
-    ax: "matplotlib.axes.Axes | None" = None,
-) -> "matplotlib.axes.Axes":
+    ax: Ax = None,
+) -> Panel:
     """Plot axial and radial stiffness of a ring against speed.
 
     Args:
         speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
         stiffness: Of both rings (case, 12, 12) [N/m, N, N m].
         moving_ring: Ring whose stiffness is shown, "outer" or "inner".
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
 
     Raises:
         ValueError: If the shapes do not fit or the ring is unknown.
     """
     first = 6 * raceway_index(moving_ring)
-    rpm = np.atleast_1d(np.asarray(speed, dtype=float)) * 60.0 / (2.0 * np.pi)
+    speed = np.atleast_1d(np.asarray(speed, dtype=float))
     k = np.asarray(stiffness, dtype=float)
-    if k.shape != (len(rpm), 12, 12):
+    if k.shape != (len(speed), 12, 12):
         raise ValueError(
-            f"`stiffness` has shape {k.shape}; it must be ({len(rpm)}, 12, 12), one"
+            f"`stiffness` has shape {k.shape}; it must be ({len(speed)}, 12, 12), one"
             " matrix for each speed."
         )
-    ax = axes_or_new(ax)
+    marks = []
     for i, style in ((0, "-"), (1, "--"), (2, "-.")):
-        ax.plot(
-            rpm,
-            1e-6 * k[:, first + i, first + i],
-            linestyle=style,
-            color=COLOURS["inner"] if i == 2 else COLOURS["outer"],
-            label=f"{FREEDOMS[i]}",
-        )
-    ax.grid(color="0.9")
-    ax.set_xlabel("speed [rpm]")
-    ax.set_ylabel("stiffness [N/µm]")
-    ax.set_ylim(bottom=0.0)
-    ax.set_title(f"Stiffness of the {moving_ring} ring over speed")
-    ax.legend(fontsize=SMALL, frameon=False)
-    return ax
+        colour = COLOURS["inner"] if i == 2 else COLOURS["outer"]
+        own = k[:, first + i, first + i]
+        marks.append(Curve(speed, own, FREEDOMS[i], colour, style))
+    return Panel(
+        f"Stiffness of the {moving_ring} ring over speed",
+        Axis("speed", "rad/s"),
+        Axis("stiffness", "N/m", (1e-6, "N/µm")),
+        marks,
+        floor=True,
+        legend={"frameon": False},
+    )

@@ -1,7 +1,7 @@
 """Plots of bearing noise: record, spectrum, bands, contact states."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +17,8 @@ from ..noise import (
 )
 from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
-from .style import CURVES, GREY, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .panel import Ax, Axis, Curve, Panel, chart, finish
+from .style import CURVES, GREY, SMALL, Axes, axes_or_new
 
 DIRECTIONS = ("x", "y", "z")
 STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
@@ -33,55 +31,45 @@ _TICKS = 18
 """Most rolling elements that are numbered on the axis of a map."""
 
 
-def acceleration_over_time(
-    record: Vibration, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+@chart
+def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
     """Plot the acceleration of the moving ring over the turns of the shaft [m/s²].
 
     Args:
         record: From `vibration`.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
-    ax = axes_or_new(ax)
     turns = np.asarray(record.time) * float(record.shaft_frequency)
     values = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
     # What moves most lies below, so that it hides nothing.
     above = np.argsort(np.argsort(-values.std(axis=0)))
-    for k, name in enumerate(DIRECTIONS):
-        ax.plot(
-            turns, values[:, k], color=CURVES[k], lw=0.6, zorder=2 + above[k],
-            label=name,
-        )  # fmt: skip
-    ax.set_xlim(0.0, record.turns)
-    ax.set_xlabel("turns of the shaft")
-    ax.set_ylabel("acceleration [m/s²]")
-    ax.set_title("Vibration of the moving ring")
-    legend = ax.legend(fontsize=SMALL, loc="upper right", ncols=len(DIRECTIONS))
-    for line in legend.get_lines():
-        line.set_linewidth(2.0)
-    return ax
+    marks = [
+        Curve(turns, values[:, k], name, CURVES[k], look={"lw": 0.6, "zorder": 2 + z})
+        for k, (name, z) in enumerate(zip(DIRECTIONS, above, strict=True))
+    ]
+    return Panel(
+        "Vibration of the moving ring",
+        Axis("turns of the shaft"),
+        Axis("acceleration", "m/s²"),
+        marks,
+        (0.0, record.turns),
+        legend={"loc": "upper right", "ncols": len(DIRECTIONS)},
+        also=lambda ax: [line.set_linewidth(2) for line in ax.get_legend().get_lines()],
+    )
 
 
 def noise_spectrum(
     spectrum: Spectrum,
     lines: Sequence[Line] = (),
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     *,
     reference: float = REFERENCE_ACCELERATION,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot the level of every line of a spectrum, summed over directions.
 
     Args:
         spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
         lines: From `name_lines`; the largest have their names.
-        ax: Axes; a new figure if `None`.
         reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax)
     frequency = np.asarray(spectrum.frequency)[1:]
@@ -107,12 +95,12 @@ def noise_spectrum(
     ax.set_xscale("log")
     ax.set_xlim(frequency[0], frequency[-1])
     _names(ax, named, decibel, top)
-    ax.grid(color="0.93")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("frequency [Hz]")
-    ax.set_ylabel(f"level of lines [dB over {reference:.3g} m/s²]")
-    ax.set_title("Spectrum")
+    finish(ax, "Spectrum", "frequency [Hz]", _level("level of lines", reference).label)
     return ax
+
+
+def _level(name, reference) -> Axis:
+    return Axis(name, f"dB over {reference:.3g} m/s²")
 
 
 def _names(ax, lines, decibel, top):
@@ -144,22 +132,18 @@ def _names(ax, lines, decibel, top):
 def band_bars(
     bands: Bands,
     level: Any,
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     *,
     norm: Any = None,
     reference: float = REFERENCE_ACCELERATION,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot the level of every band and direction, with the norm if there is one.
 
     Args:
         bands: The bands.
         level: (band, direction) [dB]; NaN for bands that are not held.
-        ax: Axes; a new figure if `None`.
         norm: Largest allowed level of each band (band,) [dB].
         reference: Acceleration of 0 dB [m/s²].
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax)
     level = np.asarray(level, dtype=float)
@@ -183,11 +167,8 @@ def band_bars(
         place[::every], [f"{c:g}" for c in bands.centre[::every]], fontsize=SMALL
     )
     ax.set_xlim(-0.6, count - 0.4)
-    ax.grid(axis="y", color="0.93")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("centre of the band [Hz]")
-    ax.set_ylabel(f"level [dB over {reference:.3g} m/s²]")
-    ax.set_title("Bands")
+    label = _level("level", reference).label
+    finish(ax, "Bands", "centre of the band [Hz]", label, axis="y")
     ax.legend(fontsize=SMALL, ncols=4, loc="upper left")
     return ax
 
@@ -195,17 +176,13 @@ def band_bars(
 def contact_state_map(
     record: Vibration,
     states: ContactStates,
-    ax: "matplotlib.axes.Axes | None" = None,
-) -> "matplotlib.axes.Axes":
+    ax: Ax = None,
+) -> Axes:
     """Map the number of contacts of every rolling element over turns of the shaft.
 
     Args:
         record: From `vibration`.
         states: From `contact_states`.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -253,45 +230,35 @@ def contact_state_map(
     return ax
 
 
+@chart
 def level_distribution(
-    level: Any,
-    ax: "matplotlib.axes.Axes | None" = None,
-    *,
-    reference: float = REFERENCE_ACCELERATION,
-) -> "matplotlib.axes.Axes":
+    level: Any, ax: Ax = None, *, reference: float = REFERENCE_ACCELERATION
+) -> Panel:
     """Plot the cumulative distribution of levels over bearings [%].
 
     Args:
         level: Of each bearing (bearing, direction) [dB]; NaN of those that failed.
-        ax: Axes; a new figure if `None`.
         reference: Acceleration of 0 dB [m/s²].
-
-    Returns:
-        The axes.
     """
-    ax = axes_or_new(ax)
+    marks = []
     for k, values in enumerate(np.asarray(level, dtype=float).T):
         values = np.sort(values[values > LOWEST_LEVEL])
-        share = 100.0 * (np.arange(len(values)) + 0.5) / max(len(values), 1)
-        ax.plot(values, share, ".-", color=CURVES[k], lw=1.2, label=DIRECTIONS[k])
-    ax.set_ylim(0.0, 100.0)
-    ax.grid(color="0.93")
-    ax.set_axisbelow(True)
-    ax.set_xlabel(f"level [dB over {reference:.3g} m/s²]")
-    ax.set_ylabel("bearings below [%]")
-    ax.set_title("Random bearings")
-    ax.legend(fontsize=SMALL)
-    return ax
+        share = (np.arange(len(values)) + 0.5) / max(len(values), 1)
+        marks.append(Curve(values, share, DIRECTIONS[k], CURVES[k], ".-", {"lw": 1.2}))
+    return Panel(
+        "Random bearings",
+        _level("level", reference),
+        Axis("bearings below", "", (100.0, "%")),
+        marks,
+        also=lambda ax: ax.set_ylim(0.0, 100.0),
+    )
 
 
-def source_bars(
-    shares: Shares, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def source_bars(shares: Shares, ax: Ax = None) -> Any:
     """Plot the share of each source in the mean square of the acceleration [%].
 
     Args:
         shares: From `shares`.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes; the largest source is at the top. Thin lines are standard errors.
@@ -307,8 +274,6 @@ def source_bars(
     ax.tick_params(axis="y", labelsize=SMALL)
     ax.bar_label(bars, fmt="%.3g", fontsize=SMALL, padding=3)
     ax.margins(x=0.15)
-    ax.grid(axis="x", color="0.93")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("part of the mean square of the acceleration [%]")
-    ax.set_title("Sources of the noise")
+    label = "part of the mean square of the acceleration [%]"
+    finish(ax, "Sources of the noise", label, axis="x")
     return ax

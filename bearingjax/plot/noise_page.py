@@ -1,6 +1,6 @@
 """One page on the noise of a bearing."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .noise import (
     acceleration_over_time,
@@ -10,13 +10,10 @@ from .noise import (
     noise_spectrum,
     source_bars,
 )
-from .style import head, pyplot
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .style import Figure, head, pyplot
 
 
-def noise_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+def noise_overview(run: Any, title: str = "") -> Figure:
     """Plot record, spectrum with named lines, bands and contact states on one page.
 
     Of random bearings also the distribution of their levels, and what makes it.

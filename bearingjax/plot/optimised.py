@@ -1,7 +1,7 @@
 """Plots of a design before and after optimisation."""
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -13,13 +13,14 @@ from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
 from ..optimise.system import element_of, loads_of
 from ..shafts import ShaftDesign
+from .panel import ALONG, PRESSURE, Axis, Bars, Curve, Panel
 from .profiles import arc_gaps
 from .style import (
     COLOURS,
     GREY,
     RACEWAYS,
     ROLLER,
-    SMALL,
+    Figure,
     degrees,
     head,
     pyplot,
@@ -27,17 +28,13 @@ from .style import (
     without_offset,
 )
 
-if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.figure
-
 _FAR = 50.0
 """Longest over shortest life above which the axis is logarithmic."""
 
 _SIDES = {"before": (GREY, "--"), "after": (ROLLER, "-")}
 
 
-def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
+def optimised(found: Optimised, title: str = "") -> Figure:
     """Plot profile, pressure and history of the search, before and after.
 
     Top left the profile, roller and the busier raceway together; top right the
@@ -65,18 +62,13 @@ def optimised(found: Optimised, title: str = "") -> "matplotlib.figure.Figure":
     figure = pyplot().figure(figsize=(12.0, height))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = figure.subplot_mosaic(names)
+    panels = {"h": _history(found)}
+    panels["c"] = _each_bearing(found) if shafts else _cases(found)
     if rollers:
         case, roller, raceway = worst(found.before.solution)
-        _profiles(found, roller, raceway, axes["p"])
-        _pressures(found, case, axes["a"])
-    if shafts:
-        _each_bearing(found, axes["c"])
-    else:
-        _cases(found, axes["c"])
-    _history(found, axes["h"])
-    for ax in axes.values():
-        ax.grid(color="0.9")
-        ax.set_axisbelow(True)
+        panels |= {"p": _profiles(found, roller, raceway), "a": _pressures(found, case)}
+    for name, panel in panels.items():
+        panel.draw(axes[name])
     head(figure, title or "Optimised design")
     return figure
 
@@ -105,15 +97,15 @@ def worst(solution: Any) -> tuple[int, int, int]:
     return case, roller, raceway
 
 
-def _profiles(found, roller, raceway, ax):
-    """Plot the drop of the pair [µm] in the row of a roller, downwards."""
+def _profiles(found, roller, raceway) -> Panel:
+    """Return the drop of the pair in the row of a roller, downwards."""
     ring = RACEWAYS[raceway]
     row = next(
         k
         for k, mine in enumerate(row_slices(found.after.solution))
         if mine.start <= roller < mine.stop
     )
-    limit = 0.0
+    limit, marks = 0.0, []
     for side, element in (("before", found.initial), ("after", found.element)):
         bearing: Any = rows_of(element.bearing)[row].bearing
         length, diameter = bearing.roller_length, bearing.roller_diameter
@@ -123,21 +115,22 @@ def _profiles(found, roller, raceway, ax):
         drops = [p.drop(position, length, diameter) for p in profiles]
         drop = np.sum(drops, axis=0) + arc_gaps(bearing, position)[raceway]
         along = np.asarray(position)
-        colour, style = _SIDES[side]
-        ax.plot(1e3 * along, 1e6 * drop, style, color=colour, linewidth=2, label=side)
+        marks.append(Curve(along, drop, side, *_SIDES[side], {"lw": 2}))
         near = np.abs(along) <= 0.97 * along[-1]
         limit = max(limit, min(float(drop.max()), 3.0 * float(drop[near].max())))
     limit = 1e6 * limit or 1.0
-    ax.set_ylim(1.1 * limit, -0.1 * limit)
-    ax.margins(x=0)
-    ax.set_xlabel("position along the roller [mm]")
-    ax.set_ylabel("drop [µm]")
-    ax.set_title(f"Profile of roller and {ring} raceway")
-    ax.legend(fontsize=SMALL)
+
+    def down(ax):
+        ax.set_ylim(1.1 * limit, -0.1 * limit)
+        ax.margins(x=0)
+
+    title = f"Profile of roller and {ring} raceway"
+    return Panel(title, ALONG, Axis("drop", "m"), marks, also=down)
 
 
-def _pressures(found, case, ax):
-    """Plot the pressure [MPa] along the most loaded roller, in one case."""
+def _pressures(found, case) -> Panel:
+    """Return the pressure along the most loaded roller, in one case."""
+    marks = []
     for side, outcome in (("before", found.before), ("after", found.after)):
         one = _one(outcome.solution, case)
         pressure = np.asarray(one.contact_pressure)
@@ -145,78 +138,75 @@ def _pressures(found, case, ax):
         roller, raceway = np.unravel_index(np.argmax(peaks), peaks.shape)
         position = np.asarray(one.position)
         position = position if position.ndim == 1 else position[roller]
-        colour, style = _SIDES[side]
         angle = degrees(one.azimuth)[roller]
-        ax.plot(
-            1e3 * position,
-            1e-6 * pressure[roller, raceway],
-            style,
-            color=colour,
-            linewidth=2,
-            label=f"{side}: roller at {angle:.4g}°, {RACEWAYS[raceway]} raceway",
-        )
-    ax.set_ylim(bottom=0.0)
-    ax.margins(x=0)
-    ax.set_xlabel("position along the roller [mm]")
-    ax.set_ylabel("contact pressure [MPa]")
-    ax.set_title(f"Pressure along the most pressed roller, case {case}")
-    ax.legend(fontsize=SMALL)
+        label = f"{side}: roller at {angle:.4g}°, {RACEWAYS[raceway]} raceway"
+        values, look = pressure[roller, raceway], {"lw": 2}
+        marks.append(Curve(position, values, label, *_SIDES[side], look))
+    title = f"Pressure along the most pressed roller, case {case}"
+    wide = lambda ax: ax.margins(x=0)  # noqa: E731
+    return Panel(title, ALONG, PRESSURE, marks, floor=True, also=wide)
 
 
-def _cases(found, ax):
-    """Plot peak pressure [MPa] of every case, or its life if it is the objective."""
+def _cases(found) -> Panel:
+    """Return the peak pressure of every case, or its life if it is the objective."""
     wanted = found.objective
     lives = isinstance(wanted, Damage)
-    sides = {"before": (-0.2, found.initial), "after": (0.2, found.element)}
-    for side, (shift, element) in sides.items():
+    sides = []
+    for side, element in (("before", found.initial), ("after", found.element)):
         solution = getattr(found, side).solution
         if lives:
-            values = np.asarray(wanted.of_each_case(element, solution))
-            values = np.where(np.isfinite(values), values, np.nan)
+            sides.append(np.asarray(wanted.of_each_case(element, solution)))
         else:
-            pressure = np.asarray(solution.roller_pressure)
-            values = 1e-6 * pressure.max(axis=(1, 2))
-        colour, _ = _SIDES[side]
-        places = np.arange(len(values)) + shift
-        bars = ax.bar(places, values, 0.38, color=colour, label=side)
-        if len(values) <= 8:
-            fmt = _life_label if lives else "%.0f"
-            ax.bar_label(bars, fmt=fmt, fontsize=SMALL, padding=2)
-    if len(values) <= 12:
-        ax.set_xticks(np.arange(len(values)))
-    ax.set_xlabel("operating case")
-    ax.margins(y=0.16)
-    if lives:
-        known = values[np.isfinite(values)]
-        if known.size and known.max() > _FAR * known.min():
+            sides.append(np.asarray(solution.roller_pressure).max(axis=(1, 2)))
+
+    def limits(ax):
+        if len(sides[0]) <= 12:
+            ax.set_xticks(np.arange(len(sides[0])))
+        ax.margins(y=0.25)  # room for the legend
+        known = sides[1][np.isfinite(sides[1])]
+        if lives and known.size and known.max() > _FAR * known.min():
             ax.set_yscale("log")
             ax.set_ylim(top=20.0 * known.max())  # room for the legend
-        without_offset(ax)
-        ax.set_ylabel(f"life [{'h' if wanted.hours else 'revolutions'}]")
-        ax.set_title("Life under each case alone")
-    else:
-        ax.set_ylabel("peak pressure [MPa]")
-        ax.set_title("Peak pressure of the cases")
-    ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
+            without_offset(ax)
+
+    title = "Life under each case alone" if lives else "Peak pressure of the cases"
+    unit = "h" if lives and wanted.hours else "revolutions"
+    of = Axis("life", unit) if lives else Axis("peak pressure", "Pa")
+    told = _life_label if lives else "%.0f"
+    return _pairs(title, Axis("operating case"), of, sides, told, also=limits)
 
 
-def _each_bearing(found, ax):
-    """Plot the life [h] of each bearing of a system of shafts under all cases."""
+def _each_bearing(found) -> Panel:
+    """Return the life of each bearing of a system of shafts under all cases."""
     names = [seat.name for seat in found.element.system.seats]
-    for side, shift in (("before", -0.2), ("after", 0.2)):
-        design = found.initial if side == "before" else found.element
-        hours = np.asarray(design.hours(found.cases, getattr(found, side).solution))
-        values = np.where(np.isfinite(hours), hours, np.nan)
-        places = np.arange(len(names)) + shift
-        bars = ax.bar(places, values, 0.38, color=_SIDES[side][0], label=side)
-        if len(names) <= 8:
-            ax.bar_label(bars, fmt=_life_label, fontsize=SMALL, padding=2)
-    ax.set_xticks(np.arange(len(names)), names)
-    ax.set_yscale("log")
-    ax.margins(y=0.25)
-    ax.set_ylabel("rating life [h]")
-    ax.set_title("Life of each bearing under all cases")
-    ax.legend(fontsize=SMALL, ncols=2, loc="upper right")
+    sides = [
+        np.asarray(design.hours(found.cases, outcome.solution))
+        for design, outcome in (
+            (found.initial, found.before),
+            (found.element, found.after),
+        )
+    ]
+
+    def limits(ax):
+        ax.set_yscale("log")
+        ax.margins(y=0.25)
+
+    title, of = "Life of each bearing under all cases", Axis("rating life", "h")
+    more: Any = {"names": names, "also": limits}
+    return _pairs(title, Axis(""), of, sides, _life_label, **more)
+
+
+def _pairs(title, over, of, sides, told, **more: Any) -> Panel:
+    """Return bars before and after, side by side."""
+    marks = [
+        Bars(
+            np.where(np.isfinite(values), values, np.nan), side, _SIDES[side][0], away,
+            0.38, told if len(values) <= 8 else None,
+        )
+        for side, away, values in zip(_SIDES, (-0.2, 0.2), sides, strict=True)
+    ]  # fmt: skip
+    legend = {"ncols": 2, "loc": "upper right"}
+    return Panel(title, over, of, marks, legend=legend, **more)
 
 
 def _life_label(value):
@@ -227,36 +217,28 @@ def _life_label(value):
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
-def _history(found, ax):
-    """Plot the objective over its start and, if any, the violation of constraints."""
-    without_offset(ax)
+def _history(found) -> Panel:
+    """Return the objective over its start and, if any, the violation of constraints."""
     history, measure = found.history, found.objective
     steps, values = np.arange(len(history.objective)), history.objective
     if isinstance(measure, AbstractMeasure):
         measure, values = measure.as_told, measure.told(values)
     size = abs(values[0]) or 1.0
-    name = label_of(measure)
-    ax.plot(steps, values / size, "o-", color=ROLLER, markersize=4, label=name)
-    ax.set_xlabel("step of the search")
+    name, look = label_of(measure), {"markersize": 4}
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
-    ax.set_ylabel(f"{smooth}{name} over its start")
-    title = f"{found.n_evaluations} designs evaluated"
-    ax.set_title(f"The search: {title}")
-    ax.xaxis.get_major_locator().set_params(integer=True)
+    over, of = Axis("step of the search"), Axis(f"{smooth}{name} over its start")
+    marks = [Curve(steps, values / size, name, ROLLER, "o-", look)]
+    beside = None
     if history.violation.any():
-        other = without_offset(ax.twinx())
-        other.plot(
-            steps,
-            history.violation,
-            "s:",
-            color=COLOURS["inner"],
-            markersize=4,
-            label="miss of the worst constraint",
-        )
-        other.set_ylabel("miss over the bound", color=COLOURS["inner"])
-        other.set_ylim(bottom=0.0)
-        lines = [*ax.get_lines(), *other.get_lines()]
-        ax.legend(lines, [str(line.get_label()) for line in lines], fontsize=SMALL)
+        label, colour = "miss of the worst constraint", COLOURS["inner"]
+        missed = [Curve(steps, history.violation, label, colour, "s:", look)]
+        beside = Panel("", over, Axis("miss over the bound"), missed, floor=True)
+
+    title = f"The search: {found.n_evaluations} designs evaluated"
+    return Panel(
+        title, over, of, marks, beside=beside, legend=None if beside is None else {},
+        also=lambda ax: ax.xaxis.get_major_locator().set_params(integer=True),
+    )  # fmt: skip
 
 
 def _one(solution, case):

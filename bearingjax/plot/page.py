@@ -1,6 +1,6 @@
 """One page on a solved bearing."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,15 +12,12 @@ from .balls import contact_angles, ellipses
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
 from .section import cross_section
-from .style import RACEWAYS, degrees, force_text, head, pyplot, row_slices
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .style import RACEWAYS, Figure, degrees, force_text, head, pyplot, row_slices
 
 
 def overview(
     bearing: AbstractBearing | BearingSet, solution: Solution, title: str = ""
-) -> "matplotlib.figure.Figure":
+) -> Figure:
     """Plot section, load zone, contacts and the main results on one page.
 
     Args:

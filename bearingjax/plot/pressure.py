@@ -1,13 +1,14 @@
 """Contact pressure along the rollers."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..statics.solution import RollerSolution
+from .panel import ALONG, PRESSURE, finish
 from .style import (
     COLOURS,
     SMALL,
+    Ax,
+    Axes,
     axes_or_new,
     degrees,
     force_text,
@@ -17,20 +18,17 @@ from .style import (
     towards_white,
 )
 
-if TYPE_CHECKING:
-    import matplotlib.axes
-
 _LINES = {"outer": "--", "inner": "-"}
 _MAPS = {"outer": "Blues", "inner": "Oranges"}
 
 
 def pressure_profiles(
     solution: RollerSolution,
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     count: int = 3,
     raceway: str = "inner",
     row: int = 0,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot contact pressure [MPa] along the most loaded rollers.
 
     A triangle marks a roller end that carries load: the line contact has no end
@@ -38,13 +36,9 @@ def pressure_profiles(
 
     Args:
         solution: A single solution of a roller bearing.
-        ax: Axes; a new figure if `None`.
         count: Number of rollers, most loaded first.
         raceway: "inner", "outer" or "both".
         row: Index of the row in a set.
-
-    Returns:
-        The axes.
 
     Raises:
         ValueError: If `count` is below 1, or `raceway` or `row` is unknown.
@@ -56,7 +50,7 @@ def pressure_profiles(
     ax = axes_or_new(ax)
     mine = row_slice(solution, row)
     position = _position(solution, mine)
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine]
+    pressure = PRESSURE.scale * np.asarray(solution.contact_pressure)[mine]
     load = np.asarray(solution.roller_load)[mine]
     angle = degrees(solution.azimuth)[mine]
     edges = np.asarray(solution.edge_loaded)[mine]
@@ -97,12 +91,9 @@ def pressure_profiles(
     ax.set_xlim(position[0], position[-1])
     top = np.nanmax(pressure[np.ix_(rollers, rings)], initial=0.0)
     ax.set_ylim(0.0, 1.08 * top if top > 0 else 1.0)
-    ax.grid(color="0.9")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("position along the roller [mm]")
-    ax.set_ylabel("contact pressure [MPa]")
     which = "" if raceway == "both" else f", {raceway} raceway"
-    ax.set_title(f"Most loaded rollers{which}{_of_row(solution, row)}")
+    title = f"Most loaded rollers{which}{_of_row(solution, row)}"
+    finish(ax, title, ALONG.label, PRESSURE.label)
     title = "azimuth: load"
     if np.any(edges[np.ix_(rollers, rings)]):
         title += "\n▲ loaded roller end"
@@ -116,24 +107,23 @@ def _of_row(solution, row):
 
 def _position(solution, mine):
     """Return positions along the rollers of a row [mm]."""
-    position = 1e3 * np.asarray(solution.position)
+    position = ALONG.scale * np.asarray(solution.position)
     return position if position.ndim == 1 else position[mine.start]
 
 
 def pressure_map(
     solution: RollerSolution,
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     raceway: str = "inner",
     row: int = 0,
     top: float | None = None,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Map contact pressure [MPa] of all rollers over azimuth and roller position.
 
     White is no contact, or less than a thousandth of the highest pressure.
 
     Args:
         solution: A single solution of a roller bearing.
-        ax: Axes; a new figure if `None`.
         raceway: "inner" or "outer".
         row: Index of the row in a set.
         top: Pressure at the end of the colour scale [Pa]; the highest one of the row
@@ -150,9 +140,9 @@ def pressure_map(
     mine = row_slice(solution, row)
     angle = degrees(solution.azimuth)[mine]
     order = np.argsort(angle, kind="stable")
-    pressure = 1e-6 * np.asarray(solution.contact_pressure)[mine, ring]
+    pressure = PRESSURE.scale * np.asarray(solution.contact_pressure)[mine, ring]
     position = _position(solution, mine)
-    top = np.nanmax(pressure, initial=0.0) if top is None else 1e-6 * top
+    top = np.nanmax(pressure, initial=0.0) if top is None else PRESSURE.scale * top
     # Last and first roller stand on both sides of the seam at 0°.
     around = np.concatenate([order[-1:], order, order[:1]])
     turns = np.concatenate([[-360.0], np.zeros(len(order)), [360.0]])
@@ -170,12 +160,12 @@ def pressure_map(
     if len(angle) <= 40:
         ax.vlines(across, position[0], position[-1], color="0.85", linewidth=0.6)
     bar = ax.figure.colorbar(image, ax=ax, pad=0.02)
-    bar.set_label("contact pressure [MPa]")
+    bar.set_label(PRESSURE.label)
     ax.set_xticks(np.arange(0.0, 361.0, 45.0))
     ax.set_xlim(0.0, 360.0)
     ax.set_ylim(position[0], position[-1])
     ax.set_xlabel("azimuth of the roller [deg]")
-    ax.set_ylabel("position along the roller [mm]")
+    ax.set_ylabel(ALONG.label)
     ax.set_title(f"Contact pressure, {raceway} raceway{_of_row(solution, row)}")
     return ax
 

@@ -1,7 +1,7 @@
 """Drawing of a profile with its parameters."""
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -14,10 +14,7 @@ from ..design import (
 )
 from ..design.profile import drops
 from .dimension import ARROW, label
-from .style import COLOURS, GREY, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import COLOURS, GREY, ROLLER, SMALL, Axes, axes_or_new
 
 _COLOURS = {
     "roller_profile": ROLLER,
@@ -28,9 +25,7 @@ _NEAR = 0.95
 """Share of the length beyond which a profile is ignored for the scale."""
 
 
-def profile_view(
-    ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, name: str
-) -> None:
+def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
     """Draw the drop along the roller, magnified by its axis, with all its parameters.
 
     Lengths are drawn where they are measured; the others are next to the curve.

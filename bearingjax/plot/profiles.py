@@ -1,21 +1,15 @@
 """Profiles of rollers and raceways."""
 
-from typing import TYPE_CHECKING
-
 import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing
-from ..design.profile import drops, sagitta
-from .style import COLOURS, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from ..design.profile import between_arcs, drops
+from .panel import ALONG, finish
+from .style import COLOURS, ROLLER, SMALL, Ax, Axes, axes_or_new
 
 
-def profile(
-    bearing: AbstractRollerBearing, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     """Plot the drop [µm] of the roller and of both raceways along the roller.
 
     The drop points downwards, as the material falls away. Profiles that grow without
@@ -24,10 +18,6 @@ def profile(
 
     Args:
         bearing: The design.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax)
     length, diameter = bearing.roller_length, bearing.roller_diameter
@@ -52,10 +42,8 @@ def profile(
     limit = limit or 1.0
     ax.set_ylim(1.1 * limit, -0.1 * limit)
     ax.set_xlim(x[0], x[-1])
-    ax.grid(color="0.9")
-    ax.set_xlabel("position along the roller [mm]")
-    ax.set_ylabel("drop [µm]")
-    ax.set_title("Profiles, from the roller's arc" if barrel else "Profiles")
+    title = "Profiles, from the roller's arc" if barrel else "Profiles"
+    finish(ax, title, ALONG.label, "drop [µm]")
     ax.legend(fontsize=SMALL, loc="lower center")
     return ax
 
@@ -72,5 +60,5 @@ def arc_gaps(bearing: AbstractRollerBearing, position) -> np.ndarray:
     """
     if bearing.arc_radii is None:
         return np.zeros((2, len(position)))
-    own, *raceways = (np.asarray(sagitta(position, r)) for r in bearing.arc_radii)
-    return np.stack([own - raceway for raceway in raceways])
+    own, *raceways = bearing.arc_radii
+    return np.stack([between_arcs(position, (own, radius)) for radius in raceways])

@@ -1,7 +1,5 @@
 """Dimensions of one row of rollers: section, clearance, ribs and profiles."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import (
@@ -27,10 +25,7 @@ from .dimension import (
 )
 from .outline import Section
 from .roller_section import roller_row
-from .style import COLOURS, RACEWAYS, ROLLER, SMALL, towards_white
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import COLOURS, RACEWAYS, ROLLER, SMALL, Axes, towards_white
 
 _GAP = 0.05
 """Drawn gap of a clearance, roller diameters."""
@@ -40,7 +35,7 @@ PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 
 
 def dimensioned_rollers(
-    ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, parts: Section, size
+    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size
 ) -> None:
     """Draw the axial section of a row, to scale, with all its dimensions.
 
@@ -142,7 +137,7 @@ def _angles(ax, bearing, parts):
 
 
 def roller_clearance_view(
-    ax: "matplotlib.axes.Axes", bearing: AbstractRollerBearing, parts: Section, size
+    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size
 ) -> None:
     """Draw the clearance of a row of rollers, magnified.
 
@@ -171,7 +166,7 @@ def roller_clearance_view(
 
 
 def rib_view(
-    ax: "matplotlib.axes.Axes",
+    ax: Axes,
     bearing: AbstractRollerBearing,
     parts: Section,
     names: list[str],

@@ -1,7 +1,5 @@
 """Drawing of a rotor to scale: shaft, discs, bearings, housings, stations."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..rotor import BearingSupport, Disc, Rotor
@@ -13,19 +11,14 @@ from .rotor_parts import (
     draw_law,
     draw_spring,
 )
-from .style import GREY, OUTER, SMALL, axes_or_new, towards_white
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import GREY, OUTER, SMALL, Ax, Axes, axes_or_new, towards_white
 
 _STEEL = "#B0B0B0"
 _LEAST = 0.022
 """Least distance of numbered stations, over the length of the shaft."""
 
 
-def rotor_section(
-    rotor: Rotor, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def rotor_section(rotor: Rotor, ax: Ax = None) -> Axes:
     """Draw the axial section of a rotor, to scale [mm].
 
     A disc is the cylinder on the shaft with its mass and moments of inertia, a point
@@ -35,7 +28,6 @@ def rotor_section(
 
     Args:
         rotor: The rotor.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, x or y upwards.

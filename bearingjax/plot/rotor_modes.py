@@ -1,34 +1,27 @@
 """Mode shapes of a rotor, and its natural frequencies over the speed."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..rotor import CriticalSpeeds, Modes, Rotor
-from .style import GREY, INNER, OUTER, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from ..rotor import CriticalSpeeds, Modes, Rotor, is_axial, major_axis
+from .panel import Axis, finish
+from .style import GREY, INNER, OUTER, ROLLER, SMALL, Ax, Axes, axes_or_new
 
 WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar, axial", ROLLER)}
 """Names and colours of whirl directions; 0 is planar, axial or mixed."""
-RPM = 30.0 / np.pi
-"""Revolutions per minute in 1 rad/s."""
-_UNITS = {"um": (1e6, "µm"), "mrad": (1e3, "mrad")}
-"""Units of motions, over m or rad, and their names."""
+SPEED = Axis("speed", "rad/s")
 _HALF = 0.42
 """Half height of a mode in its lane [1]."""
-_AXIAL = 0.99
-"""Share of axial motion above which a mode is drawn as axial [1]."""
 
 
 def mode_shapes(
     rotor: Rotor,
     found: Modes,
-    ax: "matplotlib.axes.Axes | None" = None,
+    ax: Ax = None,
     *,
     count: int = 6,
-) -> "matplotlib.axes.Axes":
+) -> Axes:
     """Plot shapes of the lowest modes over the axis [mm], one above the other.
 
     A line is the shaft at the moment of its largest displacement, seen across the
@@ -38,17 +31,13 @@ def mode_shapes(
     Args:
         rotor: The rotor.
         found: From `modes`, at one speed.
-        ax: Axes; a new figure if `None`.
         count: Most modes; those that do not oscillate are left out.
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax, (8.0, 6.0))
     z = 1e3 * np.asarray(rotor.shaft.nodes, dtype=float)
     names = []
     chosen = np.flatnonzero(np.asarray(found.oscillates))[:count]
-    axial = _axial(found.shape)
+    axial = is_axial(found.shape)
     for lane, k in enumerate(chosen):
         whirl, colour = WHIRLS[0 if axial[k] else int(found.whirl[k])]
         line, band = _drawn(np.asarray(found.shape[k]), axial[k])
@@ -84,12 +73,6 @@ def _percent(ratio):
     return f"{100.0 * float(np.where(np.abs(ratio) < 1e-9, 0.0, ratio)):.3g}"
 
 
-def _axial(shape):
-    """Return whether modes (..., node, 5) are almost purely axial."""
-    squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
-    return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)
-
-
 def _drawn(shape, axial):
     """Return line and half width of the band of a mode, at most one."""
     x, y, z = shape[:, 0], shape[:, 1], shape[:, 2]
@@ -116,21 +99,12 @@ def _direction(x, y):
     return 0.5 * (np.angle(forward) + np.angle(backward))
 
 
-def major_axis(x: Any, y: Any) -> np.ndarray:
-    """Return the major half axis of the orbits Re (x, y) exp(iωt).
-
-    Args:
-        x, y: Complex amplitudes [m].
-    """
-    return 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
-
-
 def campbell_diagram(
     speeds: Any,
     found: Modes,
     critical: CriticalSpeeds | None = None,
-    ax: "matplotlib.axes.Axes | None" = None,
-) -> "matplotlib.axes.Axes":
+    ax: Ax = None,
+) -> Axes:
     """Plot natural frequencies [Hz] over the speed [rpm], with the synchronous line.
 
     Args:
@@ -138,21 +112,17 @@ def campbell_diagram(
         found: From `campbell`.
         critical: Critical speeds to be marked; those of forward whirl, which unbalance
             excites, with their number.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
     ax = axes_or_new(ax)
-    rpm = RPM * np.asarray(speeds, dtype=float)
+    rpm = SPEED.scale * np.asarray(speeds, dtype=float)
     frequency = np.where(found.oscillates, found.frequency, np.nan)
-    whirl = np.where(_axial(found.shape), 0, found.whirl)
+    whirl = np.where(is_axial(found.shape), 0, found.whirl)
     # Where modes coincide, as at rest, they have no direction: that of the next speed.
     sense = np.where(whirl[1:] != 0, whirl[1:], whirl[:-1])
     for value, (name, colour) in WHIRLS.items():
         label = name
         for mode in range(frequency.shape[1]):
-            for first, last in _runs(sense[:, mode] == value):
+            for first, last in runs(sense[:, mode] == value):
                 part = slice(first, last + 1)
                 ax.plot(rpm[part], frequency[part, mode], color=colour, label=label)
                 label = f"_{name}"
@@ -162,16 +132,12 @@ def campbell_diagram(
         _critical(ax, critical, rpm, top)
     ax.set_xlim(rpm.min(), rpm.max())
     ax.set_ylim(0.0, 1.25 * top)  # room for the legend
-    ax.grid(color="0.93")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("speed [rpm]")
-    ax.set_ylabel("natural frequency [Hz]")
-    ax.set_title("Campbell diagram")
+    finish(ax, "Campbell diagram", SPEED.label, "natural frequency [Hz]")
     ax.legend(fontsize=SMALL, loc="upper left", ncols=2)
     return ax
 
 
-def _runs(chosen):
+def runs(chosen):
     """Return first and last point of every run of chosen segments."""
     edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
@@ -181,9 +147,9 @@ def _runs(chosen):
 def _critical(ax, critical, rpm, top):
     """Mark critical speeds on the synchronous line, with numbers for forward whirl."""
     label = "critical speed"
-    sense = np.where(_axial(critical.shape), 0, critical.whirl)
+    sense = np.where(is_axial(critical.shape), 0, critical.whirl)
     for speed, whirl in zip(np.asarray(critical.speed), sense, strict=True):
-        at = RPM * speed
+        at = SPEED.scale * speed
         if not np.isfinite(speed) or not rpm.min() <= at <= rpm.max():
             continue
         if at / 60.0 > top:
@@ -200,23 +166,3 @@ def _critical(ax, critical, rpm, top):
                 textcoords="offset points", zorder=4,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
             )  # fmt: skip
-
-
-def unit_scale(unit: str) -> float:
-    """Return the factor from m or rad to a unit.
-
-    Args:
-        unit: "um" or "mrad".
-    """
-    if unit not in _UNITS:
-        raise ValueError(f"`unit` is {unit!r}; it must be 'um' or 'mrad'.")
-    return _UNITS[unit][0]
-
-
-def unit_name(unit: str) -> str:
-    """Return the label of a unit.
-
-    Args:
-        unit: "um" or "mrad".
-    """
-    return _UNITS[unit][1]

@@ -1,19 +1,17 @@
 """One page on a rotor with the results of its scene."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..rotor import STATION_FREEDOMS
+from ..rotor.nonlinear import envelope, spectra_over_time
 from .rotor import rotor_section
 from .rotor_modes import campbell_diagram, mode_shapes
-from .rotor_motion import orbits, spectra_over_time, waterfall, waveforms
-from .rotor_response import envelope, linear_curve, response_curve, speed_curve
-from .style import head, pyplot
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .rotor_motion import orbits, waterfall, waveforms
+from .rotor_response import linear_curve, response_curve, speed_curve
+from .style import Figure, head, pyplot
 
 _ACROSS = 3
 """Number of pictures side by side."""
@@ -21,7 +19,7 @@ _LEAST_TIMES = 100
 """Least number of times for spectra of a run-up."""
 
 
-def rotor_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+def rotor_overview(run: Any, title: str = "") -> Figure:
     """Plot the rotor with available modes, Campbell diagram, response and motion.
 
     Args:

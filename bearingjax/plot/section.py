@@ -1,7 +1,5 @@
 """Axial section of a bearing, to scale."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import (
@@ -15,15 +13,10 @@ from .ball_section import STEEP, ball_section, row_position
 from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
 from .roller_section import roller_row
-from .style import COLOURS, RACEWAYS, ROLLER, SMALL, axes_or_new
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import COLOURS, RACEWAYS, ROLLER, SMALL, Ax, Axes, axes_or_new
 
 
-def cross_section(
-    bearing: AbstractBearing | BearingSet, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     """Draw the axial section of the bearing above its axis, to scale [mm].
 
     Dimensions of the rings beyond raceways and ribs are not part of the design: they
@@ -31,7 +24,6 @@ def cross_section(
 
     Args:
         bearing: The design; of a set all rows, with the dimensions of the first one.
-        ax: Axes; a new figure if `None`.
 
     Returns:
         The axes: z to the right, radius upwards.

@@ -1,19 +1,15 @@
 """Axial sections of several bearings side by side."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from ..design import AbstractBearing, BearingSet
 from .section import cross_section
-from .style import pyplot
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .style import Figure, pyplot
 
 
 def cross_sections(
     bearings: Sequence[AbstractBearing | BearingSet], titles: Sequence[str]
-) -> "matplotlib.figure.Figure":
+) -> Figure:
     """Draw axial sections of bearings, each to its own scale [mm].
 
     Args:

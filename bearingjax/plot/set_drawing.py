@@ -1,7 +1,5 @@
 """Drawing of the arrangement of the rows of a set."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..design import (
@@ -14,18 +12,13 @@ from .ball_section import ball_row, row_position
 from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
 from .outline import section
 from .roller_section import roller_row
-from .style import INNER, SMALL
-
-if TYPE_CHECKING:
-    import matplotlib.axes
+from .style import INNER, SMALL, Axes
 
 _APART = 0.25
 """Gap between the labels of adjacent rows [inch]."""
 
 
-def arrangement_view(
-    ax: "matplotlib.axes.Axes", bearing: BearingSet, turned: list[int], size
-) -> None:
+def arrangement_view(ax: Axes, bearing: BearingSet, turned: list[int], size) -> None:
     """Draw the axial section of all rows, to scale, with their dimensions in the set.
 
     Args:

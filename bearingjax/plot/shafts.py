@@ -1,6 +1,6 @@
 """Picture of a system of shafts: drawing to scale, lines, load zones."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -10,10 +10,7 @@ from ..numerics.gravity import GRAVITY
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone
 from .rotor import rotor_section
-from .style import GREY, INNER, OUTER, head, pyplot, towards_white
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white
 
 _ACROSS = 4
 """Load zones side by side."""
@@ -21,7 +18,7 @@ _AXES = ("x", "y")
 _COLOURS = (INNER, OUTER)
 
 
-def shaft_overview(run: Any, title: str = "") -> "matplotlib.figure.Figure":
+def shaft_overview(run: Any, title: str = "") -> Figure:
     """Plot each shaft to scale with its lines, and the load zone of each bearing.
 
     Args:

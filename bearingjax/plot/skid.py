@@ -1,6 +1,6 @@
 """Pages on skidding balls and rollers, and cage speed over the load."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,23 +13,23 @@ from ..skid import (
     SteadyRollerSkid,
     SteadySkid,
     by_raceway,
+    sliding_ellipse,
 )
-from .skid_contact import heat_map, sliding_ellipse, sliding_map
-from .skid_orbit import (
+from .panel import NEWTONS, Ax, Axis, Bars, Curve, Panel, chart
+from .skid_contact import heat_map, sliding_map
+from .skid_curves import (
     cage_force_over_orbit,
+    cage_force_over_time,
     heat_over_orbit,
     load_over_orbit,
-    sliding_over_orbit,
-    spin_over_orbit,
-)
-from .skid_time import (
-    cage_force_over_time,
     load_over_time,
     power_over_time,
+    sliding_over_orbit,
     sliding_over_time,
     sliding_spectrum,
     slip_over_time,
     speed_over_time,
+    spin_over_orbit,
     spin_over_time,
 )
 from .style import (
@@ -38,15 +38,11 @@ from .style import (
     RACEWAYS,
     ROLLER,
     SMALL,
-    axes_or_new,
+    Figure,
     degrees,
     head,
     pyplot,
 )
-
-if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.figure
 
 
 def skid_overview(
@@ -54,13 +50,13 @@ def skid_overview(
     found: SteadySkid | SteadyRollerSkid | SkidHistory | SkidRollerHistory,
     state: Conditions | None,
     title: str = "",
-) -> "matplotlib.figure.Figure":
+) -> Figure:
     """Plot one page on skidding balls or rollers.
 
     Of an end state: load, sliding and spin along the orbit, sliding and heat over the
     hottest contact, powers; where all balls move alike, both contacts of a ball; of
     rollers heat and cage force along the orbit. Of a motion in time: what
-    `plot.skid_time` has, over time.
+    the plots over time show.
 
     Args:
         model: The bearing and its oil.
@@ -72,46 +68,38 @@ def skid_overview(
         The figure, 15 by 9 inches; of a motion in time 18 by 9.
     """
     if isinstance(found, SkidHistory | SkidRollerHistory):
-        figure = _over_time(found)
+        figure = _page(found, (*_OVER_TIME, _spectrum, cage_force_over_time), 18.0)
     elif isinstance(found, SteadyRollerSkid):
-        figure = _rollers(found)
+        figure = _page(found, (*_ROLLERS, power_bars), 15.0)
     else:
         figure = _end(model, found, state)
     head(figure, title or type(model.bearing).__name__)
     return figure
 
 
-def _over_time(found):
-    figure = pyplot().figure(figsize=(18.0, 9.0))
+_OVER_TIME = (
+    speed_over_time,
+    slip_over_time,
+    spin_over_time,
+    power_over_time,
+    load_over_time,
+    sliding_over_time,
+)
+_ROLLERS = (
+    load_over_orbit,
+    sliding_over_orbit,
+    spin_over_orbit,
+    heat_over_orbit,
+    cage_force_over_orbit,
+)
+
+
+def _page(found, drawn, width):
+    """Draw plots on a page in two lines."""
+    figure = pyplot().figure(figsize=(width, 9.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
-    axes = figure.subplots(2, 4).ravel()
-    drawn = (
-        speed_over_time,
-        slip_over_time,
-        spin_over_time,
-        power_over_time,
-        load_over_time,
-        sliding_over_time,
-        _spectrum,
-        cage_force_over_time,
-    )
+    axes = figure.subplots(2, len(drawn) // 2).ravel()
     for draw, ax in zip(drawn, axes, strict=True):
-        draw(found, ax)
-    return figure
-
-
-def _rollers(found):
-    figure = pyplot().figure(figsize=(15.0, 9.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
-    drawn = (
-        load_over_orbit,
-        sliding_over_orbit,
-        spin_over_orbit,
-        heat_over_orbit,
-        cage_force_over_orbit,
-        power_bars,
-    )
-    for draw, ax in zip(drawn, figure.subplots(2, 3).ravel(), strict=True):
         draw(found, ax)
     return figure
 
@@ -151,27 +139,14 @@ def _end(model, found, state):
     return figure
 
 
-def power_bars(
-    found: SteadySkid | SteadyRollerSkid, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+@chart
+def power_bars(found: SteadySkid | SteadyRollerSkid, ax: Ax = None) -> Panel:
     """Plot the mean power of the drive and of all losses [W].
 
     Args:
         found: From `skid.steady`.
-        ax: Axes; a new figure if `None`.
-
-    Returns:
-        The axes.
     """
-    ax = axes_or_new(ax)
-    power = found.power
-    heat = np.asarray(found.heat)
-    half = heat.shape[-1] // 2
-    # At even places a ball is for longer where it is slow.
-    orbit = np.abs(np.asarray(found.orbit_speed))
-    time = 1.0 / orbit if orbit.all() else np.ones_like(orbit)
-    share = time / time.sum() * _balls(found)
-    outer, inner = ((share @ part).sum() for part in (heat[:, :half], heat[:, half:]))
+    power, (outer, inner) = found.power, found.raceway_heat
     bars = {
         "drive": (float(power.drive), GREY),
         "outer\ncontacts": (outer, COLOURS["outer"]),
@@ -179,26 +154,22 @@ def power_bars(
         "drag": (float(power.drag), ROLLER),
         "cage": (float(power.cage), "0.75"),
     }
-    drawn = ax.bar(
-        list(bars), [v for v, _ in bars.values()], color=[c for _, c in bars.values()]
-    )
-    ax.tick_params(axis="x", labelsize=SMALL)
-    ax.bar_label(drawn, fmt="%.3g", fontsize=SMALL, padding=2)
-    ax.margins(y=0.12)
-    ax.grid(axis="y", color="0.9")
-    ax.set_axisbelow(True)
-    ax.set_ylabel("power [W]")
-    ax.set_title("Power of the drive, and where it goes")
-    return ax
+    heights, colours = zip(*bars.values(), strict=True)
+
+    def small(ax):
+        ax.tick_params(axis="x", labelsize=SMALL)
+        ax.margins(y=0.12)
+
+    return Panel(
+        "Power of the drive, and where it goes", Axis(""), Axis("power", "W"),
+        [Bars(heights, "", colours, told="%.3g")], names=list(bars), also=small,
+    )  # fmt: skip
 
 
+@chart
 def cage_speed(
-    load: ArrayLike,
-    found: SteadySkid,
-    ax: "matplotlib.axes.Axes | None" = None,
-    *,
-    label: str = "",
-) -> "matplotlib.axes.Axes":
+    load: ArrayLike, found: SteadySkid, ax: Ax = None, *, label: str = ""
+) -> Panel:
     """Plot the cage speed over the load, with that of pure rolling [rad/s].
 
     Args:
@@ -207,9 +178,6 @@ def cage_speed(
             that did not converge are left out.
         ax: Axes; a new figure if `None`. Curves may be drawn over one another.
         label: Of the curve.
-
-    Returns:
-        The axes.
 
     Raises:
         ValueError: If there are not as many loads as cases.
@@ -224,24 +192,14 @@ def cage_speed(
             " must be rows of the same length."
         )
     speed = np.where(np.asarray(found.result) == 0, speed, np.nan)
-    rolling = 1.0 / np.mean(1.0 / np.asarray(found.rolling_orbit_speed), axis=-1)
-    ax = axes_or_new(ax)
-    (line,) = ax.plot(load, speed, "o-", markersize=4, label=label or "with slip")
-    ax.plot(
-        load, rolling, "--", color=line.get_color(), linewidth=1, label="pure rolling"
-    )
-    ax.grid(color="0.9")
-    ax.set_axisbelow(True)
-    ax.set_xlabel("load [N]")
-    ax.set_ylabel("cage speed [rad/s]")
-    ax.set_title("Cage speed over the load")
-    ax.legend(fontsize=SMALL)
-    return ax
-
-
-def _balls(found: Any) -> int:
-    """Number of balls."""
-    return len(found.solution.azimuth)
+    colour = "C0" if ax is None else f"C{len(ax.get_lines()) // 2 % 10}"
+    rolling = found.rolling_cage_speed
+    marks = [
+        Curve(load, speed, label or "with slip", colour, "o-", {"markersize": 4}),
+        Curve(load, rolling, "pure rolling", colour, "--", {"linewidth": 1}),
+    ]
+    of = Axis.of(found, "cage_speed", (1.0, "rad/s"))
+    return Panel("Cage speed over the load", Axis("load", "N", NEWTONS), of, marks)
 
 
 def _contact(model, found, state, at, slip, heat):

@@ -1,76 +1,18 @@
 """Sliding and heat over the contact ellipse of a skidding ball."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
-
 import numpy as np
 
-from ..numerics.types import as_real
-from ..skid import Conditions, SkidModel
-from .style import GREY, SMALL, axes_or_new, pyplot
+from ..skid import Ellipse
+from .style import GREY, SMALL, Ax, Axes, axes_or_new, pyplot
 
-if TYPE_CHECKING:
-    import matplotlib.axes
-
-_RINGS, _AROUND = 25, 73
 _MAP = "viridis"
 
 
-class Ellipse(NamedTuple):
-    """Contact values on a grid of ellipses (ring, around).
-
-    Attributes:
-        x: Along the rolling direction [m].
-        y: Across [m].
-        slip: Of the ball against the raceway, along and across (ring, around, 2)
-            [m/s].
-        heat: Of the traction [W/m²].
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    slip: np.ndarray
-    heat: np.ndarray
-
-
-def sliding_ellipse(
-    model: SkidModel, found: Any, state: Conditions, at: tuple[int, ...]
-) -> Ellipse:
-    """Return slip and heat over one contact.
-
-    Args:
-        model: The bearing and its oil.
-        found: From `skid.steady` or `skid.simulate`.
-        state: From `conditions`.
-        at: Indices of the contact: place, contact; or time, ball, contact.
-
-    Source: slip (u_x + y w, u_y - x w) with the slip u in the middle and the spin w.
-    """
-    semi = np.asarray(state.semi_axes)[at]
-    radius = np.linspace(0.0, 1.0, _RINGS)[:, None]
-    angle = np.linspace(0.0, 2.0 * np.pi, _AROUND)[None, :]
-    x, y = semi[0] * radius * np.cos(angle), semi[1] * radius * np.sin(angle)
-    (ux, uy), w = np.asarray(found.sliding)[at], np.asarray(found.contact_spin)[at]
-    slip = np.stack([ux + y * w, uy - x * w], axis=-1)
-    inside = np.sqrt(np.maximum(1.0 - radius**2, 0.0)) + 0.0 * angle
-    pressure = as_real(np.asarray(state.peak_pressure)[at] * inside)
-    squared = (slip**2).sum(axis=-1)
-    resistance = model.traction.resistance(
-        as_real(squared),
-        as_real(np.asarray(found.film)[at]),
-        pressure,
-        model.lubricant.viscosity(pressure, model.temperature),
-    )
-    return Ellipse(x, y, slip, np.asarray(resistance) * squared)
-
-
-def sliding_map(
-    ellipse: Ellipse, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def sliding_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
     """Map the sliding speed over a contact [mm/s], with its direction as arrows.
 
     Args:
-        ellipse: From `sliding_ellipse`.
-        ax: Axes; a new figure if `None`.
+        ellipse: From `skid.sliding_ellipse`.
 
     Returns:
         The axes; both directions have scales of their own.
@@ -101,14 +43,11 @@ def sliding_map(
     return ax
 
 
-def heat_map(
-    ellipse: Ellipse, ax: "matplotlib.axes.Axes | None" = None
-) -> "matplotlib.axes.Axes":
+def heat_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
     """Map the heat of the traction over a contact [W/mm²].
 
     Args:
-        ellipse: From `sliding_ellipse`.
-        ax: Axes; a new figure if `None`.
+        ellipse: From `skid.sliding_ellipse`.
 
     Returns:
         The axes; both directions have scales of their own.

@@ -5,7 +5,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    import matplotlib.axes
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    Ax = Axes | None
+else:  # names alone: it is imported at the first plot
+    Axes, Figure = "matplotlib.axes.Axes", "matplotlib.figure.Figure"
+    Ax = "matplotlib.axes.Axes | None"
 
 OUTER = "#0072B2"
 """Colour of the outer ring and its raceway (Okabe and Ito, colour-blind safe)."""
@@ -43,9 +49,7 @@ def pyplot():
     return plt
 
 
-def axes_or_new(
-    ax: "matplotlib.axes.Axes | None", size=(7.0, 5.0), polar: bool = False
-) -> "matplotlib.axes.Axes":
+def axes_or_new(ax: Ax, size=(7.0, 5.0), polar: bool = False) -> Axes:
     """Return given axes, or those of a new figure, without an offset of ticks.
 
     Args:
@@ -64,7 +68,7 @@ def axes_or_new(
     return without_offset(ax)
 
 
-def without_offset(ax: "matplotlib.axes.Axes") -> "matplotlib.axes.Axes":
+def without_offset(ax: Axes) -> Axes:
     """Return the axes after switching off the offset of tick labels."""
     for axis in (ax.xaxis, ax.yaxis):
         formatter: Any = axis.get_major_formatter()

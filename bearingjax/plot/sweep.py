@@ -1,17 +1,15 @@
 """Plots of the results of a sweep over its inputs."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..numerics.units import display_unit
 from ..statics.sweep import Sweep
 from ..statics.sweep_table import columns
-from .style import CURVES, SMALL, head, power_of_ten, pyplot, without_offset
-
-if TYPE_CHECKING:
-    import matplotlib.figure
+from .panel import finish
+from .style import CURVES, SMALL, Figure, head, power_of_ten, pyplot, without_offset
 
 _MOST_RESULTS = 9
 _NO_RESULTS = ("design", "iterations", "residual", "hours [h]")
@@ -31,7 +29,7 @@ def sweep_overview(
     solved: Sweep,
     beside: Mapping[str, np.ndarray] | None = None,
     title: str = "",
-) -> "matplotlib.figure.Figure":
+) -> Figure:
     """Plot the first nine results that differ from case to case.
 
     For a grid, results are over the input with most values, a curve for each setting
@@ -69,21 +67,16 @@ def sweep_overview(
     for k, (header, values) in enumerate(shown):
         ax = without_offset(figure.add_subplot(down, across, k + 1))
         words, scale = _shown(header, values)
+        number, many = label == _NUMBER, len(good) > 60
+        look: Any = {"linewidth": 1.0, "markersize": 3.0 if many else 7.0}
         for curve in curves:
-            ax.plot(
-                curve.along,
-                scale * values[curve.cases],
-                "." if label == _NUMBER else ".-",
-                color=CURVES[curve.colour],
-                label=curve.name,
-                linewidth=1.0,
-                markersize=3.0 if len(good) > 60 else 7.0,
-            )
-        ax.set_title(words, fontsize=11)
-        ax.set_xlabel(label)
-        if label == _NUMBER:
+            y, style = scale * values[curve.cases], "." if number else ".-"
+            colour = CURVES[curve.colour]
+            ax.plot(curve.along, y, style, color=colour, label=curve.name, **look)
+        finish(ax, words, label)
+        ax.title.set_fontsize(11)
+        if number:
             ax.locator_params(axis="x", integer=True)
-        ax.grid(color="0.9")
         if k == 0 and any(curve.name for curve in curves):
             # Curves of one colour are told once.
             told = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))

@@ -67,6 +67,8 @@ from .loads import RotorLoads as RotorLoads
 from .loads import StationForce as StationForce
 from .modes import Modes as Modes
 from .modes import campbell as campbell
+from .modes import is_axial as is_axial
+from .modes import major_axis as major_axis
 from .modes import modes as modes
 from .onset import Onset as Onset
 from .onset import instability_onsets as instability_onsets

@@ -25,7 +25,7 @@ from ..design.checks import count as whole
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
 from ..numerics.programs import program
-from ..numerics.types import as_count, as_real
+from ..numerics.types import as_count, as_real, namespace
 from .rotor import Rotor, RotorMatrices
 
 _COINCIDENT = 1e-7
@@ -46,6 +46,30 @@ _HALVINGS = 10
 _CROSSING = 2e-3
 """Step within which frequencies may cross, over the range of speeds: a longer one
 would miss modes that approach and veer [1]."""
+
+
+_AXIAL = 0.99
+"""Share of axial motion above which a mode is one along the axis [1]."""
+
+
+def is_axial(shape: Any) -> np.ndarray:
+    """Return whether modes move almost only along the axis.
+
+    Args:
+        shape: (..., node, 5) [m, rad], as of `Modes`.
+    """
+    squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
+    return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)
+
+
+def major_axis(x: Any, y: Any) -> Any:
+    """Return the longer half axis of the orbits Re (x, y) exp(iωt) [m].
+
+    Args:
+        x, y: Complex amplitudes [m].
+    """
+    xp = namespace(x)
+    return 0.5 * (xp.abs(x + 1j * y) + xp.abs(x - 1j * y))
 
 
 class Modes(eqx.Module):

@@ -13,7 +13,7 @@ from ..numerics.lapack import solve_any
 from ..numerics.programs import program
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
-from .modes import speed_list, to_complex
+from .modes import major_axis, speed_list, to_complex
 from .parts import check_station
 from .rotor import Rotor
 
@@ -66,8 +66,7 @@ class UnbalanceResponse(eqx.Module):
     @property
     def major_axis(self) -> Float[Array, "speed node"]:
         """Longer half axis of the orbit of every node in x and y [m]."""
-        x, y = self.motion[..., 0], self.motion[..., 1]
-        return 0.5 * (jnp.abs(x + 1j * y) + jnp.abs(x - 1j * y))
+        return major_axis(self.motion[..., 0], self.motion[..., 1])
 
 
 def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:

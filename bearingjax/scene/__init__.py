@@ -2,6 +2,7 @@
 
 from .bearing_run import run_optimisation as run_optimisation
 from .bearing_run import run_scene as run_scene
+from .bearing_run import solve_scene as solve_scene
 from .bearing_run import with_set_preload as with_set_preload
 from .cases_table import CaseTable as CaseTable
 from .cases_table import read_cases as read_cases
@@ -37,7 +38,6 @@ from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
 from .life_report import life_as_dict as life_as_dict
-from .life_report import scene_life as scene_life
 from .life_run import LifeRun as LifeRun
 from .life_run import has_cases as has_cases
 from .life_run import life_columns as life_columns
@@ -102,6 +102,8 @@ from .skid_run import SkidRun as SkidRun
 from .skid_run import run_skid as run_skid
 from .skid_table import SkidScene as SkidScene
 from .skid_table import read_skid as read_skid
+from .solved import SolvedScene as SolvedScene
+from .solved import scene_life as scene_life
 from .study import STUDIES as STUDIES
 from .study import run as run
 from .study import study_of as study_of

@@ -16,6 +16,7 @@ from .quantity import SceneError
 from .read import Scene
 from .set_preload import preload_warnings, set_preload
 from .shaft_optimise import ShaftOptimisation
+from .solved import SolvedScene
 
 
 def run_scene(scene: Scene) -> Solution:
@@ -48,6 +49,19 @@ def run_scene(scene: Scene) -> Solution:
         scene.points,
         None if scene.tolerance is None else as_array(scene.tolerance, float),
     )
+
+
+def solve_scene(scene: Scene) -> SolvedScene:
+    """Solve the bearing of a scene, and find the preload of its set on its seats.
+
+    Args:
+        scene: From `read_scene`.
+
+    Fails: as `solve_load`.
+    """
+    solution = run_scene(scene)
+    solved = bool(solution.converged)
+    return SolvedScene(with_set_preload(scene) if solved else scene, solution)
 
 
 def with_set_preload(scene: Scene) -> Scene:

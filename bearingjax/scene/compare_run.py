@@ -4,22 +4,19 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
-import jax
 import numpy as np
 
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
-from ..statics.life import LIFE_OUTPUTS, Life
-from ..statics.solution import Solution
+from ..statics.life import LIFE_OUTPUTS
 from ..statics.sweep import SUMMARIES
 from ..statics.sweep_table import OPERATING_CLEARANCE, spread
-from .bearing_run import run_scene, with_set_preload
-from .fit_table import fit_facts
+from .bearing_run import solve_scene
 from .html_report import flat
-from .life_report import scene_life, solved_warnings
 from .read import Scene
 from .report import without_round_off
 from .report_model import Column, Grid, Part, Report
+from .solved import SolvedScene
 from .sweep_run import kind
 
 _FIELDS = "displacement", "force", "stiffness"
@@ -40,9 +37,7 @@ class Comparison:
 
     Attributes:
         names: Names of the scenes; duplicates are numbered.
-        scenes: From `read_scene`, with the preloads of sets on their seats.
-        solutions: Solution of each scene, converged or not, in NumPy.
-        warnings: Warnings of each scene, as given by `solve`.
+        solved: From `solve_scene`, converged or not.
         quantities: By header, "name [unit]": the value for each scene in SI (scene,),
             NaN where a scene does not have it or was not solved; sorted by decreasing
             difference. Values small relative to others of their kind, such as a
@@ -50,9 +45,7 @@ class Comparison:
     """
 
     names: list[str]
-    scenes: list[Scene]
-    solutions: list[Solution]
-    warnings: list[list[str]]
+    solved: list[SolvedScene]
     quantities: dict[str, np.ndarray]
 
 
@@ -62,22 +55,11 @@ def run_compare(scenes: Sequence[Scene]) -> Comparison:
     Args:
         scenes: Two or more, from `read_scene`.
     """
-    solutions = [jax.device_get(run_scene(scene)) for scene in scenes]
-    ready = [
-        with_set_preload(scene) if solution.converged else scene
-        for scene, solution in zip(scenes, solutions, strict=True)
-    ]
-    pairs = list(zip(ready, solutions, strict=True))
-    lives = [
-        scene_life(scene, solution) if scene.life and solution.converged else None
-        for scene, solution in pairs
-    ]
-    found = [_numbers(*pair, life) for pair, life in zip(pairs, lives, strict=True)]
-    told = [solved_warnings(*p, life) for p, life in zip(pairs, lives, strict=True)]
+    solved = [solve_scene(scene) for scene in scenes]
     names = [scene.name for scene in scenes]
     if len(set(names)) < len(names):
         names = [f"{name} ({k + 1})" for k, name in enumerate(names)]
-    return Comparison(names, ready, solutions, told, _side_by_side(found))
+    return Comparison(names, solved, _side_by_side([_numbers(one) for one in solved]))
 
 
 def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
@@ -111,9 +93,10 @@ def difference(values: np.ndarray) -> float:
     return found if found > _ROUND_OFF else 0.0
 
 
-def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, float]:
+def _numbers(one: SolvedScene) -> dict[str, float]:
     """Return the compared numbers of a scene by header; empty if not solved."""
-    if not solution.converged:
+    scene, solution, life = one.scene, one.numbers, one.life
+    if not one.converged:
         return {}
     told: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
     told |= {name: SUMMARIES[name](solution) for name in _SUMMARIES}
@@ -121,7 +104,7 @@ def _numbers(scene: Scene, solution: Solution, life: Life | None) -> dict[str, f
         told |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
         del told["damage_share"]
     if scene.fits is not None:
-        left = fit_facts(scene.fits, scene.element.bearing).operating
+        left = scene.fits.facts.operating
         told[OPERATING_CLEARANCE] = left.radial_clearance
     fixed, moving = f"_{scene.fixed_ring}_", f"_{scene.moving_ring}_"
     diagonal = {f"stiffness{moving}{name}{moving}{name}" for name in FREEDOMS}
@@ -162,15 +145,15 @@ def compare_report(found: Comparison) -> Report:
     told += [f"{same} results are the same"] if same else []
     warned = [
         f"{name}: {text}"
-        for name, texts in zip(found.names, found.warnings, strict=True)
-        for text in texts
+        for name, one in zip(found.names, found.solved, strict=True)
+        for text in one.warnings
     ]
     return Report({"Scenes": [_inputs(found)], "Results": told}, warned)
 
 
 def _inputs(found: Comparison) -> Part:
     """List the keys that differ between the scenes."""
-    read = [dict(flat(scene.inputs)) for scene in found.scenes]
+    read = [dict(flat(one.scene.inputs)) for one in found.solved]
     keys = dict.fromkeys(key for scene in read for key in scene)
     apart = [key for key in keys if len({scene.get(key) for scene in read}) > 1]
     if not apart:
@@ -194,11 +177,11 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
 
     return {
         "scenes": found.names,
-        "result": [Result(int(s.result)).label for s in found.solutions],
-        "warnings": found.warnings,
+        "result": [Result(int(s.solution.result)).label for s in found.solved],
+        "warnings": [one.warnings for one in found.solved],
         "quantities": {h: v.tolist() for h, v in found.quantities.items()},
         "difference": {h: difference(v) for h, v in found.quantities.items()},
-        "inputs": [scene.inputs for scene in found.scenes],
+        "inputs": [one.scene.inputs for one in found.solved],
         "version": __version__,
     }
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, TaperedRollerBearing, rows_of
-from .fit_table import Fits, fit_facts
+from ..design import TaperedRollerBearing, rows_of
+from .fit_table import Fits
 from .report_model import Column, Grid, Part
 
 ACROSS_TAPERS = "normal to the outer raceway"
@@ -22,13 +22,13 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
     return float(np.cos(angle))
 
 
-def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
+def fit_report(fits: Fits) -> list[Part]:
     """Return the report of fits: radial clearance from free to operation, and seats.
 
     Args:
-        fits, bearing: As in `fit_facts`.
+        fits: From `read_fits`.
     """
-    facts = fit_facts(fits, bearing)
+    facts = fits.facts
     shaft, housing = (name or "as given" for name in fits.names)
     if float(fits.mounting.bore_taper):
         shaft = "tapered"
@@ -38,7 +38,7 @@ def fit_report(fits: Fits, bearing: AbstractBearing | BearingSet) -> list[Part]:
         "operating": facts.operating.radial_clearance,
     }
     ranges = [None, facts.mounted_range, facts.operating_range]
-    row = rows_of(bearing)[0].bearing
+    row = rows_of(fits.bearing)[0].bearing
     columns = [Column("", list(states)), _microns("nominal", list(states.values()))]
     if isinstance(row, TaperedRollerBearing):
         across = [float(c) * outer_cosine(row) for c in states.values()]
@@ -98,11 +98,11 @@ def _seats(facts) -> Grid:
     )
 
 
-def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, Any]:
+def fit_as_dict(fits: Fits) -> dict[str, Any]:
     """Return the fits of a scene as plain numbers, in SI.
 
     Args:
-        fits, bearing: As in `fit_facts`.
+        fits: From `read_fits`.
 
     Returns:
         place; bore_taper [1] and drive_up [m], 0 of cylindrical seats;
@@ -111,7 +111,7 @@ def fit_as_dict(fits: Fits, bearing: AbstractBearing | BearingSet) -> dict[str, 
         shaft_interference, housing_interference [m], shaft_pressure, housing_pressure,
         ring_stress [Pa].
     """
-    facts = fit_facts(fits, bearing)
+    facts = fits.facts
     states = {"mounted": facts.mounted, "operating": facts.operating}
     ranges = {"mounted": facts.mounted_range, "operating": facts.operating_range}
     kept = (

@@ -1,6 +1,7 @@
 """The [fit] and [temperature] tables of a scene: seats of a bearing, temperatures."""
 
 import dataclasses
+import functools
 from typing import Any
 
 import jax
@@ -255,29 +256,6 @@ class TemperatureKeys(Keys):
 
 
 @dataclasses.dataclass(frozen=True)
-class Fits:
-    """Seats of the bearing of a scene.
-
-    Attributes:
-        mounting: The seats, with the interferences at `place`; raceways and clearance
-            are those of the bearing.
-        conditions: Temperatures and speeds.
-        place: Position within the tolerances, one of `PLACES`.
-        limits: `Limits` of clearance and seats, as in `clearance_range`.
-        names: Tolerance classes of shaft and housing; empty for numbers.
-        unknown: Parts of the bearing of unknown thermal expansion, at reference
-            temperature, with the key of their material in [bearing].
-    """
-
-    mounting: Mounting
-    conditions: FitConditions
-    place: str
-    limits: dict[str, Any]
-    names: tuple[str, str]
-    unknown: dict[str, str]
-
-
-@dataclasses.dataclass(frozen=True)
 class FitFacts:
     """Effects of fits, as plain numbers.
 
@@ -296,6 +274,46 @@ class FitFacts:
     mounted_range: ClearanceRange
     operating_range: ClearanceRange
     loosest: FitState
+
+
+@dataclasses.dataclass(frozen=True)
+class Fits:
+    """Seats of the bearing of a scene.
+
+    Attributes:
+        mounting: The seats, with the interferences at `place`; raceways and clearance
+            are those of the bearing.
+        conditions: Temperatures and speeds.
+        place: Position within the tolerances, one of `PLACES`.
+        limits: `Limits` of clearance and seats, as in `clearance_range`.
+        names: Tolerance classes of shaft and housing; empty for numbers.
+        unknown: Parts of the bearing of unknown thermal expansion, at reference
+            temperature, with the key of their material in [bearing].
+        bearing: The bearing on them, unmounted.
+    """
+
+    mounting: Mounting
+    conditions: FitConditions
+    place: str
+    limits: dict[str, Any]
+    names: tuple[str, str]
+    unknown: dict[str, str]
+    bearing: AbstractBearing | BearingSet
+
+    @functools.cached_property
+    def facts(self) -> FitFacts:
+        """Their effects."""
+        mounting = jax.device_get(sized(self.mounting, self.bearing))
+        warm, cold = jax.device_get((self.conditions, FitConditions()))
+        loosest = mounting_at(mounting, "loosest", **self.limits)
+        return FitFacts(
+            float(mounting.radial_clearance),
+            fit_state(mounting, cold),
+            fit_state(mounting, warm),
+            clearance_range(mounting, **self.limits, conditions=cold),
+            clearance_range(mounting, **self.limits, conditions=warm),
+            fit_state(loosest, warm),
+        )
 
 
 def read_fits(
@@ -378,41 +396,19 @@ def read_fits(
             bearing = _with_clearance(bearing, there.radial_clearance)
         mounting = Mounting(**seats)
         names = keys.shaft or "", keys.housing or ""
-        fits = Fits(mounting, conditions, place, given, names, unknown)
+        fits = Fits(mounting, conditions, place, given, names, unknown, bearing)
         mounted(bearing, fits.mounting, conditions)
     return bearing, fits
 
 
-def fit_facts(fits: Fits, bearing: AbstractBearing | BearingSet) -> FitFacts:
-    """Compute the effects of the fits of a scene.
-
-    Args:
-        fits: From `read_fits`.
-        bearing: The bearing returned with them.
-    """
-    mounting = jax.device_get(sized(fits.mounting, bearing))
-    warm, cold = jax.device_get((fits.conditions, FitConditions()))
-    loosest = mounting_at(mounting, "loosest", **fits.limits)
-    return FitFacts(
-        float(mounting.radial_clearance),
-        fit_state(mounting, cold),
-        fit_state(mounting, warm),
-        clearance_range(mounting, **fits.limits, conditions=cold),
-        clearance_range(mounting, **fits.limits, conditions=warm),
-        fit_state(loosest, warm),
-    )
-
-
-def fit_warnings(
-    fits: Fits, bearing: AbstractBearing | BearingSet, load_fixed_to: str = "space"
-) -> list[str]:
+def fit_warnings(fits: Fits, load_fixed_to: str = "space") -> list[str]:
     """Return warnings about fits, one sentence each.
 
     Args:
-        fits, bearing: As in `fit_facts`.
+        fits: From `read_fits`.
         load_fixed_to: As in `LifeConditions`.
     """
-    facts, conditions = fit_facts(fits, bearing), fits.conditions
+    facts, conditions = fits.facts, fits.conditions
     speed = Speed(conditions.speed, conditions.outer_speed)
     seats = facts.mounted, facts.operating, facts.loosest
     return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)

@@ -3,16 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-import jax
 import numpy as np
 
 from ..element.frame import RINGS
-from ..statics.life import LIFE_OUTPUTS, Life, life_of
-from ..statics.life_warning import life_warnings
+from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
-from ..statics.warning import warnings
-from .life_table import life_conditions, not_published, rating_origins
-from .quantity import SceneError
+from .life_table import not_published, rating_origins
 from .read import Scene
 from .report_model import Column, Grid, Part
 
@@ -22,47 +18,6 @@ _SOURCES = {
     "fatigue_load_limit": "limit_source",
 }
 _SHOWN = ("C", "C0", "C_u")
-
-
-def scene_life(scene: Scene, solution: Solution) -> Life:
-    """Compute the rating life of a solved scene by its [life] or defaults, in NumPy.
-
-    Without a relative speed of the rings there is no modified life.
-
-    Args:
-        scene: Solved scene.
-        solution: Its solution, converged.
-
-    Raises:
-        SceneError: If the values of [life] do not suit the bearing.
-    """
-    speed = scene.speed
-    turning = speed is not None and float(speed.inner) != float(speed.outer)
-    conditions = life_conditions(scene, turning=turning)
-    try:
-        life = life_of(solution.element, solution, conditions)
-    except ValueError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
-    return jax.device_get(life)
-
-
-def solved_warnings(
-    scene: Scene, solution: Solution, life: Life | None = None
-) -> list[str]:
-    """Return the warnings of a solved scene, its solution and its life.
-
-    Args:
-        scene: Solved scene, with the preload of its set where it has fits.
-        solution: In NumPy; without warnings if it did not converge.
-        life: Its rating life, in NumPy; `None`: no warnings about the life.
-    """
-    found = list(scene.warnings)
-    if solution.converged:
-        found += warnings(solution)
-    if life is not None:
-        bearing = scene.element.bearing
-        found += life_warnings(bearing, life.ratings, vars(life))
-    return found
 
 
 def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:

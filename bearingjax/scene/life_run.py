@@ -1,6 +1,7 @@
 """Rating life under the cases of a scene, a load spectrum: computation and report."""
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -57,6 +58,11 @@ class LifeRun:
     def converged(self) -> bool:
         """Whether all cases were solved; otherwise there is no life."""
         return bool(self.solved.converged.all())
+
+    @functools.cached_property
+    def warnings(self) -> list[str]:
+        """Warnings of the scene, of its cases and of their lives."""
+        return all_warnings(self.table, self.solved)
 
     @property
     def origins(self) -> dict[str, str]:
@@ -195,7 +201,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         **found,
         "columns": listed_columns(life_columns(run)),
         "counts": run.solved.counts(),
-        "warnings": all_warnings(run.table, run.solved),
+        "warnings": run.warnings,
         "inputs": run.table.inputs,
         "version": __version__,
     }
@@ -227,8 +233,7 @@ def spectrum_report(run: LifeRun) -> Report:
     Args:
         run: Run with all cases solved.
     """
-    told = all_warnings(run.table, run.solved)
-    return Report({"Rating life": _lives(run)}, told)
+    return Report({"Rating life": _lives(run)}, run.warnings)
 
 
 def spectrum_page(run: LifeRun) -> Report:

@@ -140,15 +140,13 @@ def _facts(solution, lubricant, temperature, supply, roughness, series, diameter
     )
 
 
-def oil_report(
-    oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
-) -> list[str]:
+def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
     """Return the report lines of friction and films; empty at rest.
 
     Args:
-        oil, solution, catalogue: As in `oil_facts`.
+        oil: From `read_oil`.
+        facts: From `oil_facts`.
     """
-    facts = oil_facts(oil, solution, catalogue)
     if facts is None:
         return []
     friction = facts.friction
@@ -191,13 +189,11 @@ def oil_report(
     return lines
 
 
-def oil_as_dict(
-    oil: Oil, solution: Solution, catalogue: FromCatalogue | None = None
-) -> dict[str, Any]:
+def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     """Return friction and films as plain numbers, in SI; empty at rest.
 
     Args:
-        oil, solution, catalogue: As in `oil_facts`.
+        facts: From `oil_facts`.
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
@@ -208,7 +204,6 @@ def oil_as_dict(
         (element, contact), null where no load is carried. Contacts as in
         `contact_load` for balls and in `roller_load` for rollers.
     """
-    facts = oil_facts(oil, solution, catalogue)
     if facts is None:
         return {}
     friction, skf, found = facts

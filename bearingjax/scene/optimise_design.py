@@ -33,13 +33,12 @@ def scene_of_design(task: Optimisation | ShaftOptimisation, design: Any) -> Any:
     scene = dataclasses.replace(task.scene, element=design.drawing, preload_force=force)
     if scene.fits is None:
         return scene
-    bearing = design.drawing.bearing
     fits = _fits(scene.fits, design, {v.name for v in task.variables})
     fits = _turning(fits, task)
     fixed_to = "space" if scene.life is None else scene.life.load_fixed_to
-    old = fit_warnings(scene.fits, task.scene.element.bearing, fixed_to)
+    old = fit_warnings(scene.fits, fixed_to)
     kept = [text for text in scene.warnings if text not in old]
-    told = (*kept, *fit_warnings(fits, bearing, fixed_to))
+    told = (*kept, *fit_warnings(fits, fixed_to))
     return dataclasses.replace(scene, fits=fits, warnings=told)
 
 
@@ -67,6 +66,7 @@ def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
         conditions=design.conditions,
         limits=limits,
         names=(names[0], names[1]),
+        bearing=design.drawing.bearing,
     )
 
 

@@ -3,19 +3,18 @@
 from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 
 from ..numerics.result import Result
-from ..statics.life import Life
-from ..statics.solution import BallSolution, Solution, message
+from ..statics.solution import BallSolution, message
 from .files import write_numbers
 from .fit_report import fit_as_dict
-from .life_report import life_as_dict, scene_life, solved_warnings
+from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import oil_as_dict
 from .read import Scene
 from .set_preload import preload_as_dict
+from .solved import SolvedScene
 
 OF_ROLLERS = (
     "displacement",
@@ -57,12 +56,11 @@ KINEMATICS = {
 """Fields of `BallKinematics` by their names in the file."""
 
 
-def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
+def as_dict(found: SolvedScene) -> dict[str, Any]:
     """Return the solution of a scene as plain numbers and lists, in SI.
 
     Args:
-        scene: Solved scene.
-        solution: Its solution.
+        found: From `solve_scene`.
 
     Returns:
         The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
@@ -74,68 +72,55 @@ def as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
         margin of a shoulder that is not given) are null. For a catalogue bearing also
         `catalogue`: designation, geometry, overridden.
     """
-    # In NumPy: JAX would compile every small operation.
-    solution = jax.device_get(solution)
-    solved = Result(int(solution.result)) is Result.CONVERGED
-    life = scene_life(scene, solution) if solved and scene.life is not None else None
+    scene = found.scene
     return {
-        **({**_numbers(solution), **_oil(scene, solution)} if solved else {}),
+        **(_numbers(found.numbers) if found.converged else {}),
+        **oil_as_dict(found.oil),
         **fits_as_dict(scene),
         **_catalogue(scene),
-        **({} if life is None else life_as_dict(life, rating_origins(scene))),
-        **solved_as_dict(scene, solution, life),
+        **_life(found),
+        **solved_as_dict(found),
     }
 
 
-def solved_as_dict(
-    scene: Scene, solution: Solution, life: Life | None = None
-) -> dict[str, Any]:
+def _life(found: SolvedScene) -> dict[str, Any]:
+    life = found.life
+    return {} if life is None else life_as_dict(life, rating_origins(found.scene))
+
+
+def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
     """Return the status of a solve: result, message, residual, iterations, warnings.
 
     Args:
-        scene: Solved scene.
-        solution: Its solution.
-        life: Its rating life, in NumPy, which may add warnings.
+        found: From `solve_scene`.
     """
     from .. import __version__
 
-    solution = jax.device_get(solution)
+    scene, solution = found.scene, found.numbers
     residual = float(solution.stats.residual)
     return {
         "result": Result(int(solution.result)).label,
         "message": message(solution, scene.moving_ring),
         "residual": residual if np.isfinite(residual) else None,
         "iterations": int(solution.stats.iterations),
-        "warnings": solved_warnings(scene, solution, life),
+        "warnings": found.warnings,
         "inputs": scene.inputs,
         "version": __version__,
     }
 
 
-def solved_life_as_dict(scene: Scene, solution: Solution) -> dict[str, Any]:
+def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
     """Return the rating life of a solved scene as plain numbers and lists, in SI.
 
     Args:
-        scene: Solved scene.
-        solution: Its solution.
+        found: From `solve_scene`, of a scene with [life].
 
     Returns:
         Contents of `life_as_dict`, `fits_as_dict` and `solved_as_dict`; the last one
         only if the solve did not converge.
     """
-    solved = Result(int(solution.result)) is Result.CONVERGED
-    life = scene_life(scene, jax.device_get(solution)) if solved else None
-    numbers = solved_as_dict(scene, solution, life)
-    if life is None:
-        return numbers
-    told = life_as_dict(life, rating_origins(scene))
-    return {**told, **fits_as_dict(scene), **numbers}
-
-
-def _oil(scene, solution):
-    if scene.oil is None:
-        return {}
-    return oil_as_dict(scene.oil, solution, scene.catalogue)
+    fits = fits_as_dict(found.scene) if found.converged else {}
+    return {**_life(found), **fits, **solved_as_dict(found)}
 
 
 def fits_as_dict(scene: Scene) -> dict[str, Any]:
@@ -147,7 +132,7 @@ def fits_as_dict(scene: Scene) -> dict[str, Any]:
     """
     if scene.fits is None:
         return {}
-    found = fit_as_dict(scene.fits, scene.element.bearing)
+    found = fit_as_dict(scene.fits)
     if scene.set_preload is not None:
         found["preload"] = preload_as_dict(scene.set_preload)
     return {"fit": found}
@@ -198,10 +183,10 @@ def _listed(values):
     return plain.tolist()
 
 
-def write_json(path: str | Path, scene: Scene, solution: Solution) -> None:
+def write_json(path: str | Path, found: SolvedScene) -> None:
     """Write `as_dict` to a file.
 
     Raises:
         OSError: If the file cannot be written.
     """
-    write_numbers(path, as_dict(scene, solution))
+    write_numbers(path, as_dict(found))

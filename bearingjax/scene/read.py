@@ -246,7 +246,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     life = read_life(top, bearing, speed, points)
     if fits is not None:
         fixed_to = "space" if life is None else life.load_fixed_to
-        odd += tuple(fit_warnings(fits, bearing, fixed_to))
+        odd += tuple(fit_warnings(fits, fixed_to))
     odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,

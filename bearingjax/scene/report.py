@@ -21,30 +21,28 @@ from ..design import (
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..statics.solution import BallSolution, Solution
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
-from .life_report import life_section, scene_life, solved_warnings
+from .life_report import life_section
 from .oil_table import oil_report
 from .operation_report import operation
 from .read import Scene
 from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .set_preload import preload_report
+from .solved import SolvedScene
 
 ROUND_OFF = 1e-11
 """Size over the largest of its kind below which a number is shown as zero [1]."""
 
 
-def report(scene: Scene, solution: Solution) -> Report:
+def report(found: SolvedScene) -> Report:
     """Return the readable report of a solved scene.
 
     Args:
-        scene: Solved scene.
-        solution: Its solution, converged.
+        found: From `solve_scene`, converged.
 
     Returns:
         Sections by their titles; `str` of the report is the terminal text.
     """
-    # In NumPy: JAX would compile every small operation.
-    solution = jax.device_get(solution)
-    life = None if scene.life is None else scene_life(scene, solution)
+    scene, solution, life, oil = found.scene, found.numbers, found.life, found.oil
     sections = {
         "Bearing": [bearing_text(scene, solution.element.bearing, solution)],
         "Operation, materials and laws": [operation(scene, solution)],
@@ -53,13 +51,13 @@ def report(scene: Scene, solution: Solution) -> Report:
         "Stiffness": [_stiffness(scene, solution)],
         "Rolling elements": _elements(solution),
         "Rating life": [] if life is None else life_section(scene, solution, life),
-        "Friction and films": _oil(scene, solution),
+        "Friction and films": [] if scene.oil is None else oil_report(scene.oil, oil),
         "Solution": [
             f"converged in {int(solution.stats.iterations)} steps, residual"
             f" {float(solution.stats.residual):.1e} of the load"
         ],
     }
-    return Report(sections, solved_warnings(scene, solution, life))
+    return Report(sections, found.warnings)
 
 
 def design_sections(scene: Scene) -> dict[str, Section]:
@@ -118,16 +116,10 @@ def fits_section(scene: Scene) -> Section:
     """
     if scene.fits is None:
         return []
-    found = fit_report(scene.fits, scene.element.bearing)
+    found = fit_report(scene.fits)
     if scene.set_preload is not None:
         found += preload_report(scene.set_preload)
     return found
-
-
-def _oil(scene, solution):
-    if scene.oil is None:
-        return []
-    return oil_report(scene.oil, solution, scene.catalogue)
 
 
 def _place(row):

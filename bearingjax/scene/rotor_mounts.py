@@ -244,7 +244,7 @@ def _bearing(
     placed = placed_bearing(top, inside, scene.name, path, speed=speed)
     found = _in_rotor(placed, speed)
     if found.fits is not None:
-        for text in fit_warnings(found.fits, scene.element.bearing):
+        for text in fit_warnings(found.fits):
             warnings.warn(f"{scene.name}: {text}", stacklevel=2)
     return found
 

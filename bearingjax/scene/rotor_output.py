@@ -212,7 +212,7 @@ def _fits(task: RotorScene) -> list[dict[str, Any]]:
             "bearing": mount.name,
             "stations": list(stations),
             "speed": task.speed,
-            **fit_as_dict(mount.fits, mount.element.bearing),
+            **fit_as_dict(mount.fits),
         }
         for mount, stations in task.seats
         if mount.fits is not None and mount.element is not None

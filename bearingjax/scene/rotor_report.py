@@ -86,7 +86,7 @@ def _fits(task):
             f"{mount.name} at {where} {', '.join(map(str, stations))}, its inner ring"
             f" turning at {rpm(task.speed)}"
         )
-        told = fit_report(mount.fits, mount.element.bearing)
+        told = fit_report(mount.fits)
         found[f"Fits of {mount.name}"] = [head, *told]
     return found
 

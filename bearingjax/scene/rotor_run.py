@@ -30,7 +30,7 @@ from ..rotor import (
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
-from .fit_table import fit_facts, turning
+from .fit_table import turning
 from .life_table import life_conditions
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
@@ -303,10 +303,8 @@ def held_fits(task: RotorScene) -> Iterator[str]:
         task: From `read_rotor`.
     """
     for mount, _ in task.seats:
-        assert mount.element is not None  # it has fits
-        bearing = mount.element.bearing
         left = {
-            speed: float(fit_facts(fits, bearing).operating.radial_clearance)
+            speed: float(fits.facts.operating.radial_clearance)
             for speed in (task.speed, *_ends(task))
             if (fits := turning(mount.fits, speed)) is not None
         }

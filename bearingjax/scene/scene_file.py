@@ -1,5 +1,7 @@
 """Scene files: search paths, TOML parsing, and settings that change them."""
 
+import copy
+import functools
 import json
 import re
 import tomllib
@@ -152,7 +154,7 @@ def _parse(path):
     try:
         # Windows editors may write a byte order mark.
         text = path.read_text(encoding="utf-8-sig")
-        return _echoed(path, text) if kind == "JSON" else tomllib.loads(text)
+        return _echoed(path, text) if kind == "JSON" else copy.deepcopy(_toml(text))
     except SceneError:
         raise
     except OSError as error:
@@ -164,6 +166,10 @@ def _parse(path):
     except (ValueError, RecursionError) as error:
         # Syntax errors, and numbers too long to convert, are ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as {kind}: {error}") from error
+
+
+_toml = functools.lru_cache(maxsize=8)(tomllib.loads)
+"""A command reads its scene again for each question; parsed once, given as copies."""
 
 
 def _echoed(path: Path, text: str) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def shaft_page(run: ShaftRun) -> Report:
             continue
         told: list[Part] = [*life_section(scene, solution, life), *fits_section(scene)]
         if scene.oil is not None:
-            told += oil_report(scene.oil, solution, scene.catalogue)
+            told += oil_report(scene.oil, bearing.oil)
         sections[f"Bearing {bearing.name}"] = told
     return Report(sections, report.warnings)
 

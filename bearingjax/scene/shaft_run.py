@@ -1,6 +1,7 @@
 """Run the scene of a system of shafts; its numbers in SI and its table."""
 
 import dataclasses
+import functools
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -31,13 +32,14 @@ from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
-from .fit_table import fit_facts, turning
-from .life_report import life_as_dict, solved_warnings
+from .fit_table import turning
+from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_told
 from .shaft_table import ShaftScene
+from .solved import solved_warnings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,7 +76,7 @@ class InPlace:
         if self.scene.fits is None:
             row = rows_of(bearing)[0].bearing
             return None if row.is_thrust else float(radial_clearance(row))
-        return float(fit_facts(self.scene.fits, bearing).operating.radial_clearance)
+        return float(self.scene.fits.facts.operating.radial_clearance)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -111,7 +113,7 @@ class ShaftRun:
         """Whether all cases were solved."""
         return not self.problem
 
-    @property
+    @functools.cached_property
     def hours(self) -> np.ndarray:
         """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
         system = self.task.system
@@ -127,7 +129,7 @@ class ShaftRun:
             found.append(np.nan if life is None else float(life))
         return np.array(found)
 
-    @property
+    @functools.cached_property
     def system_hours(self) -> float | None:
         """Life that all bearings reach together [h]; `None` at rest or unsolved."""
         hours = self.hours
@@ -444,12 +446,12 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     hours = run.hours[k]
     told["life_hours"] = _number(hours)
     if scene.oil is not None:
-        told |= oil_as_dict(scene.oil, solution, scene.catalogue)
+        told |= oil_as_dict(bearing.oil)
         told["temperature"] = scene.oil.temperature
     told["friction_torque"] = _number(bearing.friction_torque)
     told["clearance"] = bearing.clearance
     if scene.fits is not None:
-        told["fit"] = fit_as_dict(scene.fits, scene.element.bearing)
+        told["fit"] = fit_as_dict(scene.fits)
     return told
 
 

@@ -42,6 +42,10 @@ states in one call: benchmarks/skid_map.py. Where others use the processor too, 
 `OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
 wait for each other.
 
+`sliding_spectrum(history)` has the lines of a ball's sliding, `zones(steady)` the parts
+of the orbit with loads above those of the axial load alone, `sliding_ellipse` slip and
+heat over one contact; `raceway_heat` of an end state is the sum over all contacts.
+
 Rollers
 -------
 
@@ -73,10 +77,16 @@ elastohydrodynamic or too thin, gross skidding.
 from .conditions import Conditions as Conditions
 from .conditions import by_raceway as by_raceway
 from .conditions import conditions as conditions
+from .contact_ellipse import Ellipse as Ellipse
+from .contact_ellipse import sliding_ellipse as sliding_ellipse
 from .history import SkidHistory as SkidHistory
 from .history import SkidRollerHistory as SkidRollerHistory
+from .history import SlidingSpectrum as SlidingSpectrum
+from .history import sliding_spectrum as sliding_spectrum
 from .model import SkidModel as SkidModel
 from .motion import SkidState as SkidState
+from .orbit_zones import Zone as Zone
+from .orbit_zones import zones as zones
 from .ring_load import LoadHistory as LoadHistory
 from .ring_load import SinusoidalLoad as SinusoidalLoad
 from .ring_speed import SpeedTable as SpeedTable

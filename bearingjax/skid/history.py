@@ -1,13 +1,17 @@
 """Results of skidding in time."""
 
+from typing import NamedTuple
+
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..element.frame import RINGS
 from ..numerics.linear import lengths
+from ..numerics.spectrum import LEAST, even_step, hann_lines
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution
-from .conditions import Conditions
+from .conditions import Conditions, by_raceway
 from .motion import SkidState, Work
 from .steady_results import slip
 
@@ -157,3 +161,51 @@ class SkidRollerHistory(SkidMotion):
     def sliding_speed(self) -> Float[Array | np.ndarray, "time roller contact"]:
         """Magnitudes of `sliding` (time, roller, contact) [m/s]."""
         return abs(self.sliding)
+
+
+class SlidingSpectrum(NamedTuple):
+    """Spectrum of the sliding speed of a ball or roller.
+
+    Attributes:
+        frequency: Frequencies (line,) [Hz].
+        amplitude: Of the sliding speed (line,) [m/s].
+        cage: Mean frequency of the cage over the time that was transformed [Hz].
+    """
+
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    cage: float
+
+
+def sliding_spectrum(
+    found: SkidHistory | SkidRollerHistory,
+    *,
+    ball: int = 0,
+    raceway: str = "inner",
+    begin: float | None = None,
+) -> SlidingSpectrum:
+    """Return the spectrum of the sliding speed in the middle of a contact.
+
+    Args:
+        found: From `simulate`, at even times.
+        ball: Index of the ball.
+        raceway: "outer" or "inner".
+        begin: Time from which on [s]; default: a third of all.
+
+    Returns:
+        Amplitudes as of `hann_lines`.
+
+    Raises:
+        ValueError: For times that are not even, or too few of them.
+    """
+    time = np.asarray(found.time)
+    step = even_step("spectrum", time)
+    kept = time >= (time[-1] / 3.0 if begin is None else begin)
+    kept &= np.isfinite(np.asarray(found.cage_speed))
+    count = np.count_nonzero(kept)
+    if count < LEAST:
+        raise ValueError(f"spectrum: {count} times are too few; at least {LEAST}.")
+    sliding = by_raceway(found.sliding_speed, found.contact_load)
+    values = sliding[kept, ball, RINGS.index(raceway)]
+    cage = np.abs(np.mean(np.asarray(found.cage_speed)[kept])) / (2.0 * np.pi)
+    return SlidingSpectrum(*hann_lines(values, step), float(cage))

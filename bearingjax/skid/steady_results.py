@@ -116,6 +116,23 @@ class SteadyMotion(eqx.Module):
         slow = xp.where(still, 0.0, 1.0 / xp.where(still, 1.0, rolling)).mean(axis=-1)
         return xp.where(still.all(axis=-1), 0.0, 1.0 - self.cage_speed * slow)
 
+    @property
+    def raceway_heat(self) -> np.ndarray:
+        """Mean heat of all contacts of the outer and of the inner raceway (2,) [W]."""
+        heat = np.asarray(self.heat)
+        # At even places a ball is for longer where it is slow.
+        orbit = np.abs(np.asarray(self.orbit_speed))
+        time = 1.0 / orbit if orbit.all() else np.ones_like(orbit)
+        count = len(self.solution.azimuth)  # type: ignore[attr-defined]
+        share = time / time.sum() * count
+        return (share @ heat).reshape(2, -1).sum(axis=1)
+
+    @property
+    def rolling_cage_speed(self) -> np.ndarray:
+        """Mean orbital speed of pure rolling, in time [rad/s]."""
+        slow = np.mean(1.0 / np.asarray(self.rolling_orbit_speed), axis=-1)
+        return np.asarray(1.0 / slow)
+
 
 class SteadySkid(SteadyMotion):
     """Steady motion of skidding balls. Axis contact as in `BallResults`; pure

@@ -15,6 +15,7 @@ from registry import balls, taper
 
 import bearingjax as bj
 from bearingjax import plot
+from bearingjax.plot.panel import Axis, Bars, Curve, Panel, curves
 from bearingjax.plot.section import section
 from bearingjax.plot.style import ROLLER
 
@@ -519,3 +520,40 @@ def test_stiffness_over_speed():
     assert np.allclose(ax.lines[0].get_xdata(), [0.0, 100.0 * 30 / np.pi])
     with pytest.raises(ValueError, match="one matrix for each speed"):
         bj.plot.stiffness_over_speed([0.0], np.eye(12))
+
+
+def test_a_chart_is_data_with_units_of_its_fields(solution):
+    """The numbers of a panel are in SI; its axes know the units of the result."""
+    load = Axis.of(solution, "roller_load")
+    assert (load.label, load.scale) == ("roller load [kN]", 1e-3)
+    assert Axis.of(solution, "azimuth", (1.0, "rad")).label == "azimuth [rad]"
+    assert Axis("count").label == "count"
+    shown: Any = plot.load_displacement
+    panel = shown.panel([1e3, 2e3], [1e-6, 2e-6])
+    assert (panel.over.unit, panel.of.unit) == ("N", "m")
+    assert np.array_equal(panel.marks[0].y, [1e-6, 2e-6])
+
+
+def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
+    x = np.arange(3.0)
+    beside = Panel("", Axis("x"), Axis("z", "Pa"), [Curve(x, 1e6 * x, "z", "red")])
+    marks = [
+        Curve(x, x, look={"alpha": 0.5}, to=2.0 * x),
+        *curves(x, [[1, 2]] * 3, "a"),
+    ]
+    time, force = Axis("time", "s"), Axis("force", "N")
+    ax = Panel("title", time, force, marks, (0, 2), room=0.5, beside=beside).draw()
+    other = ax.figure.axes[1]
+    assert [line.get_label() for line in ax.lines] == ["a", "_curve 1"]
+    assert np.allclose(ax.lines[1].get_ydata(), 2e-3) and len(ax.collections) == 1
+    assert other.get_ylabel() == "z [MPa]" and other.yaxis.label.get_color() == "red"
+    assert np.allclose(other.lines[0].get_ydata(), x)
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["a", "z"]
+    assert ax.get_ylim()[1] > 4e-3 * 1.4 and ax.get_xlim() == (0.0, 2.0)
+    bars = [Bars([1e3, 3e3], "b", told="%.0f")]
+    ax = Panel("", time, force, bars, names="pq", legend=None).draw()
+    drawn: Any = ax.patches
+    assert [bar.get_height() for bar in drawn] == [1.0, 3.0]
+    assert [text.get_text() for text in ax.texts] == ["1", "3"]
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["p", "q"]
+    assert ax.get_legend() is None

@@ -11,7 +11,15 @@ import bearingjax as bj
 from bearingjax import plot
 from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
-from bearingjax.rotor.nonlinear import Branch, Ending, Event, Waterfall
+from bearingjax.rotor.nonlinear import (
+    Branch,
+    Ending,
+    Event,
+    Waterfall,
+    envelope,
+    spectra_over_time,
+    steady_spectra,
+)
 
 STEEL = bj.Material(211e9, 0.3, 7810.0)
 SHAFT = bj.rotor.Shaft(
@@ -226,11 +234,11 @@ def test_amplitudes_over_speed():
 def test_amplitude_of_a_run_up():
     time = np.linspace(0.0, 10.0, 40001)
     motion = 2e-6 * np.sin(10.0 * time**2)
-    speed, size = plot.envelope(time, 20.0 * time, motion, 40)
+    speed, size = envelope(time, 20.0 * time, motion, 40)
     # Every part has a whole revolution, however slow the rotor is.
     assert len(speed) == 40 and np.allclose(size, 2e-6, rtol=1e-3)
     assert 0.0 < speed[0] < speed[-1] < 200.0
-    assert len(plot.envelope(time[:3], time[:3], motion[:3])[0]) == 1
+    assert len(envelope(time[:3], time[:3], motion[:3])[0]) == 1
 
 
 PHASE = 2.0 * np.pi * np.arange(8) / 8
@@ -262,7 +270,7 @@ def test_spectra_of_a_run_up():
     time = np.linspace(0.0, 4.0, 4000)
     speed = 2.0 * np.pi * (20.0 + 10.0 * time)
     angle = 2.0 * np.pi * (20.0 * time + 5.0 * time**2)
-    spectra = plot.spectra_over_time(time, speed, 3e-6 * np.cos(angle), 30)
+    spectra = spectra_over_time(time, speed, 3e-6 * np.cos(angle), 30)
     peak = spectra.frequency[np.argmax(spectra.amplitude, axis=1)]
     apart = spectra.frequency[1]
     # A line's place is where the speed is, as far as lines lie apart.
@@ -275,13 +283,13 @@ def test_spectra_of_a_run_up():
     steady = Waterfall(
         *map(jnp.asarray, ([100.0, 200.0], [0.0, 1.0], np.ones((2, 2, 1)), [0, 0]))
     )
-    lines = named(plot.waterfall(plot.steady_spectra(steady, 0)), "_spectrum")
+    lines = named(plot.waterfall(steady_spectra(steady, 0)), "_spectrum")
     # A line at the speed itself, without the mean.
     assert np.allclose(lines[1][:, 0], [100.0 / (2.0 * np.pi)])
     with pytest.raises(ValueError, match="not even"):
-        plot.spectra_over_time(time**2, speed, angle)
+        spectra_over_time(time**2, speed, angle)
     with pytest.raises(ValueError, match="too few"):
-        plot.spectra_over_time(time[:50], speed[:50], angle[:50])
+        spectra_over_time(time[:50], speed[:50], angle[:50])
 
 
 TASK = SimpleNamespace(station=1, coordinate="uy", speed_to=40.0)

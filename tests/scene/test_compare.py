@@ -53,7 +53,7 @@ def test_compare_two_loads(run, other, tmp_path):
     told = found["quantities"]
     for k, source in enumerate((SCENE, other)):
         scene = bj.read_scene(source)
-        numbers = as_dict(scene, bj.scene.run_scene(scene))
+        numbers = as_dict(bj.scene.solve_scene(scene))
         moved, ring = numbers["displacement"], scene.moving_ring
         uy = moved[bj.FREEDOMS.index("uy") + 6 * (ring == "inner")]
         assert told[f"displacement_{ring}_uy [m]"][k] == pytest.approx(uy, rel=1e-12)

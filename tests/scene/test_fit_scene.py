@@ -32,7 +32,6 @@ from bearingjax.scene import (
     scene_of_design,
 )
 from bearingjax.scene.fit_report import fit_as_dict, fit_report
-from bearingjax.scene.fit_table import fit_facts
 from bearingjax.scene.optimise_report import _variables
 from bearingjax.scene.report import design_sections
 from bearingjax.scene.rotor_run import RotorRun, task_warnings
@@ -123,7 +122,7 @@ def test_the_usual_fits_of_a_6205(scene):
     read = bj.read_scene(scene(BEARING + FIT))
     assert read.warnings == ()
     assert clearance(read.element) == pytest.approx(12.5 * MICRON)
-    found = fit_facts(read.fits, read.element.bearing)
+    found = read.fits.facts
     # Of 2 to 21 µm of interference 25/30.56 reach the raceway; H7 takes nothing.
     share = 25 / 30.56
     worst = np.array([5 - 21 * share, 20 - 2 * share]) * MICRON
@@ -156,7 +155,7 @@ def test_a_bearing_of_the_catalogue_brings_its_sizes(scene):
 @pytest.mark.parametrize("place, left", [("tightest", 0), ("loosest", 1)])
 def test_ends_of_the_tolerances(scene, place, left):
     read = bj.read_scene(scene(BEARING + FIT), [f"fit.at={place}"])
-    found = fit_facts(read.fits, read.element.bearing)
+    found = read.fits.facts
     mounted = clearance(read.running())
     assert mounted == pytest.approx(found.mounted_range.worst[left], rel=1e-9)
 
@@ -195,7 +194,7 @@ def test_given_numbers(scene):
     assert float(warm.shaft) == 333.15 and float(warm.reference) == 298.15
     assert float(warm.inner_ring) == float(warm.housing) == 298.15
     assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
-    assert fit_facts(read.fits, read.element.bearing).free == 15e-6
+    assert read.fits.facts.free == 15e-6
 
 
 TAPERED = """
@@ -216,7 +215,7 @@ housing_diameter = "270 mm"
 def test_a_tapered_bore_is_driven_up_its_seat(scene):
     text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
     read = bj.read_scene(scene(text))
-    facts = fit_facts(read.fits, read.element.bearing)
+    facts = read.fits.facts
     assert read.inputs["fit"]["bore_taper"] == "1:12"
     interference = float(facts.mounted.shaft_interference)
     assert interference == pytest.approx(0.6e-3 / 12, rel=1e-12)
@@ -225,15 +224,15 @@ def test_a_tapered_bore_is_driven_up_its_seat(scene):
     share = (0.1 + 0.046 / 24) / raceway
     taken = facts.free - float(facts.mounted.radial_clearance)
     assert taken == pytest.approx(share * interference, rel=1e-9)
-    told = fit_as_dict(read.fits, read.element.bearing)
+    told = fit_as_dict(read.fits)
     assert told["drive_up"] == pytest.approx(0.6e-3)
     assert told["bore_taper"] == pytest.approx(1 / 12)
-    words = "\n".join(str(part) for part in fit_report(read.fits, read.element.bearing))
+    words = "\n".join(str(part) for part in fit_report(read.fits))
     assert "1:12: driven up by 0.6 mm, an interference of 50 µm" in words
     # And what takes 45 µm.
     wanted = TAPERED.format("24120 CCK30", 'clearance_reduction = "45 um"')
     other = bj.read_scene(scene(wanted))
-    facts = fit_facts(other.fits, other.element.bearing)
+    facts = other.fits.facts
     taken = facts.free - float(facts.mounted.radial_clearance)
     assert taken == pytest.approx(45e-6, rel=1e-9)
     assert float(other.fits.mounting.bore_taper) == pytest.approx(1 / 30)
@@ -461,7 +460,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     fast = bj.read_scene(
         scene(BEARING + FIT), [*settings, "operating.inner_speed=20000 rpm"]
     )
-    facts = fit_facts(fast.fits, fast.element.bearing)
+    facts = fast.fits.facts
     assert told[7] == pytest.approx(float(facts.operating.radial_clearance), rel=1e-12)
     # Without fits speeds make no designs, and there is no other clearance.
     plain = BEARING + grid.replace(
@@ -872,7 +871,7 @@ def test_what_a_rotor_tells_of_its_fits(scene):
     assert found["bearing"] == "own" and found["stations"] == [0, 1]
     assert found["speed"] == pytest.approx(1000.0 * np.pi)
     (mount, _), *_ = task.seats
-    expected = fit_as_dict(mount.fits, mount.element.bearing)
+    expected = fit_as_dict(mount.fits)
     assert found | expected == found
     text = str(rotor_report(run))
     assert "own at stations 0, 1, its inner ring turning at 30000 rpm" in text

@@ -12,8 +12,8 @@ from bearingjax.scene import (
     read_optimisation,
     run_cases,
     run_optimisation,
+    scene_life,
 )
-from bearingjax.scene.life_report import scene_life
 from bearingjax.scene.optimise_report import optimisation_as_dict
 from bearingjax.scene.output import as_dict
 from bearingjax.scene.sweep_run import all_warnings
@@ -67,7 +67,8 @@ def solved(path, settings=()):
     bearing = solution.element.bearing
     found = {**sizes(solution), **life_sizes(bearing, life.ratings, vars(life))}
     kinds = {name for name, size in found.items() if size > ALL[name].limit}
-    assert len(as_dict(scene, solution)["warnings"]) == len(scene.warnings) + len(kinds)
+    told = as_dict(bj.scene.SolvedScene(scene, solution))["warnings"]
+    assert len(told) == len(scene.warnings) + len(kinds)
     of_one = counted({name: np.atleast_1d(size) for name, size in found.items()})
     return alone((*scene.warnings, *of_one)), kinds
 

@@ -13,7 +13,7 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import BallKinematics
-from bearingjax.scene import as_dict, report, write_json
+from bearingjax.scene import SolvedScene, as_dict, report, write_json
 
 POINTS = 21
 TAPER = f"output.points={POINTS}"
@@ -53,6 +53,10 @@ class Solved:
         return np.asarray(self.numbers[name])
 
     @property
+    def found(self):
+        return SolvedScene(self.scene, self.solution)
+
+    @property
     def moving(self):
         return slice(0, 6) if self.scene.moving_ring == "outer" else slice(6, 12)
 
@@ -60,7 +64,7 @@ class Solved:
 def solve(name, *settings):
     scene = bj.read_scene(name, settings)
     solution = bj.scene.run_scene(scene)
-    return Solved(scene, solution, as_dict(scene, solution))
+    return Solved(scene, solution, as_dict(SolvedScene(scene, solution)))
 
 
 # Two structures are compiled; all else differs from them in numbers only.
@@ -187,7 +191,7 @@ def test_edge_load_is_a_warning(rig):
 
 def test_json_is_the_dictionary(taper, tmp_path):
     path = tmp_path / "out.json"
-    write_json(path, taper.scene, taper.solution)
+    write_json(path, taper.found)
     text = path.read_text(encoding="utf-8")
     assert text.endswith("}\n")
     assert json.loads(text) == taper.numbers
@@ -198,7 +202,7 @@ def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
     assert pulled.numbers["result"] == "no_load_path"
     assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
     assert pulled.numbers["warnings"] == []
-    write_json(tmp_path / "out.json", pulled.scene, pulled.solution)
+    write_json(tmp_path / "out.json", pulled.found)
     read = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
     assert read == pulled.numbers
 
@@ -208,7 +212,7 @@ def test_json_knows_no_nan(tmp_path):
     assert tuple(solved.numbers) == WORDS
     assert solved.numbers["result"] == "non_finite"
     assert solved.numbers["residual"] is None
-    write_json(tmp_path / "out.json", solved.scene, solved.solution)
+    write_json(tmp_path / "out.json", solved.found)
 
 
 ROW = re.compile(r"^ +(\d+) +(-?[\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+)(.*)$")
@@ -237,8 +241,8 @@ def test_telling_compiles_nothing(solved):
     with jax.transfer_guard("disallow"):  # nor can JAX compute with NumPy's numbers
         with pytest.raises(jax.errors.JaxRuntimeError):
             jnp.abs(turning.spin)
-        assert str(report(solved.scene, solved.solution))
-        assert as_dict(solved.scene, solved.solution) == solved.numbers
+        assert str(report(solved.found))
+        assert as_dict(solved.found) == solved.numbers
         assert np.all(turning.spin_to_roll == 1.0)
         assert np.allclose(turning.pitch_angle, np.pi / 4, rtol=SOLVER, atol=0.0)
 
@@ -269,11 +273,11 @@ def test_spherical_roller_bearing_of_a_fan():
     sums = np.array(normal) @ fan["roller_load"][:, 0]
     np.testing.assert_allclose(sums, load, rtol=0.0, atol=1e-3 * 40e3)
     with jax.transfer_guard("disallow"):
-        assert "each row: spherical roller" in str(report(fan.scene, fan.solution))
+        assert "each row: spherical roller" in str(report(fan.found))
 
 
 def test_report_tells_the_motion_of_the_loaded_ring(solved):
-    text = str(report(solved.scene, solved.solution))
+    text = str(report(solved.found))
     moving, fixed = solved.scene.moving_ring, solved.scene.fixed_ring
     assert f"\n{moving} ring ({fixed} ring fixed)\n" in text
     assert f"\nstiffness of the {moving} ring (" in text
@@ -287,7 +291,7 @@ def test_report_tells_the_motion_of_the_loaded_ring(solved):
 
 
 def test_report_tells_the_stiffness(solved):
-    text = str(report(solved.scene, solved.solution))
+    text = str(report(solved.found))
     shown = re.findall(r"^[ug][xyz]((?: +[-+.e\d]+){5})$", text, re.MULTILINE)
     shown = np.array([[float(x) for x in line.split()] for line in shown])
     # kN/mm, kN/mrad, N m/mrad
@@ -298,7 +302,7 @@ def test_report_tells_the_stiffness(solved):
 
 
 def test_report_has_a_row_for_each_loaded_roller(solved):
-    table = rows(str(report(solved.scene, solved.solution)))
+    table = rows(str(report(solved.found)))
     loads = solved["roller_load"]
     pressure = np.asarray(solved.solution.roller_pressure)
     loaded = np.flatnonzero(loads.max(axis=1) > 1e-9 * loads.max())
@@ -311,7 +315,7 @@ def test_report_has_a_row_for_each_loaded_roller(solved):
 
 
 def test_report_of_the_rig(rig):
-    text = str(report(rig.scene, rig.solution))
+    text = str(report(rig.found))
     assert text.startswith(
         "cylindrical_rig: cylindrical roller bearing, 12 rollers 14 x 13.72 mm on a"
         " pitch circle of 72.5 mm\n"
@@ -324,7 +328,7 @@ def test_report_of_the_rig(rig):
 
 
 def test_report_of_the_taper(taper):
-    text = str(report(taper.scene, taper.solution))
+    text = str(report(taper.found))
     assert "; ribs: inner_minus; roller profile: Logarithmic\n" in text
     assert "\ncontact angle: outer 12.72, inner 9.277 deg\n" in text
     shown = [float(behind) for _, behind in rows(text)]
@@ -337,13 +341,13 @@ def test_report_of_the_taper(taper):
 
 def test_report_says_what_was_solved_with_what(rig, taper):
     """Freedoms, speeds, materials, laws: without them no number can be judged."""
-    text = str(report(taper.scene, taper.solution))
+    text = str(report(taper.found))
     assert "\nfree: ux uy uz gx gy (the default: all that the bearing" in text
     assert "\nouter ring 0 rpm, inner ring 3000 rpm; n·dm 1.56e+05 mm/min\n" in text
     material = "E = 206 GPa, Poisson's ratio 0.3, 7850 kg/m³\n"
     assert f"\nrollers and rings: {material}" in text
     assert "\nline law: Palmgren\n" in text
-    text = str(report(rig.scene, rig.solution))
+    text = str(report(rig.found))
     assert "\nfree: ux uy gx gy (as the scene says); held at zero: uz\n" in text
     assert "\nboth rings at rest\n" in text
     assert "\nquadrature: Midpoint (points 20)\n" in text
@@ -353,7 +357,7 @@ def test_report_says_what_was_solved_with_what(rig, taper):
         ring_material=bj.Material(),
     )
     other = eqx.tree_at(lambda s: s.element.bearing, rig.solution, hybrid)
-    text = str(report(rig.scene, other))
+    text = str(report(SolvedScene(rig.scene, other)))
     assert "\nrollers: E = 310 GPa, Poisson's ratio 0.26, 3200 kg/m³\n" in text
     assert f"\nrings: {material}" in text
 
@@ -362,12 +366,12 @@ def test_a_warning_of_the_drawing_is_told_with_the_solution():
     solved = solve("tapered", TAPER, "bearing.roller_half_angle=1.6 deg")
     text, _ = solved.numbers["warnings"]
     assert text.startswith("TaperedRollerBearing: the apexes of outer raceway")
-    assert f"\nwarning: {text}" in str(report(solved.scene, solved.solution))
+    assert f"\nwarning: {text}" in str(report(solved.found))
 
 
 def test_no_load_is_no_contact():
     solved = solve("cylindrical_rig", "operating.load={}")
-    text = str(report(solved.scene, solved.solution))
+    text = str(report(solved.found))
     assert rows(text) == []
     assert "\n12 of 12 rollers are out of contact\n" in text
     assert np.all(solved["roller_load"] == 0.0)

@@ -25,7 +25,7 @@ from bearingjax.scene import (
     skid_message,
     skid_report,
 )
-from bearingjax.skid import skid_warnings
+from bearingjax.skid import skid_warnings, sliding_ellipse, sliding_spectrum, zones
 
 # Six balls under axial and radial load, at twelve places.
 GIVEN = (
@@ -386,6 +386,15 @@ def lines(ax):
     return [np.asarray(line.get_ydata()) for line in ax.get_lines()]
 
 
+def test_means_of_the_end_state(end):
+    """The heat is that of the power balance, the speed that of `cage_slip`."""
+    found = end.found
+    heat, rolling = found.raceway_heat, found.rolling_cage_speed
+    assert heat.shape == (2,) and (heat > 0).all()
+    np.testing.assert_allclose(heat.sum(), found.power.contacts, rtol=1e-8)
+    np.testing.assert_allclose(1.0 - found.cage_speed / rolling, found.cage_slip)
+
+
 def test_pictures_along_the_orbit(end):
     found = end.found
     outer, inner = lines(plot.load_over_orbit(found))
@@ -428,7 +437,7 @@ def test_spectrum_of_a_sine(history):
         found,
         (time, slide, np.ones((64, 6, 2)), np.full(64, 2.0 * np.pi * 3.0)),
     )
-    got = plot.spectrum(turning, begin=0.0)
+    got = sliding_spectrum(turning, begin=0.0)
     assert got.frequency[4] == pytest.approx(4.0)
     assert got.amplitude[4] == pytest.approx(3e-3)
     assert got.amplitude[6:].max() < 1e-12
@@ -440,10 +449,10 @@ def test_spectrum_of_a_sine(history):
     told = plot.sliding_spectrum(slow, begin=0.0).texts[0].get_text()
     assert told == "lines 1 Hz apart: too few for the cage's 0.955 Hz"
     with pytest.raises(ValueError, match="3 times are too few; at least 8"):
-        plot.spectrum(found, begin=1.5e-3)
+        sliding_spectrum(found, begin=1.5e-3)
     uneven = eqx.tree_at(lambda f: f.time, found, found.time**2)
     with pytest.raises(ValueError, match="the times are not even"):
-        plot.spectrum(uneven)
+        sliding_spectrum(uneven)
 
 
 def test_cage_speed_over_load(end):
@@ -470,7 +479,7 @@ def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
         end.found,
         (azimuth, load, flat, np.asarray(80.0 * sense)),
     )
-    a, b, c, d = plot.zones(found)
+    a, b, c, d = zones(found)
     assert [zone.name for zone in (a, b, c, d)] == list("ABCD")
     middle = [np.rad2deg(0.5 * (z.begin + z.end)) % 360.0 for z in (a, b, c, d)]
     near = np.array([before, 90.0, behind, 270.0])
@@ -480,14 +489,14 @@ def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
     widths = [zone.end - zone.begin for zone in (a, b, c, d)]
     np.testing.assert_allclose(sum(widths), 2.0 * np.pi, rtol=ROUNDING)
     single = eqx.tree_at(lambda f: f.contact_load, found, np.full_like(load, 100.0))
-    assert plot.zones(single) == []
+    assert zones(single) == []
 
 
 def test_heat_of_a_contact_is_that_of_its_picture(end):
     """The integral over the points of the picture, by Simpson's rule."""
     found, model = end.found, end.task.model
     at = 3, 0
-    ellipse = plot.sliding_ellipse(model, found, end.state, at)
+    ellipse = sliding_ellipse(model, found, end.state, at)
     radius = np.linspace(0.0, 1.0, len(ellipse.heat))
     around = ellipse.heat[:, :-1].mean(axis=1)
     whole = 2.0 * np.pi * np.prod(end.state.semi_axes[at])

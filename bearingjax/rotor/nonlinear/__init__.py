@@ -24,7 +24,8 @@ or 96 steps leave 5e-6 (benchmarks/rotor_response.py).
 In time, `simulate(system, duration, frequency, end_frequency=...)` integrates decay,
 run-up through critical speeds (the phase is the exact integral of the frequency; the
 inertia of a changing speed takes part) and forces of your own over time; `poincare` has
-the states once per period, `waterfall` the spectra over the frequency.
+the states once per period, `waterfall` the spectra over the frequency, `envelope` the
+amplitude and `spectra_over_time` the spectra of a run-up over its speed.
 
 `backbone(system, peaks, freedom, method)` has the frequency and the damping ratio of
 free vibration over its amplitude, along which resonances bend; `peak(system, branch,
@@ -64,9 +65,13 @@ from .system import AbstractVibratingSystem as AbstractVibratingSystem
 from .system import HarmonicLoad as HarmonicLoad
 from .system import VibratingSystem as VibratingSystem
 from .transient import History as History
+from .transient import envelope as envelope
 from .transient import poincare as poincare
 from .transient import simulate as simulate
 from .vibrating_rotor import VibratingRotor as VibratingRotor
 from .vibrating_rotor import vibrating_rotor as vibrating_rotor
+from .waterfall import Spectra as Spectra
 from .waterfall import Waterfall as Waterfall
+from .waterfall import spectra_over_time as spectra_over_time
+from .waterfall import steady_spectra as steady_spectra
 from .waterfall import waterfall as waterfall

@@ -276,3 +276,30 @@ def _rates(time, state, given):
     if force is not None:
         balance = balance + force(time)
     return jnp.concatenate([velocity, inverse @ balance]) / size
+
+
+def envelope(
+    time: Any, speed: Any, motion: Any, count: int = 80
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return half of peak to peak over the speed of a run-up, by windows.
+
+    All parts have the same number of revolutions, at least one.
+
+    Args:
+        time: (time,) [s].
+        speed: (time,) [rad/s].
+        motion: (time,) or (time, curve) [m, rad].
+        count: Most parts.
+
+    Returns:
+        Mean speed (part,) [rad/s] and amplitude (part,) or (part, curve) [m, rad].
+    """
+    time, speed = np.asarray(time, dtype=float), np.asarray(speed, dtype=float)
+    motion = np.asarray(motion, dtype=float)
+    steps = 0.5 * np.abs(speed[1:] + speed[:-1]) * np.diff(time)
+    turned = np.concatenate([[0.0], np.cumsum(steps)]) / (2.0 * np.pi)
+    count = max(min(count, int(turned[-1])), 1)
+    place = np.minimum(count * turned / (turned[-1] or 1.0), count - 1).astype(int)
+    parts = [np.flatnonzero(place == k) for k in np.unique(place)]
+    size = [0.5 * np.ptp(motion[part], axis=0) for part in parts]
+    return np.array([speed[part].mean() for part in parts]), np.array(size)

@@ -1,6 +1,6 @@
 """Spectra of steady vibration over the frequency of the excitation."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -10,6 +10,7 @@ from jaxtyping import Array, Float, Int
 
 from ...design.checks import check, count, real_numbers
 from ...numerics.programs import program
+from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.types import Scalar, as_real
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
@@ -98,3 +99,57 @@ def _spectra(system, frequencies, start, options, numbers):
     amplitude, result = jax.vmap(one)(frequencies)
     order = as_real(np.arange(total // 2 + 1) / periods)
     return Waterfall(frequencies, order, amplitude, result)
+
+
+class Spectra(NamedTuple):
+    """Spectra of a motion, one for each speed.
+
+    Attributes:
+        speed: (line,) [rad/s].
+        frequency: Of the bins, of all spectra (bin,) or of each (line, bin) [Hz].
+        amplitude: (line, bin) [m, rad].
+    """
+
+    speed: np.ndarray
+    frequency: np.ndarray
+    amplitude: np.ndarray
+
+
+def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Spectra:
+    """Return spectra of a run-up, in time windows that overlap by a half.
+
+    Args:
+        time: Even (time,) [s].
+        speed: Of the rotor (time,) [rad/s].
+        motion: (time,) [m, rad].
+        count: Windows.
+
+    Returns:
+        Amplitudes as of `hann_lines`.
+
+    Raises:
+        ValueError: For times that are not even, or too few of them.
+    """
+    speed, motion = np.asarray(speed, dtype=float), np.asarray(motion, dtype=float)
+    step = even_step("spectra_over_time", time)
+    size = 2 * len(motion) // (count + 1)
+    if size < LEAST:
+        raise ValueError(
+            f"spectra_over_time: {len(motion)} times are too few for {count} windows;"
+            f" at least {LEAST // 2 * (count + 1)}."
+        )
+    first = np.arange(count) * (len(motion) - size) // max(count - 1, 1)
+    part = first[:, None] + np.arange(size)
+    return Spectra(speed[part].mean(axis=1), *hann_lines(motion[part], step))
+
+
+def steady_spectra(found: Waterfall, freedom: int) -> Spectra:
+    """Return spectra of steady vibration of a rotor with synchronous excitation.
+
+    Args:
+        found: From `waterfall`.
+        freedom: Index of the freedom; its mean is left out.
+    """
+    speed = np.asarray(found.frequency)
+    hertz = speed[:, None] * np.asarray(found.order)[1:] / (2.0 * np.pi)
+    return Spectra(speed, hertz, np.asarray(found.amplitude)[:, 1:, freedom])
