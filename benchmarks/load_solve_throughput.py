@@ -21,72 +21,72 @@ Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
 
 Last run:
 
-straight raceways, random (trace and compile 25.0 s)
+straight raceways, random (trace and compile 16.4 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     187.9     5322    1.00    4.8    20       0   2e-10
-tolerance 1e-6            2048     146.4     6832    0.78    3.8    19       0   2e-05
-tolerance 1e-4            2048     137.9     7251    0.73    3.1    19       0   2e-03
-from first contact        2048     332.3     3009    1.77   11.5    21       0   6e-16
-C                         2048      89.4    11184    0.48   11.5    21       0   0e+00
-SciPy root, our stiffness   64   22099.5       45  117.62   49.9    97       1   3e-01
-SciPy root, NumPy bearing   64   27545.5       36  146.60   49.8   107       3   4e-01
+bj.sweep                  2048     119.3     8380    1.00    4.5    20       0   8e-11
+tolerance 1e-6            2048     107.0     9348    0.90    3.6    19       0   6e-06
+tolerance 1e-4            2048      97.2    10293    0.81    2.9    19       0   7e-04
+from first contact        2048     219.0     4567    1.83   11.0    21       0   6e-16
+C                         2048      56.5    17706    0.47   11.0    21       0   0e+00
+SciPy root, our stiffness   64   10602.6       94   88.85   50.0    97       1   3e-01
+SciPy root, NumPy bearing   64   12120.9       83  101.57   49.5   107       3   4e-01
 
-straight raceways, path (trace and compile 0.0 s)
+straight raceways, path (trace and compile 0.1 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     137.1     7292    1.00    3.7    14       0   2e-10
-tolerance 1e-6            2048     114.0     8769    0.83    2.7    13       0   3e-05
-tolerance 1e-4            2048      97.1    10302    0.71    2.0    12       0   3e-03
-from first contact        2048     253.2     3950    1.85    9.9    14       0   8e-16
-C                         2048      73.3    13639    0.53    9.9    14       0   0e+00
-SciPy root, our stiffness   64   17103.5       58  124.72   47.5    72       2   5e-01
-SciPy root, NumPy bearing   64   22559.7       44  164.50   47.3    79       2   5e-01
+bj.sweep                  2048     100.5     9948    1.00    3.8    14       0   2e-10
+tolerance 1e-6            2048      86.6    11547    0.86    2.8    13       0   2e-05
+tolerance 1e-4            2048      76.0    13152    0.76    2.0    13       0   2e-03
+from first contact        2048     207.5     4819    2.06   10.6    14       0   7e-16
+C                         2048      54.8    18253    0.55   10.6    14       0   0e+00
+SciPy root, our stiffness   64   10256.4       98  102.03   47.8    86       2   5e-01
+SciPy root, NumPy bearing   64   11757.4       85  116.96   47.0    79       2   5e-01
 
-unlike raceways, random (trace and compile 24.6 s)
+unlike raceways, random (trace and compile 17.1 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     469.4     2130    1.00    4.9    21       0   2e-10
-tolerance 1e-6            2048     386.8     2585    0.82    3.9    20       0   1e-05
-tolerance 1e-4            2048     406.0     2463    0.86    3.1    19       0   1e-03
-from first contact        2048     887.9     1126    1.89   11.6    22       0   5e-15
-C                         2048     293.1     3412    0.62   11.6    22       0   0e+00
-SciPy root, our stiffness   64   29371.8       34   62.57   52.9   105       1   3e-01
-SciPy root, NumPy bearing   64  128380.6        8  273.50   50.3    98       5   4e-01
+bj.sweep                  2048     290.6     3441    1.00    4.7    21       0   1e-10
+tolerance 1e-6            2048     262.1     3816    0.90    3.7    20       0   2e-05
+tolerance 1e-4            2048     235.1     4254    0.81    3.0    19       0   8e-04
+from first contact        2048     558.5     1790    1.92   11.3    22       0   6e-15
+C                         2048     196.6     5087    0.68   11.3    22       0   0e+00
+SciPy root, our stiffness   64   16972.1       59   58.40   53.3   105       1   3e-01
+SciPy root, NumPy bearing   64   54563.8       18  187.76   49.8    96       5   4e-01
 
 unlike raceways, path (trace and compile 0.0 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     407.3     2455    1.00    3.8    14       0   4e-10
-tolerance 1e-6            2048     337.0     2967    0.83    2.7    13       0   2e-05
-tolerance 1e-4            2048     266.1     3758    0.65    2.0    13       0   3e-03
-from first contact        2048     764.4     1308    1.88   10.0    15       0   1e-14
-C                         2048     256.4     3901    0.63   10.0    15       0   0e+00
-SciPy root, our stiffness   64   27117.6       37   66.58   48.3    79       2   5e-01
-SciPy root, NumPy bearing   64  132478.2        8  325.27   48.6    73       2   5e-01
+bj.sweep                  2048     250.3     3995    1.00    3.8    14       0   2e-10
+tolerance 1e-6            2048     212.9     4698    0.85    2.8    13       0   1e-05
+tolerance 1e-4            2048     190.0     5263    0.76    2.1    12       0   3e-03
+from first contact        2048     540.8     1849    2.16   10.9    15       0   1e-14
+C                         2048     198.2     5047    0.79   10.9    15       0   0e+00
+SciPy root, our stiffness   64   15398.9       65   61.52   48.2    76       2   5e-01
+SciPy root, NumPy bearing   64   59042.7       17  235.87   49.2    76       2   5e-01
 
 rollers, radial loads (trace and compile 0.0 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048      94.9    10543    1.00    2.9    12       0   6e-12
-tolerance 1e-6            2048      68.4    14619    0.72    2.0    11       0   8e-07
-tolerance 1e-4            2048      63.2    15821    0.67    1.5    11       0   9e-05
-from first contact        2048     199.8     5006    2.11    8.8    12       0   0e+00
+bj.sweep                  2048      71.8    13932    1.00    2.8    12       0   5e-12
+tolerance 1e-6            2048      59.5    16799    0.83    1.8    12       0   5e-07
+tolerance 1e-4            2048      53.7    18639    0.75    1.4    11       0   9e-05
+from first contact        2048     133.9     7468    1.87    7.8    13       0   0e+00
 
 rollers, loads with moments (trace and compile 0.0 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     168.2     5944    1.00    4.4    15       0   4e-11
-tolerance 1e-6            2048     139.1     7189    0.83    3.4    14       0   5e-06
-tolerance 1e-4            2048     128.4     7785    0.76    2.7    13       0   9e-04
-from first contact        2048     271.2     3688    1.61    9.7    15       0   0e+00
+bj.sweep                  2048     112.0     8931    1.00    4.1    15       0   3e-11
+tolerance 1e-6            2048      96.8    10336    0.86    3.2    14       0   2e-06
+tolerance 1e-4            2048      84.0    11910    0.75    2.5    13       0   4e-04
+from first contact        2048     183.4     5452    1.64    9.0    15       0   0e+00
 
-balls, radial and axial loads (trace and compile 26.3 s)
+balls, radial and axial loads (trace and compile 18.2 s)
 solver                   cases   µs/case  cases/s   ratio  steps  most  failed   error
-bj.sweep                  2048     166.9     5992    1.00    4.3    23       0   2e-11
-tolerance 1e-6            2048     134.3     7444    0.80    3.4    22       0   2e-06
-tolerance 1e-4            2048     127.2     7859    0.76    2.7    21       0   1e-04
-from first contact        2048     446.4     2240    2.67   16.1    23       0   0e+00
+bj.sweep                  2048      89.6    11158    1.00    4.2    23       0   2e-11
+tolerance 1e-6            2048      81.8    12227    0.91    3.3    22       0   2e-06
+tolerance 1e-4            2048      75.1    13308    0.84    2.6    21       0   2e-04
+from first contact        2048     242.7     4121    2.71   15.5    23       0   0e+00
 
-time against C, worst: 3.72 (at most 2): MISSED
-times faster than SciPy: 62.6 (at least 100): MISSED
-times faster than from first contact, least: 1.61
+time against C, worst: 3.88 (at most 2): MISSED
+times faster than SciPy: 58.4 (at least 100): MISSED
+times faster than from first contact, least: 1.64
 
-one core; AMD EPYC, 2 cores, load average 1.1; devices: 1 cpu; jax 0.10.1
+one core; AMD EPYC, 2 cores, load average 1.2; devices: 1 cpu; jax 0.10.1
 """
 
 import argparse
