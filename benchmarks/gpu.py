@@ -31,7 +31,7 @@ gradient of a load solve      cpu    10000    567.00        12.0       0   0e+00
 gradient of a load solve      gpu     1000     11.58         9.7       0   2e-15
 gradient of a load solve      gpu    10000      5.38         9.2       0   2e-15
 
-Intel(R) Xeon(R) Processor, 16 cores, load average 3.6; devices: 1 NVIDIA H200; jax 0.11.2
+Intel Xeon, 16 cores, load average 3.6; devices: 1 NVIDIA H200; jax 0.11.2
 """
 
 import argparse
