@@ -58,7 +58,6 @@ Conventions
 """
 
 import importlib as _importlib
-from importlib.metadata import version as _version
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from . import contact as contact
@@ -67,6 +66,7 @@ from . import element as element
 from . import lubrication as lubrication
 from . import numerics as numerics
 from . import statics as statics
+from ._version import __version__ as __version__
 from .design import AngularContactBallBearing as AngularContactBallBearing
 from .design import BearingSet as BearingSet
 from .design import CircularCrown as CircularCrown
@@ -138,7 +138,6 @@ if _TYPE_CHECKING:
     from .scene import read_scene as read_scene
     from .scene import run as run
 
-__version__ = _version("bearingjax")
 
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = dict.fromkeys(

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS
@@ -173,8 +174,6 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
         "name [unit]": a number per scene, null where it has none; `difference` by
         header, from `difference`; `inputs` of each, and version.
     """
-    from .. import __version__
-
     return {
         "scenes": found.names,
         "result": [Result(int(s.solution.result)).label for s in found.solved],

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
@@ -95,8 +96,6 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
         are lists over them, null where a load was not solved. If nothing was solved
         the numbers are left out.
     """
-    from .. import __version__
-
     rows = [_numbers(scene, case) if case.solution.converged else {} for case in cases]
     found: dict[str, Any] = {}
     if any(rows):

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from .report_model import Part, Report
 
 MOST_ROWS = 200
@@ -126,8 +127,6 @@ def report_page(
 
 
 def _page(title: str, parts: Iterable[str], origin: Origin) -> str:
-    from .. import __version__
-
     made = f"bearingjax {__version__}, {origin.date}"
     body = "\n".join(part for part in parts if part)
     return f"""<!DOCTYPE html>

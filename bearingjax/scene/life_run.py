@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
 from ..statics.rating import Ratings, ratings
@@ -185,8 +186,6 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         `static_safety` the least of all cases. Columns of the cases; counts, warnings,
         inputs, version. Infinite is null; no lives if a case was not solved.
     """
-    from .. import __version__
-
     found = ratings_as_dict(run.ratings, run.origins)
     if run.converged:
         for name, life in run.lives.items():

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..noise import Shares, write_sound
 from ..noise.natural import LOOSE
 from .noise_run import Many, NoiseRun
@@ -37,8 +38,6 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         Also result, message, warnings, inputs (the file can be read as a scene) and
         version. Unsolved parts are left out.
     """
-    from .. import __version__
-
     parts: dict[str, Any] = {}
     if run.modes is not None and run.converged:
         there = run.modes.frequency > LOOSE

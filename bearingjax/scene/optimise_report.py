@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..numerics.units import CELSIUS, display_unit, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
@@ -126,8 +127,6 @@ def optimisation_as_dict(
         maximised; of a system of shafts bearings in place of peak_pressure: the numbers
         of `bearing_facts` by the names of the bearings.
     """
-    from .. import __version__
-
     best = scene_of_design(task, found.element) if best is None else best
     history = {
         name: np.asarray(values).tolist()
@@ -161,8 +160,6 @@ def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
     Returns:
         result ("start_not_solved"), message, warnings, inputs and version.
     """
-    from .. import __version__
-
     return {
         "result": "start_not_solved",
         "message": str(error),

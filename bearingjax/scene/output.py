@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, message
 from .files import write_numbers
@@ -94,8 +95,6 @@ def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
     Args:
         found: From `solve_scene`.
     """
-    from .. import __version__
-
     scene, solution = found.scene, found.numbers
     residual = float(solution.stats.residual)
     return {

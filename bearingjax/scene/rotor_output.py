@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .fit_report import fit_as_dict
@@ -49,8 +50,6 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         `fit_as_dict`.
         Also result, message, warnings, inputs (readable as a scene) and version.
     """
-    from .. import __version__
-
     parts: dict[str, Any] = {}
     if run.modes is not None:
         parts |= _modes(run.modes)

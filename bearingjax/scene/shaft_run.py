@@ -8,6 +8,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from .._version import __version__
 from ..design import radial_clearance, rows_of
 from ..numerics.programs import called
 from ..numerics.result import Result
@@ -337,8 +338,6 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
         `bearings`, `gear`, `belt`, `shaft` by name, `system_life_hours`, `power`, of
         several cases `cases`; `result`, `message`, `warnings`, `inputs`, `version`.
     """
-    from .. import __version__
-
     found = run.solution
     code = Result(int(found.result))
     if run.duty is not None and not run.converged:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .._version import __version__
 from ..element import RINGS
 from ..numerics.result import Result
 from ..skid import by_raceway
@@ -74,8 +75,6 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         result, message, residual, iterations, warnings, inputs (the file can be read
         as a scene) and version. Without a solution numbers are left out.
     """
-    from .. import __version__
-
     residual, steady = _residual(run), run.task.steady
     numbers = (_end if steady else _motion)(run) if run.has_numbers else {}
     return {

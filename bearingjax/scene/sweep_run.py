@@ -7,6 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from .._version import __version__
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
 from ..statics.cases import Cases
@@ -278,8 +279,6 @@ def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     """Return a sweep as plain lists by column, in SI; null where a case failed."""
-    from .. import __version__
-
     return {
         "columns": listed_columns(columns(solved, design_columns(table))),
         "counts": solved.counts(),
