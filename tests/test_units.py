@@ -6,6 +6,7 @@ import importlib
 import itertools
 import pkgutil
 import re
+from typing import NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -14,7 +15,7 @@ import pytest
 import bearingjax as bj
 from bearingjax import design
 from bearingjax.numerics.types import as_real
-from bearingjax.numerics.units import unit, unit_of
+from bearingjax.numerics.units import stated_units, unit, unit_of
 from bearingjax.scene.quantity import KINDS, kind_of
 from bearingjax.statics.solution import BallSolution, RollerSolution
 from bearingjax.statics.sweep_table import _label
@@ -55,7 +56,9 @@ def numbers(kind):
 def test_units_of_fields_are_those_of_the_docstring(kind):
     fields = {field.name: field for field in dataclasses.fields(kind)}
     for name in numbers(kind):
-        assert set(np.ravel(fields[name].metadata["unit"])) == stated(kind, name), name
+        assert set(np.ravel(fields[name].metadata["unit"])) == set(
+            stated_units(kind, name)
+        ), name
 
 
 def test_an_entry_has_the_unit_of_its_axis():
@@ -76,17 +79,6 @@ def test_an_entry_has_the_unit_of_its_axis():
     assert unit_of(Example, "motion") == ""
     with pytest.raises(KeyError, match="none"):
         unit_of(Example, "none")
-
-
-def stated(kind, name):
-    """Units that a class or its parents state of an attribute, in their docstrings."""
-    for base in kind.__mro__:
-        entry = rf"^ +{name}: (.*?)(?=^ +\w+: |^\s*$|\Z)"
-        found = re.search(entry, base.__doc__ or "", re.M | re.S)
-        if found:
-            units = re.findall(r"\[([^]]*)\]", found[1])
-            return {unit.strip() for unit in units[-1].split(",")} if units else set()
-    raise AssertionError(f"{kind.__name__}: nothing is said of {name}")
 
 
 def floats(kind):
@@ -112,7 +104,56 @@ def test_columns_of_a_sweep_have_the_unit_of_the_docstring(kind):
             _label(name, index, shape)[1]
             for index in itertools.product(*(range(n) for n in shape))
         }
-        assert units == stated(kind, name), name
+        assert units == set(stated_units(kind, name)), name
+
+
+def results():
+    """Named tuples that packages of the top level export, and their real numbers."""
+    for package in ("lubrication", "statics", "optimise", "skid", "rotor", "shafts"):
+        yield from _tuples(importlib.import_module(f"bearingjax.{package}"))
+    for module in (bj.rotor.nonlinear, bj.noise):
+        yield from _tuples(module)
+
+
+def _tuples(module):
+    for kind in vars(module).values():
+        if isinstance(kind, type) and issubclass(kind, tuple):
+            real = [
+                name
+                for name in getattr(kind, "_fields", ())
+                if re.search("Float|Scalar", str(kind.__annotations__.get(name)))
+            ]
+            if real:
+                yield pytest.param(kind, real, id=kind.__name__)
+
+
+@pytest.mark.parametrize("kind, names", list(results()))
+def test_results_state_their_units(kind, names):
+    for name in names:
+        assert stated_units(kind, name), name
+
+
+def test_unit_of_a_named_tuple():
+    class Example(NamedTuple):
+        """What was found.
+
+        Attributes:
+            force, moment: Loads (case,) [N, N m].
+            life: Until the first spall
+                appears [rev].
+            ratio: Of the two [1].
+        """
+
+        force: float
+        moment: float
+        life: float
+        ratio: float
+
+    found = Example(1.0, 2.0, 3.0, 4.0)
+    assert [unit_of(found, name) for name in ("life", "ratio")] == ["rev", ""]
+    assert unit_of(Example, "force", (1,)) == "N m" and unit_of(Example, "force") == ""
+    with pytest.raises(KeyError, match="nothing is said of count"):
+        unit_of(Example, "count")
 
 
 @pytest.mark.parametrize("measure", MEASURES, ids=lambda measure: measure.label)

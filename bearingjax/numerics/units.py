@@ -1,6 +1,7 @@
 """Units of fields: stated once, with the field, for checks, tables and messages."""
 
 import dataclasses
+import re
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,8 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
     """Unit of a field, as shown after a number.
 
     Args:
-        owner: Class of the field, or an instance.
+        owner: Class of the field, or an instance: a Module with metadata, or a named
+            tuple, whose docstring states its units.
         path: Name of the field; dotted, "rows.0.position", of a part of an instance;
             a number at the end is the entry of an array.
         index: Which entry of an array.
@@ -42,13 +44,48 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index = (int(path.rpartition(".")[2]),)
     for part in parts:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
-    fields = {field.name: field for field in dataclasses.fields(owner)}
-    units = np.asarray(fields[name].metadata.get("unit", "1"))
+    if dataclasses.is_dataclass(owner):
+        fields = {field.name: field for field in dataclasses.fields(owner)}
+        units = np.asarray(fields[name].metadata.get("unit", "1"))
+    else:
+        stated = stated_units(owner if isinstance(owner, type) else type(owner), name)
+        units = np.asarray(stated[0] if len(stated) == 1 else stated or "1")
     if len(index) < units.ndim:
         return ""
     last = zip(index[len(index) - units.ndim :], units.shape, strict=True)
     found = str(units[tuple(k % size for k, size in last)])
     return "" if found == "1" else found
+
+
+def stated_units(kind: type, name: str) -> tuple[str, ...]:
+    """Units that a class or its parents state of an attribute, in their docstrings.
+
+    Args:
+        kind: Class whose docstring has an entry "name: what it is [unit]", or
+            "name, other: what they are [N, N m]"; its first line may state the unit of
+            all entries without one.
+        name: Attribute.
+
+    Returns:
+        Those of the last brackets; empty if there are none.
+
+    Raises:
+        KeyError: If nothing is said of it.
+    """
+    entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
+    said = False
+    for base in kind.__mro__:
+        text = base.__doc__ or ""
+        found = re.search(entry, text, re.M | re.S)
+        if found:
+            said = True
+            for part in (found[1], text.partition("\n")[0]):
+                units = re.findall(r"\[([^]]*)\]", part)
+                if units:
+                    return tuple(u.strip() for u in units[-1].split(","))
+    if not said:
+        raise KeyError(f"{kind.__name__}: nothing is said of {name}")
+    return ()
 
 
 _SHOWN = {
