@@ -124,7 +124,7 @@ def run(count, solver, seed=0, names=()):
                 out = jnp.sqrt(jnp.sum(d.gradient[-3:] ** 2))
                 # Round-off of the approach in this contact, times its stiffness.
                 eps = jnp.finfo(rings.dtype).eps
-                place = magnitude + model.seeking.gap
+                place = magnitude + model.hints.gap
                 place = place + jnp.sqrt(state.x @ state.x)
                 floor = 8 * eps * jnp.trace(d.hessian[-3:, -3:]) * place
                 floor = floor + 1e-6 * model.tether * place

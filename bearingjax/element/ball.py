@@ -19,7 +19,7 @@ from .ball_inertia import Carried, Turning, carried
 from .ball_speed import BallKinematics
 from .energy import ball_energy
 from .rolling_element import AbstractRollingElement, RingMotion, Unknowns
-from .seeking import Seeking
+from .search_hints import SearchHints
 
 _N, _D = EXPONENT
 
@@ -176,11 +176,11 @@ class Ball(AbstractRollingElement):
         return self.geometry.n_displacements
 
     @property
-    def seeking(self):
-        return BallSeeking(self)
+    def hints(self):
+        return BallSearchHints(self)
 
 
-class BallSeeking(Seeking):
+class BallSearchHints(SearchHints):
     """Hints for the search of the equilibrium of a ball."""
 
     element: Ball

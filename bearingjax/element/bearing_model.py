@@ -357,7 +357,7 @@ class BearingModel(eqx.Module):
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
         largest = jnp.maximum(largest, least)
         states = [
-            accept_small(s.state, largest, group.rows.element.seeking.passed(load))
+            accept_small(s.state, largest, group.rows.element.hints.passed(load))
             for group, s, load in zip(self.groups, solved.groups, loads, strict=True)
         ]
         codes = [s.result.reshape(-1) for s in states]

@@ -124,7 +124,7 @@ def solve_element(
     given = _prepare(*frozen)
     known = jax.eval_shape(response, element, rings, given.start)
     loop = _loop(minimiser, known, given.is_open is not None)
-    return lanes.run(loop, given, *element.seeking.slots)
+    return lanes.run(loop, given, *element.hints.slots)
 
 
 def _without_unknowns(element, rings) -> LocalState:
@@ -190,12 +190,12 @@ def is_loose(
 
 
 def _size(element, x, magnitude):
-    return magnitude + element.seeking.gap + norm(x)
+    return magnitude + element.hints.gap + norm(x)
 
 
 def _load(element, known):
     load = jnp.sum(known.beside)
-    inertia = element.seeking.inertia_size()
+    inertia = element.hints.inertia_size()
     return load if inertia is None else load + inertia
 
 
@@ -240,7 +240,7 @@ def condensed(rings: Rings, placed: Placed, order: int = 2) -> Expansion:
         found = found._replace(hessian=stiffness, beside=Beside(known.beside, follow))
     if n == 0:
         return found
-    off = x - element.seeking.midpoint(unpacked(element, rings))
+    off = x - element.hints.midpoint(unpacked(element, rings))
     size = _load(element, known)
     given = element, off, placed.magnitude, size, d.gradient[r:]
     loose = is_loose(*stop(given))
@@ -272,27 +272,27 @@ class _Given(NamedTuple):
 
 
 def _prepare(element, rings, magnitude, near) -> _Given:
-    seeking, motions = element.seeking, unpacked(element, rings)
-    start, centre = seeking.start(motions), seeking.midpoint(motions)
+    hints, motions = element.hints, unpacked(element, rings)
+    start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
         start = _followed(element, near, rings, start)
-    is_open = seeking.is_open(motions)
+    is_open = hints.is_open(motions)
     if is_open is not None:
         start = jnp.where(is_open, centre, start)
-    radius = seeking.reach(motions) + seeking.gap + 1e-6 * element.diameter
+    radius = hints.reach(motions) + hints.gap + 1e-6 * element.diameter
     return _Given(element, rings, magnitude, centre, start, radius, is_open)
 
 
 def _problem(given: _Given, shapes) -> Problem:
     element, rings, magnitude = given.element, given.rings, given.magnitude
-    eps, seeking = jnp.finfo(rings.dtype).eps, element.seeking
+    eps, hints = jnp.finfo(rings.dtype).eps, element.hints
 
     def function(x, with_hessian, *_):
         known = response(element, rings, x)
         d = derivatives(element, rings, x, known, of_own=True)
         scale = _load(element, known)
         # Round-off of positions, and what is small against the tether's own force.
-        noise = eps * seeking.spread * trace(d.hessian) + 1e-6 * element.tether
+        noise = eps * hints.spread * trace(d.hessian) + 1e-6 * element.tether
         noise = _size(element, x, magnitude) * noise
         # A loose element need not be placed: its solve is over.
         loose = is_loose(element, x - given.centre, magnitude, scale, d.gradient)
@@ -300,14 +300,14 @@ def _problem(given: _Given, shapes) -> Problem:
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if element.has_potential else jnp.full_like(d.energy, jnp.nan)
         hessian = d.hessian if with_hessian else d.hessian[:0]
-        kept = known if seeking.keeps_response else ()
+        kept = known if hints.keeps_response else ()
         return Evaluation(value, d.gradient, hessian, scale, noise, kept)
 
     def corrected(x, step, size):
-        return seeking.corrected(unpacked(element, rings), x, step, size)
+        return hints.corrected(unpacked(element, rings), x, step, size)
 
     memory = _zeros(shapes)
-    correction = corrected if seeking.corrects_steps else None
+    correction = corrected if hints.corrects_steps else None
     return Problem(function, given.start, given.radius, correction, memory)
 
 
@@ -321,7 +321,7 @@ def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
     """
 
     def problem_of(given):
-        return _problem(given, known if given.element.seeking.keeps_response else ())
+        return _problem(given, known if given.element.hints.keeps_response else ())
 
     def finish(given, state):
         element, rings = given.element, given.rings
@@ -366,10 +366,10 @@ def _solved(element, rings, minimum) -> LocalState:
         h = derivatives(element, rings, minimum.x, known, of_own=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
-    if element.seeking.may_be_ejected:
+    if element.hints.may_be_ejected:
         # Inertia along a direction that only the tether holds.
         motions = unpacked(element, rings)
-        lost = element.seeking.is_ejected(motions, minimum.x)
+        lost = element.hints.is_ejected(motions, minimum.x)
         lost = lost & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
     return LocalState(
@@ -385,12 +385,12 @@ def _solved(element, rings, minimum) -> LocalState:
 def _followed(element, near, rings, otherwise):
     """Predict the position of an element that follows the rings from near by."""
     moved = rings - near.rings
-    seeking, before = element.seeking, unpacked(element, near.rings)
+    hints, before = element.hints, unpacked(element, near.rings)
     step = near.follow @ moved
-    reach, length = seeking.reach(unpacked(element, moved)), norm(step)
+    reach, length = hints.reach(unpacked(element, moved)), norm(step)
     # Barely held, it would go astray.
     step = step * jnp.minimum(1.0, reach / jnp.where(length > 0, length, 1.0))
-    x = near.offset + seeking.midpoint(before) + step
+    x = near.offset + hints.midpoint(before) + step
     return jnp.where(jnp.all(jnp.isfinite(x)), x, otherwise)
 
 
@@ -404,7 +404,7 @@ def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
     """
     element = placed.element
     held = jnp.any(beside.contact_load > 0)
-    off = placed.state.x - element.seeking.midpoint(unpacked(element, rings))
+    off = placed.state.x - element.hints.midpoint(unpacked(element, rings))
     follow = jnp.where(held, beside.follow, 0.0)
     return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
 

@@ -19,7 +19,7 @@ from .energy import roller_energy
 from .frame import section_matrix
 from .roller_geometry import AbstractRollerGeometry, Approaches
 from .rolling_element import AbstractRollingElement, RingMotion, Unknowns
-from .seeking import Seeking
+from .search_hints import SearchHints
 
 _N, _D = EXPONENT
 
@@ -115,11 +115,11 @@ class Roller(AbstractRollingElement):
         return self.geometry.is_linear and self.body_force is None
 
     @property
-    def seeking(self):
-        return RollerSeeking(self)
+    def hints(self):
+        return RollerSearchHints(self)
 
 
-class RollerSeeking(Seeking):
+class RollerSearchHints(SearchHints):
     """Hints for the search of the equilibrium of a roller."""
 
     element: Roller

@@ -4,7 +4,7 @@ A rolling element gives the coordinates of its contacts, the contact response th
 and from both its energy (`energy.py`). Forces, stiffness, equilibrium and condensation
 follow from that and are written once for all rolling elements (`equilibrium.py`).
 The start of the search for its equilibrium, and the correction of the steps, are in
-`seeking.py`.
+`hints.py`.
 """
 
 import abc
@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion, expanded
 from ..numerics.types import Scalar
-from .seeking import Seeking
+from .search_hints import SearchHints
 
 Unknowns = Float[Array, " n"]
 
@@ -154,9 +154,9 @@ class AbstractRollingElement(eqx.Module):
         return None
 
     @property
-    def seeking(self) -> Seeking:
+    def hints(self) -> SearchHints:
         """Hints for the search of its equilibrium."""
-        return Seeking(self)
+        return SearchHints(self)
 
     @property
     def has_potential(self) -> bool:

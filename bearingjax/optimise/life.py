@@ -140,7 +140,7 @@ class Damage(OfLife):
         return 1.0 / self.life(element_of(element), cases, solution)
 
     @property
-    def as_told(self):
+    def reported_as(self):
         return RatingLife(self.conditions, self.hours)
 
     def told(self, value):

@@ -53,12 +53,12 @@ class AbstractMeasure(eqx.Module):
         return self
 
     @property
-    def as_told(self) -> "AbstractMeasure":
+    def reported_as(self) -> "AbstractMeasure":
         """Measure that reports show in its place: itself, or a more familiar one."""
         return self
 
     def told(self, value: Any) -> Any:
-        """Convert a value of this measure to that of `as_told`."""
+        """Convert a value of this measure to that of `reported_as`."""
         return value
 
     @property

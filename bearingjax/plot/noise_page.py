@@ -25,18 +25,18 @@ def noise_overview(run: Any, title: str = "") -> Figure:
     Returns:
         The figure, 15 inches wide.
     """
-    task, heard = run.task, run.heard
+    task, analysis = run.task, run.analysis
     rows = 2 if run.many is None else 3
     figure = pyplot().figure(figsize=(15.0, 4.8 * rows))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = figure.subplots(rows, 2)
-    acceleration_over_time(heard.record, axes[0, 0])
+    acceleration_over_time(analysis.record, axes[0, 0])
     reference = task.reference
-    noise_spectrum(heard.spectrum, heard.lines, axes[0, 1], reference=reference)
+    noise_spectrum(analysis.spectrum, analysis.lines, axes[0, 1], reference=reference)
     band_bars(
-        task.bands, heard.band_level, axes[1, 0], norm=task.norm, reference=reference
+        task.bands, analysis.band_level, axes[1, 0], norm=task.norm, reference=reference
     )
-    contact_state_map(heard.record, heard.states, axes[1, 1])
+    contact_state_map(analysis.record, analysis.states, axes[1, 1])
     if run.many is not None:
         level_distribution(run.many.levels.level, axes[2, 0], reference=reference)
         if run.many.shares is None:

@@ -222,7 +222,7 @@ def _history(found) -> Panel:
     history, measure = found.history, found.objective
     steps, values = np.arange(len(history.objective)), history.objective
     if isinstance(measure, AbstractMeasure):
-        measure, values = measure.as_told, measure.told(values)
+        measure, values = measure.reported_as, measure.told(values)
     size = abs(values[0]) or 1.0
     name, look = label_of(measure), {"markersize": 4}
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""

@@ -73,7 +73,7 @@ WITH_LETTERS = "cylindrical_roller", "needle_roller"
 """Rollers whose ribs have an `arrangement` by letters."""
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
-BESIDE = (
+EXTRA_KEYS = (
     "set",
     "contact",
     "numerics",
@@ -145,12 +145,12 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
 
     Returns:
         Its keys completed from the catalogue, and the record of the catalogue entry;
-        without the keys in `BESIDE`.
+        without the keys in `EXTRA_KEYS`.
 
     Raises:
         SceneError: If the designation is not known, or of another `type`.
     """
-    given = {k: v for k, v in table.keys_given().items() if k not in BESIDE}
+    given = {k: v for k, v in table.keys_given().items() if k not in EXTRA_KEYS}
     if "designation" not in table:
         return None
     name = given.pop("designation")

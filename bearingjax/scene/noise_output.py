@@ -8,7 +8,7 @@ import numpy as np
 from .._version import __version__
 from ..noise import Shares, write_sound
 from ..noise.natural import LOOSE
-from .noise_run import Many, NoiseRun
+from .noise_run import NoiseRun, RandomBearings
 from .noise_scene import DIRECTIONS
 from .tolerance_table import Tighter
 
@@ -43,8 +43,8 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         there = run.modes.frequency > LOOSE
         parts["natural_frequency"] = run.modes.frequency[there].tolist()
         parts["ring_share"] = run.modes.ring_share[there].tolist()
-    if run.heard is not None:
-        parts |= _heard(run)
+    if run.analysis is not None:
+        parts |= _analysis(run)
     if run.many is not None:
         parts["monte_carlo"] = _many(run.many, run.task.tighter)
     return {
@@ -57,24 +57,24 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     }
 
 
-def _heard(run: NoiseRun) -> dict[str, Any]:
-    heard = run.heard
-    assert heard is not None  # checked by the caller
-    states = heard.states
+def _analysis(run: NoiseRun) -> dict[str, Any]:
+    analysis = run.analysis
+    assert analysis is not None  # checked by the caller
+    states = analysis.states
     three = len(DIRECTIONS)
     return {
         "direction": list(DIRECTIONS),
-        "time": heard.record.time.tolist(),
-        "acceleration": heard.acceleration.tolist(),
-        "displacement": np.asarray(heard.record.displacement)[:, :three].tolist(),
-        "level": heard.level.tolist(),
+        "time": analysis.record.time.tolist(),
+        "acceleration": analysis.acceleration.tolist(),
+        "displacement": np.asarray(analysis.record.displacement)[:, :three].tolist(),
+        "level": analysis.level.tolist(),
         "bands": {
             "centre": run.task.bands.centre.tolist(),
-            "level": heard.band_level.tolist(),
+            "level": analysis.band_level.tolist(),
         },
         "lines": [
             {**line._asdict(), "causes": list(causes)}
-            for line, causes in zip(heard.lines, heard.causes, strict=True)
+            for line, causes in zip(analysis.lines, analysis.causes, strict=True)
         ],
         "contact_states": {
             "contacts": list(range(len(states.samples))),
@@ -89,7 +89,7 @@ PERCENTILES = (5.0, 50.0, 95.0)
 """Percentiles of the levels of random bearings that are reported [%]."""
 
 
-def _many(many: Many, tighter: Tighter) -> dict[str, Any]:
+def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
     told: dict[str, Any] = {
         "level": np.asarray(levels.level).tolist(),
@@ -123,19 +123,19 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
     Args:
         run: From `run_noise`, converged.
     """
-    heard = run.heard
-    assert heard is not None  # asked for of what is solved alone
-    columns = {"time [s]": np.asarray(heard.record.time)}
+    analysis = run.analysis
+    assert analysis is not None  # asked for of what is solved alone
+    columns = {"time [s]": np.asarray(analysis.record.time)}
     for name, unit, values in (
-        ("acceleration", "m/s²", heard.acceleration),
-        ("displacement", "m", np.asarray(heard.record.displacement)),
+        ("acceleration", "m/s²", analysis.acceleration),
+        ("displacement", "m", np.asarray(analysis.record.displacement)),
     ):
         for k, direction in enumerate(DIRECTIONS):
             columns[f"{name}_{direction} [{unit}]"] = values[:, k]
     return columns
 
 
-def heard_direction(run: NoiseRun) -> np.ndarray:
+def loudest_direction(run: NoiseRun) -> np.ndarray:
     """Return the unit vector of the measurement: of the sensor, or the loudest axis.
 
     Args:
@@ -145,12 +145,12 @@ def heard_direction(run: NoiseRun) -> np.ndarray:
     if sensor is not None:
         direction = np.asarray(sensor.direction)
         return direction / np.linalg.norm(direction)
-    assert run.heard is not None
-    return np.eye(len(DIRECTIONS))[int(np.argmax(run.heard.level))]
+    assert run.analysis is not None
+    return np.eye(len(DIRECTIONS))[int(np.argmax(run.analysis.level))]
 
 
 def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
-    """Write the acceleration along `heard_direction` as sound.
+    """Write the acceleration along `loudest_direction` as sound.
 
     Args:
         path: Path of the WAV file.
@@ -162,6 +162,6 @@ def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
     Raises:
         OSError: If the file cannot be written.
     """
-    assert run.heard is not None
-    along = run.heard.acceleration @ heard_direction(run)
-    return write_sound(path, along, float(run.heard.record.duration))
+    assert run.analysis is not None
+    along = run.analysis.acceleration @ loudest_direction(run)
+    return write_sound(path, along, float(run.analysis.record.duration))

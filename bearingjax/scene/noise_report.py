@@ -43,7 +43,7 @@ def _bearing(run):
         if value
     )
     inner, outer = (float(s) * _RPM for s in (model.speed.inner, model.speed.outer))
-    task, record = run.task, run.heard.record
+    task, record = run.task, run.analysis.record
     inertia = model.inertia
     tilts = "does not tilt"
     if inertia is not None:
@@ -78,9 +78,9 @@ def _modes(run):
 
 def _levels(run):
     """Tabulate the level of every band and direction, with the limit if given."""
-    heard, task = run.heard, run.task
+    analysis, task = run.analysis, run.task
     bands = [f"{centre:g} Hz" for centre in task.bands.centre]
-    levels = np.vstack([heard.level, heard.band_level])
+    levels = np.vstack([analysis.level, analysis.band_level])
     columns = [Column("band", ["all", *bands]), *_by_direction(levels)]
     if task.norm is not None:
         columns.append(Column("norm", [None, *task.norm], "dB", ".1f"))
@@ -99,11 +99,11 @@ def _by_direction(levels):
 
 def _lines(run):
     """Tabulate the largest spectral lines with their names and causes."""
-    pairs = list(zip(run.heard.lines, run.heard.causes, strict=True))
+    pairs = list(zip(run.analysis.lines, run.analysis.causes, strict=True))
     if not pairs:
         return ["no line stands out of the spectrum"]
     largest = sorted(pairs, key=lambda pair: -pair[0].amplitude)[:LARGEST_LINES]
-    total = np.sum(np.asarray(run.heard.spectrum.power)[1:])
+    total = np.sum(np.asarray(run.analysis.spectrum.power)[1:])
     part = sum(0.5 * line.amplitude**2 for line, _ in largest) / total
     lines = [line for line, _ in largest]
     made = ["; ".join(c[:2]) + ("; …" if len(c) > 2 else "") for _, c in largest]
@@ -122,7 +122,7 @@ def _lines(run):
 
 
 def _states(run):
-    states = run.heard.states
+    states = run.analysis.states
     told = ", ".join(
         f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
     )

@@ -44,7 +44,7 @@ _TOO_LONG = "its steps are too long for the contacts under their largest load"
 
 
 @dataclasses.dataclass(frozen=True)
-class Heard:
+class NoiseAnalysis:
     """Evaluation of a record.
 
     Attributes:
@@ -73,7 +73,7 @@ class Heard:
 
 
 @dataclasses.dataclass(frozen=True)
-class Many:
+class RandomBearings:
     """Evaluation of many random bearings.
 
     Attributes:
@@ -96,7 +96,7 @@ class NoiseRun:
         message: Cause and remedy in words.
         modes: Natural modes, in NumPy; `None` without an equilibrium.
         steps: Integration steps per sample.
-        heard: Evaluation of the record; `None` if it was not solved.
+        analysis: Evaluation of the record; `None` if it was not solved.
         many: Evaluation of random bearings; `None` if none were requested.
         warnings: Warnings of doubtful results.
     """
@@ -106,8 +106,8 @@ class NoiseRun:
     message: str
     modes: NaturalModes | None = None
     steps: int = 0
-    heard: Heard | None = None
-    many: Many | None = None
+    analysis: NoiseAnalysis | None = None
+    many: RandomBearings | None = None
     warnings: tuple[str, ...] = ()
 
     @property
@@ -152,7 +152,7 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
     )
     result, steps = Result(int(record.result)), record.steps
     asked = model_warnings(model, task.samples, steps, tolerances)
-    told_so_far = (*task.warnings, *asked)
+    warned = (*task.warnings, *asked)
     if result is not Result.CONVERGED:
         grew = result is Result.NON_FINITE
         words = (
@@ -160,18 +160,18 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
             " leave out `vibration.steps`, or give more of them, or another"
             " `vibration.retardation`"
         )
-        return NoiseRun(task, result, words, modes, steps, warnings=told_so_far)
-    heard = listen(task, record, modes)
-    doubtful = record_warnings(model, record, heard.spectrum, task.bands, tolerances)
-    told_so_far += tuple(doubtful)
+        return NoiseRun(task, result, words, modes, steps, warnings=warned)
+    analysis = analyse(task, record, modes)
+    doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
+    warned += tuple(doubtful)
     many = _many(task, steps, told) if task.bearings else None
     if many is not None and many.levels.failed:
-        told_so_far += (
+        warned += (
             f"{many.levels.failed} of {task.bearings} random bearings were not solved",
         )
     if many is not None and many.shares is not None:
-        told_so_far += tuple(share_warnings(many.shares))
-    return NoiseRun(task, result, "converged", modes, steps, heard, many, told_so_far)
+        warned += tuple(share_warnings(many.shares))
+    return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
 def _tell(told, stage):
@@ -179,7 +179,7 @@ def _tell(told, stage):
         told(stage)
 
 
-def _many(task: NoiseScene, steps: int, told) -> Many:
+def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
@@ -222,11 +222,11 @@ def _many(task: NoiseScene, steps: int, told) -> Many:
             batch=batch,
             progress=progress("sources of noise"),
         )
-        return Many(levels, made)
-    return Many(levels, None)
+        return RandomBearings(levels, made)
+    return RandomBearings(levels, None)
 
 
-def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
+def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAnalysis:
     """Evaluation of a record.
 
     Args:
@@ -255,7 +255,7 @@ def listen(task: NoiseScene, record: Vibration, modes: NaturalModes) -> Heard:
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
     highest = float(record.bandwidth)
     of_bands = band_levels(found, task.bands, task.reference, highest)
-    return Heard(
+    return NoiseAnalysis(
         record=record,
         spectrum=found,
         level=np.asarray(level(total_root_mean_square(found), task.reference)),

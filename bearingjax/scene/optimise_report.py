@@ -297,10 +297,10 @@ def _grid(names, rows):
 
 def _told(measure, values):
     """Return the displayed form of a measure, and its (smooth, exact) pairs."""
-    if not isinstance(measure, AbstractMeasure) or measure.as_told is measure:
+    if not isinstance(measure, AbstractMeasure) or measure.reported_as is measure:
         return measure, values
     shown = [tuple(measure.told(x) for x in pair) for pair in values]
-    return measure.as_told, shown
+    return measure.reported_as, shown
 
 
 def _kept(found, k, scale):

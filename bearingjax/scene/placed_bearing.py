@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..rotor import Shaft
-from .bearing_table import BALLS, BESIDE
+from .bearing_table import BALLS, EXTRA_KEYS
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .fit_table import Fits
 from .quantity import SceneError
@@ -19,7 +19,7 @@ from .read import Scene, scene_of
 from .table import Table
 
 _CONTROL = ("raceway_control", "friction_coefficient")
-"""Keys of `BESIDE` that stand in [operating] of a bearing alone."""
+"""Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""
 _AT_REST = "constant_angle"
 """Kinematics that know no speed."""
 _SAME = 1e-3
@@ -55,10 +55,10 @@ def placed_bearing(
     known = {} if known is None else known
     own = {k: v for k, v in table.keys_given().items() if k not in beside}
     table.skip(*own)
-    inside = (*BESIDE, *_COMMON)
+    inside = (*EXTRA_KEYS, *_COMMON)
     data: dict[str, Any] = {
         "bearing": {k: v for k, v in own.items() if k not in inside},
-        **{k: v for k, v in own.items() if k in BESIDE and k not in _CONTROL},
+        **{k: v for k, v in own.items() if k in EXTRA_KEYS and k not in _CONTROL},
         "operating": {k: own[k] for k in _CONTROL if k in own},
     }
     numerics = data.get("numerics")
@@ -98,10 +98,10 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     Args:
         inputs: `Scene.inputs`.
     """
-    beside = {key: dict(inputs[key]) for key in BESIDE if key in inputs}
+    beside = {key: dict(inputs[key]) for key in EXTRA_KEYS if key in inputs}
     beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
     operating = inputs.get("operating", {})
-    chosen = {key: operating[key] for key in BESIDE if key in operating}
+    chosen = {key: operating[key] for key in EXTRA_KEYS if key in operating}
     return {**inputs["bearing"], **beside, **chosen}
 
 
@@ -150,7 +150,7 @@ def _scene(
     data: dict[str, Any], name: str, path: Path, own: Any, beside: tuple[str, ...]
 ) -> Scene:
     # The message names tables of a bearing alone: [bearing], `fit.bore`; not hints.
-    tables = [key for key in (*BESIDE, *_COMMON) if key in own]
+    tables = [key for key in (*EXTRA_KEYS, *_COMMON) if key in own]
     pattern = (
         rf"(?<!did you mean `)(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
     )

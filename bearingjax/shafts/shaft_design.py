@@ -249,7 +249,7 @@ class PowerOf(AbstractMeasure):
         return self.measure.exact(element, cases, solution) ** self.power
 
     @property
-    def as_told(self):
+    def reported_as(self):
         return self.measure
 
     def told(self, value):

@@ -95,7 +95,7 @@ class Surroundings(eqx.Module):
     gravity: Scalar
 
 
-class OneBall(NamedTuple):
+class ElementState(NamedTuple):
     """A ball at an instant.
 
     Attributes:
@@ -137,7 +137,7 @@ def mechanics(ball: LoadedBall | LoadedRoller) -> Any:
 
 def one_ball(
     around: Surroundings, time: Scalar, place: Scalar, state: SkidState
-) -> OneBall:
+) -> ElementState:
     """Return a ball at an instant.
 
     Args:
@@ -155,7 +155,7 @@ def one_ball(
         motion = RollerState(state.spin[0], state.orbit)
     moving = of.sliding(ball, motion, speed)
     turning = state.orbit, ball.frontal_area, ball.pitch_radius
-    return OneBall(
+    return ElementState(
         ball,
         azimuth,
         motion,
@@ -173,7 +173,7 @@ _AXES: Any = (0, 0, 0, None, None, 0, None)
 """Axes of the balls in their state."""
 
 
-def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
+def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> ElementState:
     """Return all balls at an instant, leading axis ball; arguments as in `one_ball`."""
 
     def one(place, state):
@@ -182,7 +182,7 @@ def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> OneBall:
     return jax.vmap(one, in_axes=(0, SkidState(*_AXES)))(around.place, state)
 
 
-def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
+def power(around: Surroundings, time: Scalar, ball: ElementState) -> Work:
     """Return the powers of one ball [W]; arguments as in `one_ball`."""
     speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
     return Work(
@@ -192,7 +192,7 @@ def power(around: Surroundings, time: Scalar, ball: OneBall) -> Work:
     )
 
 
-def energies(around: Surroundings, ball: OneBall) -> tuple[Scalar, Scalar]:
+def energies(around: Surroundings, ball: ElementState) -> tuple[Scalar, Scalar]:
     """Return kinetic and potential energy, of pocket and weight, of a ball [J]."""
     of_ball, cage = ball.ball, around.model.cage
     height = of_ball.pitch_radius * jnp.sin(ball.azimuth)

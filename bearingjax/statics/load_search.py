@@ -291,7 +291,7 @@ def _play(rows: tuple[SetRow, ...]) -> Scalar:
 
 def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
-    loads = model.of_elements(lambda one: one.seeking.pressed(approach))
+    loads = model.of_elements(lambda one: one.hints.pressed(approach))
     return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
 
 
@@ -307,6 +307,6 @@ def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:
     """Largest inertia force of a rolling element [N]."""
-    sizes = model.of_elements(lambda one: one.seeking.inertia_size())
+    sizes = model.of_elements(lambda one: one.hints.inertia_size())
     found = [jnp.max(size) for size in sizes if size is not None]
     return jnp.max(jnp.stack(found)) if found else jnp.zeros_like(like)

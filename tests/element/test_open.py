@@ -85,7 +85,7 @@ def test_open_rollers_carry_nothing(design):
     roller = model.rows[0].element
 
     def told(rings):
-        return roller.seeking.is_open(unpacked(roller, rings))
+        return roller.hints.is_open(unpacked(roller, rings))
 
     is_open = np.asarray(jax.vmap(jax.vmap(told))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9
@@ -109,14 +109,14 @@ def test_a_profile_that_may_stand_out_is_not_told():
     assert float(profile.drop(jnp.zeros(()), 0.01, 0.01)) < -5e-7
     roller = element.model().rows[0].element
     zero = jnp.zeros(3)
-    assert roller.seeking.is_open(RingMotion(zero, zero)) is None
+    assert roller.hints.is_open(RingMotion(zero, zero)) is None
 
 
 def test_what_is_not_a_number_is_not_open():
     model = bj.BearingElement(cylindrical(roller_profile=bj.CircularCrown(1.0))).model()
     nothing = jnp.full(3, jnp.nan)
-    seeking = model.rows[0].element.seeking
-    assert not seeking.is_open(RingMotion(nothing, nothing))
+    hints = model.rows[0].element.hints
+    assert not hints.is_open(RingMotion(nothing, nothing))
     e = model.evaluate(jnp.full(12, jnp.nan))
     assert int(e.result) == bj.Result.NON_FINITE
 

@@ -150,14 +150,14 @@ def _same_sound(path, acceleration, told):
 def test_a_model_by_hand_vibrates_alike(scene):
     task = read_noise(scene)
     found = run_noise(task)
-    record, lines = found.heard.record, found.heard.spectrum
+    record, lines = found.analysis.record, found.analysis.spectrum
     assert list(found.warnings) == [
         *model_warnings(task.model, task.samples, found.steps),
         *record_warnings(task.model, record, lines, task.bands),
     ]
     modes = natural_modes(task.model)
     assert np.array_equal(found.modes.frequency, modes.frequency)
-    assert found.heard is not None and found.steps > 1
+    assert found.analysis is not None and found.steps > 1
     # Twice the wave, twice the vibration, as long as all balls bear.
     (waves,) = task.model.errors_of_rows[0].inner.outwards
     assert isinstance(waves, bj.design.Harmonics)
@@ -168,9 +168,9 @@ def test_a_model_by_hand_vibrates_alike(scene):
             lambda leaf: 2.0 * leaf if leaf is amplitude else leaf, task.model
         ),
     )
-    doubled = run_noise(twice).heard.acceleration
+    doubled = run_noise(twice).analysis.acceleration
     size = np.abs(doubled).max()
-    assert np.allclose(doubled, 2.0 * found.heard.acceleration, atol=0.05 * size)
+    assert np.allclose(doubled, 2.0 * found.analysis.acceleration, atol=0.05 * size)
 
 
 def test_lines_name_the_wave_that_makes_them(scene):
@@ -194,7 +194,7 @@ def test_lines_name_the_wave_that_makes_them(scene):
         result=jnp.asarray(0, jnp.int32),
         turns=16,
     )
-    heard = noise_run.listen(task, record, modes)
+    heard = noise_run.analyse(task, record, modes)
     # Beside it are maxima of round-off, told for their size alone.
     line, causes = max(
         zip(heard.lines, heard.causes, strict=True), key=lambda pair: pair[0].amplitude
@@ -235,7 +235,7 @@ def test_round_off_is_no_noise(scene):
     for load in ("100 N", "0.01 N"):
         given = [still, steps, f"operating.load.Fz={load}"]
         found = run_noise(read_noise(scene, given))
-        assert found.converged and found.heard.lines == ()
+        assert found.converged and found.analysis.lines == ()
         assert any(text.startswith("nothing shakes") for text in found.warnings)
 
 
@@ -245,7 +245,7 @@ def test_a_motion_that_runs_away_is_no_result(scene):
     given = ["vibration.retardation=1 ms", f"vibration.steps={steps}"]
     found = run_noise(read_noise(scene, given))
     assert found.warnings[0].startswith(f"{steps} steps per sample are less than")
-    assert found.result is Result.NON_FINITE and found.heard is None
+    assert found.result is Result.NON_FINITE and found.analysis is None
     assert "another `vibration.retardation`" in found.message
     assert set(noise_as_dict(found)) == WORDS
 

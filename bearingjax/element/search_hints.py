@@ -15,7 +15,7 @@ from ..numerics.linear import dot
 from ..numerics.types import Scalar
 
 
-class Seeking(eqx.Module):
+class SearchHints(eqx.Module):
     """Hints for the search of one rolling element's own unknowns.
 
     In all of them `rings` are the motions of both rings in the element's axes, and `x`
