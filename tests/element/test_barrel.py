@@ -552,6 +552,10 @@ def test_crossed_rollers_of_a_rigid_model():
             crossed, [fx, 0.0, fz, 0.0, my, 0.0], free=("ux", "uy", "uz", "gx", "gy")
         )
         got = np.asarray(found.displacement)[[6, 8, 10]]
+        if fx == my == 0:
+            # Rollers of one slice hold nothing against a turn about the apex of their
+            # normals, on the axis at the pitch radius: ux and gy are those of a turn.
+            got = np.array([got[0] - 0.5 * 0.2775 * got[2], got[1], 0.0])
         # The last case is printed with five digits.
         size = np.array([1e-5, 1e-5, 1e-4])
         rtol = 1e-5 if my == 0 else 3e-5
