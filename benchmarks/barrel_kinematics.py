@@ -34,6 +34,10 @@ Last run:
     toroidal     0.00    0.25     2.55          0.86      6.94  yes
     toroidal     0.00    0.50     5.11          3.52     27.26  yes
     toroidal     0.00    1.00    10.22         16.35    108.02  yes
+
+Goal: a warning wherever an error exceeds 3 %; met but at 0.5 mm of the spherical
+bearing (3.2 %). Of the toroidal bearing 6 times the error of the largest load is stated
+where a ring leans by 1 degree or travels by 8 mm.
 """
 
 import argparse

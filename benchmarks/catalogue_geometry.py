@@ -39,8 +39,8 @@ Last run:
 C of four-point bearings, deep groove bearings, tapers and barrel rollers is divided by
 that of their class, 1.06, 1.05, 1.15 and 1.135, where the ordinary one is not printed
 (the 22222 E is then read as raised once more: -17 %, else -7 %). Deep groove bearings
-that `estimate_geometry` misses by 5 to 16 % are 15 with bores to 10 mm or thin sections
-and six large ones.
+that `estimate_geometry` misses by 5 to 16 % (16 %: a 603) are 15 with bores to 10 mm or
+thin sections and six large ones.
 """
 
 import argparse

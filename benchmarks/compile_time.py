@@ -48,6 +48,17 @@ shaft shaft_spindle                 41.5     7.8
 skid skid_axial --steady            26.0     3.7
 skid skid_roller --steady           20.1     5.5
 noise noise_deep_groove             39.3    16.1
+
+`shaft_spindle` is a spindle that warms up; of the second run of noise 12.5 s is the
+integration. `solve_load` once more, importing JAX and adding two arrays 0.7 s: as it is
+9.0, kept 2.0, and gradient 14.
+
+Goals: first force and stiffness in 4 s: MISSED by 0.8 s; the first `solve` in 8 s:
+MISSED by `sprung_pair` and `self_aligning`; the second in 2 s: MISSED by these and, by
+0.04 s, by `tapered`. Earlier versions: first force and stiffness 3.3 s on a quiet
+machine; with eight other jobs `solve` of a single row took 5.2 to 10.9 s of processor
+time the first time and 1.9 to 2.4 s the second, that of a pair of ball bearings 16.8
+and 2.8 s.
 """
 
 import argparse

@@ -44,6 +44,10 @@ of even 35 x 1024: 27.4
 reference: approach 6.32121 µm, at 0.5, 7.5, 14.5 mm 1299.00, 1104.12, 1206.77 MPa
 coarser reference differs by 2e-05
 AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
+
+35 x 64 graded cells are better in all errors than even 256 x 512 and 35 x 1024, at a
+119th and a 16th of their time, and than even 35 x 512 at a 7th. 35 x 48, which the
+lines above name, have 2e-6 in the approach by luck of signs.
 """
 
 import argparse

@@ -87,6 +87,10 @@ times faster than SciPy: 58.4 (at least 100): MISSED
 times faster than from first contact, least: 1.64
 
 one core; AMD EPYC, 2 cores, load average 1.2; devices: 1 cpu; jax 0.10.1
+
+Radial loads take 72 µs a case (goal: 80). From first contact straight and unlike
+raceways take 1.8 to 2.2 times as long as `bj.sweep`; C takes 0.47 to 0.79 of the time
+of `bj.sweep`, 0.26 to 0.37 of that of ours from first contact.
 """
 
 import argparse

@@ -17,7 +17,11 @@ times ours.
 Run: python benchmarks/noise_scipy.py [--turns N] [--batch N ...] [--bearings N]
 [--smoke]; all that was asked for once: --turns 8 --batch 64 --bearings 1000
 
-Last run: see the README beside it.
+Last run, 14 balls, two turns, one core: 0.19 s at an error of 5e-4 of the acceleration,
+0.34 s at 2.6e-4; SciPy's RK45 4.4 s at 1e-3, DOP853 5.7 s at 5e-5, LSODA 24.9 s: 23
+times the time of one bearing, 26 times that of one of 16 random bearings in a call,
+spectra and bands included (goal: 20 times). Before accelerations were cut where samples
+cannot tell them, 1000 random bearings of 8 turns took 0.41 s each, RK45 11.4 s.
 """
 
 import argparse

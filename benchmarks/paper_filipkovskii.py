@@ -45,6 +45,9 @@ highest shift of a peak from the linear one: -0.0302 (at most 0): met
 changes unmarked: 0 (at most 0): met
 order of z off two: 5.47e-07 (at most 0.001): met
 AMD EPYC, 2 cores, load average 6.6; devices: 1 cpu; jax 0.10.1
+
+Both resonances bend 3 to 8 % below those of the linear response; stability changes at
+marked points only, at 40 degrees at a point 1e-9 from its fold.
 """
 
 import argparse

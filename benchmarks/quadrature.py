@@ -31,6 +31,8 @@ contact mapped    32   2e-09   4e-14   3e-09   1e-09    2e-11    2e-09    5e-12 
 contact mapped    48   2e-11   3e-14   9e-10   8e-11    2e-11    5e-12    5e-12      406
 
 36 bearings of 3 rollers; AMD EPYC
+
+Goal of 32 mapped nodes: 1e-6 in force, 1e-5 in stiffness.
 """
 
 import argparse

@@ -25,6 +25,8 @@ worst errors: forces 2.1e-10, moments 9.5e-11, torques 4.8e-16, power 2.0e-16, b
 silent: 0 (at most 0): met; called unheld though held: 0: met; wrong: 0: met
 seed 1: as well, but one of the opposed tapers ends at the step limit. It bears its
   weight alone at 0.45 rad/s; by itself, where inertia is left out so slow, it converges
+both seeds, 200 systems: 146 solved, 53 held by nothing along the shaft, 1 at the step
+  limit (goal none silent: missed); balance of each shaft 3e-10, of power 2e-16
 AMD EPYC, 2 cores, load average 12; devices: 1 cpu; jax 0.10.1
 """
 

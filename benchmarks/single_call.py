@@ -68,6 +68,15 @@ jax.scipy BFGS                 14558.9   30.66      3.74         4e-08      6e-0
 optimistix BFGS                 6481.8   13.65      1.94         7e-11      2e-12
 
 AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
+
+Why a single call does not reach the C loop: a call of a compiled JAX program that does
+nothing takes 6 to 8 µs here, more than the whole C loop (4.3 µs; it leaves open rollers
+out, which a program of fixed shape cannot). The compiled program runs hundreds of
+kernels, a fraction of a microsecond each (`skip_what_is_absent.py` counts some 160 in
+its text, a loop's body once). In a batch the overhead is shared, rollers that the rings
+leave room are left out, and rollers that are done no longer wait for the slowest; what
+remains is, by a profile, arithmetic spread over many small kernels, the assembly, and
+the fixed passes of the search for the edges of the contact zones.
 """
 
 import argparse

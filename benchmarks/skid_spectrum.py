@@ -68,8 +68,9 @@ Zones, and that slip all but vanishes in B and D, grows with the radial load and
 larger in A than in C, are as published; the centres of B and D are published as 0.28
 and 0.78 of an orbit whose beginning is not told. The ripple of the orbital speed is
 that of the contact angle, and above 1 % from 200 N on. A load that varies with the
-inner ring leaves no two orbits alike, makes the largest sliding 3 to 6 times as large,
-and sets beside the multiples of the cage's frequency lines at all w_i + k w_c.
+inner ring leaves no two orbits alike, makes the largest sliding 3.2 (e = 0.2) and 5.1
+to 5.6 times (e = 0.4) as large, and sets beside the multiples of the cage's frequency
+lines at all w_i + k w_c.
 """
 
 import argparse

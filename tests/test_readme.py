@@ -45,7 +45,7 @@ def test_two_commands_and_their_scene():
     assert '-m "not slow"' in blocks[1]
 
 
-@pytest.mark.parametrize("place", ["", "bearingjax/scene"])
+@pytest.mark.parametrize("place", ["", "bearingjax/scene", "benchmarks"])
 def test_links_lead_somewhere(place):
     folder = ROOT / place
     for target in re.findall(
