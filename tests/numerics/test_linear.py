@@ -114,7 +114,7 @@ def test_smallest_pivot_by_hand():
 
 
 @pytest.mark.parametrize("rank", [0, 3, 5])
-def test_null_space_is_that_of_the_eigenvectors(rank):
+def test_null_space_matches_eigenvectors(rank):
     """Aslant of the axes; what is held softly is held."""
     turned, _ = np.linalg.qr(np.random.default_rng(rank).normal(size=(5, 5)))
     held = turned[:, :rank]
