@@ -69,7 +69,7 @@ def test_derivative_of_the_free_angle():
     ],
     ids=["deep", "clearance", "angular", "four-point", "thrust"],
 )
-def test_balls_touch_as_they_should(bearing, gap):
+def test_grooves_touch_balls_at_given_clearance(bearing, gap):
     """Unloaded and without play every groove is one ball radius from its ball."""
     gaps = [
         float(g.radius) - 0.5 * float(bearing.ball_diameter)
@@ -138,7 +138,7 @@ def test_four_point_geometry():
         ),
     ],
 )
-def test_wrong_calls_say_what_is_allowed(make, message):
+def test_ball_bearings_reject_invalid_arguments(make, message):
     with pytest.raises((ValueError, TypeError), match=message):
         make()
 
