@@ -118,7 +118,7 @@ def test_follows_the_speed():
     np.testing.assert_array_equal(*ends)
 
 
-def test_nothing_holds_it():
+def test_static_equilibrium_without_load_path():
     """A load that nothing takes up, and a bearing that bears nothing, are said."""
     rotor, _ = opposed()
     rollers = bj.rotor.Rotor(
