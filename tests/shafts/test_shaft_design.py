@@ -140,7 +140,7 @@ def test_case_without_equilibrium(problem):
         (Variable("system.wheels.0.helix_angle", 0.1, 0.3), "meshing gears have"),
     ],
 )
-def test_bounds_that_no_design_allows(problem, variable, wanted):
+def test_optimise_rejects_inadmissible_shaft_variables(problem, variable, wanted):
     with pytest.raises(ValueError, match=wanted):
         optimise(problem.element, problem.cases, [variable], SystemLife())
 

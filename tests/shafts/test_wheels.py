@@ -253,7 +253,7 @@ def fork(*outputs):
     return ShaftSystem(lines, seats, drive, wheels, couplings=outputs)
 
 
-def test_power_that_divides():
+def test_power_flow_with_two_outputs():
     """One of two outputs follows from the other."""
     with pytest.raises(ValueError, match="may leave by the shafts b, c"):
         power_flow(fork())
@@ -266,7 +266,7 @@ def test_power_that_divides():
         power_flow(fork(Coupling("x", "b"), Coupling("y", "c")))
 
 
-def test_torques_that_do_not_balance():
+def test_solve_system_rejects_unbalanced_torques():
     system = published()
     wheel = Gear("G3", "A1", 0.2785, 24, 4e-3, mesh_angle=0.0, torque=100.0)
     wrong = ShaftSystem(system.shafts, system.seats, system.drive,
