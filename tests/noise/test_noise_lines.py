@@ -129,7 +129,7 @@ def test_limits_of_the_search():
     assert only(11 * OUTER, sidebands=0) == "unnamed"
 
 
-def test_rings_that_turn():
+def test_name_lines_with_rotating_rings():
     both = bj.Speed(inner=SHAFT * TURN, outer=-7.3 * TURN)
     kinematic = kinematic_frequencies(BEARING, both, ANGLE)
     assert only(7.3, both) == "outer ring"
