@@ -125,7 +125,7 @@ class Page(HTMLParser):
             self.words.append(data)
 
 
-def test_report_that_stands_alone(run, tmp_path):
+def test_solve_report_is_self_contained_html(run, tmp_path):
     path, pictures = tmp_path / "out.html", [tmp_path / "a.png", tmp_path / "b.png"]
     change = "operating.load.Fy=-9 kN"
     arguments = ("solve", "cylindrical_rig", "--set", change, "--report", path)
@@ -180,7 +180,7 @@ def test_no_report_of_no_solution(run, tmp_path):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_report_that_cannot_be_written(run, tmp_path, monkeypatch):
+def test_solve_rejects_unwritable_report(run, tmp_path, monkeypatch):
     done = run("solve", "tapered", "--report", "out.pdf")
     assert done == (2, "", "bearingjax: out.pdf: a report ends in .html\n")
     path = tmp_path / "none" / "out.html"
@@ -302,7 +302,7 @@ def test_wrong_usage(capsys, arguments):
     assert shown.out == "" and shown.err.startswith("usage: bearingjax")
 
 
-def test_an_unknown_option_is_told_with_the_usage_of_its_command(capsys):
+def test_unknown_option_prints_usage_of_command(capsys):
     with pytest.raises(SystemExit) as stop:
         cli.main(["life", "life_spectrum", "--plto", "out.png"])
     assert stop.value.code == 2
@@ -339,7 +339,7 @@ def test_folder_to_write_to(run, tmp_path, option):
     assert str(path) in done.err and done.err.count("\n") == 1
 
 
-def test_reader_that_left(monkeypatch):
+def test_main_with_closed_pipe(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
     back, front = os.pipe()
@@ -397,14 +397,14 @@ def test_picture_without_matplotlib(run, tmp_path, monkeypatch, words):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_bad_scene_writes_nothing(run, tmp_path):
+def test_solve_bad_scene_writes_no_file(run, tmp_path):
     out = tmp_path / "out.json"
     bad = ("--set", "bearing.n_rollers=0")
     assert run("solve", "tapered", *bad, "--json", out).status == 2
     assert not out.exists()
 
 
-def test_as_a_program_of_its_own(tmp_path):
+def test_solve_in_new_process_reuses_stored_programs(tmp_path):
     """Float64, nothing on standard error, and the program kept for another load."""
     program = "import sys; from bearingjax.cli import main; sys.exit(main())"
     hidden = ("JAX_", "XLA_", "PYTHONWARNINGS")

@@ -121,7 +121,7 @@ def test_files_come_together_or_not_at_all(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["one.json", "two.png"]
 
 
-def test_a_picture_that_fails_costs_itself_alone(tmp_path):
+def test_write_outputs_with_failing_writers(tmp_path):
     error, part = ValueError("no scale"), Incomplete("without its drawing")
 
     def wrong(path):
@@ -143,7 +143,7 @@ def test_a_picture_that_fails_costs_itself_alone(tmp_path):
     assert page.read_text(encoding="utf-8") == "whole"
 
 
-def test_an_interrupted_writer_leaves_nothing(tmp_path):
+def test_write_outputs_interrupted_leaves_no_files(tmp_path):
     def stopped(path):
         path.write_text("half", encoding="utf-8")
         raise KeyboardInterrupt
@@ -153,7 +153,7 @@ def test_an_interrupted_writer_leaves_nothing(tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_what_this_run_does_not_have_is_removed(tmp_path):
+def test_write_outputs_removes_stale_files(tmp_path):
     stale = tmp_path / "old.png"
     stale.write_text("old", encoding="utf-8")
     assert write_outputs([(stale, None), (tmp_path / "none.png", None)])[0] == [stale]
@@ -178,7 +178,7 @@ def test_a_device_is_written_straight(tmp_path):
     assert not null.is_file()
 
 
-def test_numbers_that_are_not_finite_are_null(tmp_path):
+def test_write_numbers_non_finite_as_null(tmp_path):
     path = tmp_path / "x.json"
     write_numbers(path, {"a": [1.0, float("nan")], "b": {"c": float("inf"), "d": "x"}})
     numbers = json.loads(path.read_text(encoding="utf-8"))

@@ -167,7 +167,7 @@ def test_logarithmic_rollers_are_unloaded_at_their_ends(taper):
     assert load[:, :, POINTS // 2].min() > 0.0
 
 
-def test_a_tilt_that_nothing_holds_is_a_warning(taper):
+def test_solve_warns_of_free_tilt(taper):
     (text,) = taper.numbers["warnings"]
     tilt = 1e3 * np.hypot(*taper["displacement"][9:11])
     assert text.startswith(f"the ring tilts freely, {tilt:.3g} mrad where makers of ro")
@@ -175,7 +175,7 @@ def test_a_tilt_that_nothing_holds_is_a_warning(taper):
     assert straight.numbers["warnings"] == []
 
 
-def test_only_the_rib_that_is_there_is_loaded(rig, taper):
+def test_rib_load_at_existing_rib_only(rig, taper):
     assert np.all(rig["rib_load"] == 0.0)
     ribs = taper["rib_load"]
     assert np.all(ribs[:, [0, 1, 3]] == 0.0) and np.all(ribs[:, 2] > 0.0)
@@ -235,7 +235,7 @@ def motion(text):
     return shift, load
 
 
-def test_telling_compiles_nothing(solved):
+def test_report_and_dict_run_no_jax_operations(solved):
     """Each small JAX operation on the way would be compiled, for 20 ms and more."""
     turning = BallKinematics(*np.ones((2, 4)), *np.ones((3, 4, 2)))
     with jax.transfer_guard("disallow"):  # nor can JAX compute with NumPy's numbers
@@ -339,7 +339,7 @@ def test_report_of_the_taper(taper):
     assert warning == taper.numbers["warnings"][0]
 
 
-def test_report_says_what_was_solved_with_what(rig, taper):
+def test_report_states_freedoms_speeds_materials_and_laws(rig, taper):
     """Freedoms, speeds, materials, laws: without them no number can be judged."""
     text = str(report(taper.found))
     assert "\nfree: ux uy uz gx gy (the default: all that the bearing" in text

@@ -177,7 +177,7 @@ def test_pitch_diameter_follows_from_the_sphere(offset, tmp_path):
     assert float(found.element.bearing.pitch_diameter) == near(pitch)
 
 
-def test_shipped_spherical_roller_bearing_says_what_it_is():
+def test_design_sections_of_shipped_roller_scenes():
     """No solution is needed for its sizes."""
 
     def told(name):
@@ -706,7 +706,7 @@ def test_point_constants():
     assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
 
 
-def test_slices_that_press_on_each_other():
+def test_read_scene_coupled_slices():
     setting = ("contact.line_law=coupled_slices", "contact.slices=12")
     element = bj.read_scene("tapered", setting).element
     assert element.line_law == bj.contact.CoupledSlices(12)

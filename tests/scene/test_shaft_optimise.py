@@ -129,7 +129,7 @@ def test_studies(scene):
     assert "optimise" in read_optimisation(path).inputs
 
 
-def test_what_may_be_free(scene):
+def test_shaft_numbers_list_variables(scene):
     """Numbers of bearings, segments and wheels, those of a mesh with all its gears."""
     from bearingjax.scene.shaft_optimise import shaft_numbers
 
