@@ -161,7 +161,7 @@ def test_no_host_callback():
     assert "callback" in str(with_callback)
 
 
-def test_stop():
+def test_stop_blocks_gradient_of_arrays():
     tree = {"x": jnp.asarray(2.0), "n": 3, "k": jnp.asarray(4)}
     kept = stop(tree)
     assert kept["n"] == 3 and kept["k"] == 4
