@@ -71,7 +71,7 @@ def test_limits(name):
         np.testing.assert_allclose(found, published, atol=1e-9)
 
 
-def test_the_exception_of_the_standard():
+def test_limits_exception_m6_above_250_mm():
     # The rule of the neighbouring ranges gives -11 to -43.
     np.testing.assert_allclose(limits("M6", 0.3), np.array([-41, -9]) * MICRON)
 
