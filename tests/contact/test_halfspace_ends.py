@@ -24,7 +24,7 @@ STEEL = bj.Material(210e9, 0.3)
 
 
 @pytest.mark.parametrize("make", [even_grid, graded_grid])
-def test_images_are_a_longer_roller(make):
+def test_free_end_influence_matches_mirrored_pressure(make):
     """Mirrored pressure on three lengths, by the plain influence."""
     grid = make(0.01, 2e-4, 6, 8)
     edges = np.asarray(grid.edges)
@@ -125,7 +125,7 @@ def test_order_of_the_pressure_at_a_free_end():
     assert slopes[1] == pytest.approx(0.19, abs=0.03)
 
 
-def test_mutual_and_as_traced():
+def test_free_end_influence_is_symmetric_and_traceable():
     """Places change sides; tables under jit are those made by NumPy."""
     roller = RollerContact(0.015, 0.01, 0.012, free_ends=FreeEnds())
     grid = roller.grid(2e-4, 9, 12)
@@ -198,7 +198,7 @@ def test_free_ends_are_softer_and_bear_less():
     assert all(float(s.load) == pytest.approx(3000.0, rel=1e-11) for s in found)
 
 
-def test_the_share_is_the_rollers():
+def test_free_ends_weight_by_compliance_of_roller():
     rigid = bj.Material(1e30, 0.3)
 
     def weight(factor, roller):

@@ -382,7 +382,7 @@ def test_a_grid_of_another_roller(taper):
     assert solve(0.9).result == bj.Result.NON_FINITE
 
 
-def test_one_bad_case_stays_alone(taper):
+def test_solve_pressure_batch_isolates_invalid_loads(taper):
     grid = taper.grid(HALF_WIDTH, 9, 12)
     matrix, gap = influence(grid, taper.modulus), taper.gap(grid)
 

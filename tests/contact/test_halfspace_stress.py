@@ -55,7 +55,7 @@ def test_a_rectangle_is_the_integral_of_point_loads(nu):
         assert np.abs(got - wanted).max() < 1e-12
 
 
-def test_corners_at_the_surface_and_beside_themselves_are_finite():
+def test_corner_stress_is_finite_at_surface_and_edges():
     values = jnp.asarray([-1.0, 0.0, 1e-9, 1.0])
     u, v = (w.ravel() for w in jnp.meshgrid(values, values))
     for z in (0.0, 1e-12, 1.0):
@@ -114,7 +114,7 @@ def test_stress_below_sphere_matches_hertz_point():
     assert top == pytest.approx(float(shear.greatest) * pressure, rel=2e-3)
 
 
-def test_a_plane_below_carries_the_load(line):
+def test_stress_below_integrates_to_load(line):
     """The normal stress over a wide plane: the load, and no force along the roller."""
     depth = 2e-3
     nodes, weights = np.polynomial.legendre.leggauss(80)
