@@ -43,13 +43,13 @@ def plain(name):
 
 
 @pytest.mark.parametrize("name", OF_ELEMENTS)
-def test_a_bearing_is_no_element(name):
+def test_functions_reject_bearing_for_element(name):
     cure = r"it must be BearingElement\(bearing\), which holds the contact laws\.$"
     with pytest.raises(TypeError, match=f"^{name}: `element` is a Cylindri.*; {cure}"):
         plain(name)(BEARING, *OF_ELEMENTS[name])
 
 
-def test_nor_is_a_scene_or_a_name():
+def test_functions_reject_scene_or_name_for_element():
     with pytest.raises(TypeError, match=r"is a Scene; it must be its `element`\.$"):
         plain("solve_load")(bj.read_scene("tapered"), LOAD)
     with pytest.raises(TypeError, match=r"is a str; it must be a BearingElement\.$"):
@@ -106,7 +106,7 @@ def test_solve_load_rejects_invalid_prescribed_and_free(given, text):
         ("stiffness_table", {"fixed_ring": "left"}, "`fixed_ring` is 'left'"),
     ],
 )
-def test_settings_of_a_solve_are_refused_by_who_was_called(name, given, text):
+def test_invalid_solve_settings_name_called_function(name, given, text):
     with pytest.raises(ValueError, match=f"^{name}: {text}"):
         plain(name)(ELEMENT, *OF_ELEMENTS[name], **given)
 

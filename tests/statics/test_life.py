@@ -1058,7 +1058,7 @@ def test_single_precision_has_the_usual_reliability():
         ({"fatigue_load_limit": np.nan}, "`fatigue_load_limit` is nan N"),
     ],
 )
-def test_nonsense_is_refused(conditions, what, untyped):
+def test_life_conditions_reject_invalid_arguments(conditions, what, untyped):
     with pytest.raises((TypeError, ValueError), match=what):
         bj.LifeConditions(**conditions)
 

@@ -55,7 +55,7 @@ def test_condensed_stiffness_of_free_and_prescribed_directions(point):
     np.testing.assert_array_equal(four, held.ring_stiffness[:4, :4])
 
 
-def test_no_load_no_stiffness_is_said():
+def test_linearise_warns_of_missing_stiffness():
     with pytest.warns(UserWarning, match="linearise: no stiffness in .*gx"):
         bj.linearise(ELEMENT, speed=SPEED)
 

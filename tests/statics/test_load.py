@@ -76,7 +76,7 @@ def test_loads_and_displacements_mixed(tapered):
     assert np.allclose(turned, 0.5 * 0.3 * (1 - 8.2 * np.cos(np.deg2rad(11)) / 52))
 
 
-def test_everything_prescribed_is_no_solve(crowned):
+def test_solve_load_with_all_freedoms_prescribed(crowned):
     at = {"ux": 1e-5, "uy": -2e-5, "uz": 0.0, "gx": 0.0, "gy": 1e-4}
     s = bj.solve_load(crowned, None, prescribed=at, free=[])
     q = np.asarray(s.displacement)
@@ -85,7 +85,7 @@ def test_everything_prescribed_is_no_solve(crowned):
     assert int(s.stats.iterations) == 0
 
 
-def test_solution_hangs_together(tapered):
+def test_solve_load_outputs_are_consistent(tapered):
     s = bj.solve_load(
         tapered, [1000.0, 0, 6000.0, 0, 0, 0], speed=bj.Speed(inner=300.0), points=1001
     )

@@ -386,7 +386,7 @@ SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angl
         ),
     ),
 )
-def test_nonsense_is_named(call, words):
+def test_ratings_reject_invalid_arguments(call, words):
     with pytest.raises((TypeError, ValueError), match=words):
         call()
 

@@ -103,7 +103,7 @@ def test_warnings_no_stiffness_from_unloaded_touching_rollers():
     assert "in ux" in text
 
 
-def test_a_tenth_of_a_newton_holds(deep):
+def test_warnings_are_empty_for_tenth_of_a_newton(deep):
     assert bj.warnings(solved(deep, [0, -0.1, 0.1, 0, 0, 0])) == []
 
 
@@ -117,14 +117,14 @@ def test_a_tenth_of_a_newton_holds(deep):
         ),
     ],
 )
-def test_numbers_in_other_units(deep, numbers, named):
+def test_warnings_dimensions_in_wrong_units(deep, numbers, named):
     s = solved(changed(deep, **numbers), [0, -2000.0, 300, 0, 0, 0], throw=False)
     assert s.converged
     (text,) = (t for t in bj.warnings(s) if t.startswith("far outside"))
     assert named in text
 
 
-def test_contact_where_no_groove_is(deep):
+def test_warnings_contact_angle_beyond_groove(deep):
     """A moment that leans the ring on balls out of the load zone: they climb far."""
     loose = changed(deep, radial_internal_clearance=150e-6)
     s = solved(loose, [200.0, -2000.0, 0, 6.0, 0, 0], bj.Speed(inner=2000.0))
@@ -337,7 +337,7 @@ def test_message_for_displacement_far_outside_the_bearing(deep):
     assert bj.Result(int(off.result)) is bj.Result.NO_LOAD_PATH
 
 
-def test_a_start_far_away_is_no_start(deep):
+def test_solve_load_ignores_distant_start(deep):
     load = [0, -2000.0, 300, 0, 0, 0]
     near = solved(deep, load)
     far = solved(deep, load, start=[1.0, 0, 0, 0, 0, 0])
@@ -357,7 +357,7 @@ def test_step_limit_message_suggests_other_method_only(rollers):
 
 
 @pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])
-def test_peaks_do_not_depend_on_the_positions(name):
+def test_peak_pressure_is_independent_of_positions(name):
     """Rollers that tilt: the peak stands off the middle, at a kink or beyond one."""
     element = bj.BearingElement(bearings()[name])
     q = jnp.zeros(12).at[7].set(-25e-6).at[8].set(20e-6).at[9].set(6e-4)
