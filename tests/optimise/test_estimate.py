@@ -264,7 +264,7 @@ def test_estimate_report_states_numbers():
     )
 
 
-def test_an_estimate_is_not_traced(untyped):
+def test_estimate_rejects_traced_numbers(untyped):
     with pytest.raises(TypeError, match="`bore` is traced; numbers must be known"):
         jax.jit(lambda bore: bj.optimise.estimate_geometry(bore, *GOOD[1:]).misfit)(
             GOOD[0]
