@@ -234,7 +234,7 @@ def test_steady_roller_loads_match_orbit_speed(found, name):
     np.testing.assert_allclose(at[:, 1] @ np.sin(angle), 0.0, atol=1e-8 * load)
 
 
-def test_balances(found):
+def test_steady_rollers_power_and_force_balance(found):
     """Power of the drive is heat; forces of the cage add up to nothing; tractions on
     a roller add up to those of cage and oil."""
     for name in (*LOADS, "slow", "back", "both", "stiff"):

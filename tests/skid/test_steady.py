@@ -209,7 +209,7 @@ def test_ring_displacement(combined):
     np.testing.assert_allclose(np.abs(moved[[1, 2, 3]]), want, rtol=1e-3)
 
 
-def test_one_place_stands_for_all(axial, many_places):
+def test_steady_single_place_matches_many_places(axial, many_places):
     """Under an axial load the periodic orbit is even."""
     many, end = row(many_places, -1), row(axial, list(ENDS).index(120.0))
     assert int(many.result) == Result.CONVERGED
@@ -371,13 +371,13 @@ def test_without_load_drag_stops_the_balls():
     assert any("nothing drives" in text for text in skid_warnings(MODEL, end, state))
 
 
-def test_one_place_does_not_stand_for_unlike_balls(one_place):
+def test_steady_single_place_rejects_unequal_loads(one_place):
     assert int(one_place.result[-1]) == Result.GRID_MISFIT
     with pytest.raises(ValueError, match="unlike loads"):
         under(600.0, radial=200.0)
 
 
-def test_failure_is_told():
+def test_steady_without_load_path():
     load = jnp.array([0.0, 0.0, -120.0, 0.0, 0.0, 0.0])  # pulled apart
     with pytest.raises(SolveError):
         skid.steady(MODEL, load, speed=SPEED, free=FREE, places=1)
