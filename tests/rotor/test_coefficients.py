@@ -56,7 +56,7 @@ def test_symmetry_and_turned_loads():
     assert abs(along_y[:, 0, 0] / along_y[:, 1, 1] - 1).min() > 0.01
 
 
-def test_no_load_no_stiffness_is_said():
+def test_stiffness_table_warns_of_missing_stiffness():
     with pytest.warns(UserWarning, match="no stiffness in .* at 500 rad/s"):
         bj.rotor.stiffness_table(
             ELEMENT, SPEEDS, LOAD * np.array([1.0, 0, 1.0])[:, None]

@@ -237,7 +237,7 @@ def measured(numbers):
     )
 
 
-def test_derivatives_of_everything():
+def test_modes_gradients_match_differences():
     run = with_slopes(measured)
     slope, values = run(NUMBERS)
     assert np.isfinite(slope).all()

@@ -124,7 +124,7 @@ def test_the_cubic_expansion():
 
 
 @pytest.mark.parametrize("angle", (12, 40))
-def test_how_far_the_expansion_reaches(angle):
+def test_cubic_expansion_error_over_displacement(angle):
     law = LAWS[angle]
     cubic, z0 = CubicExpansion.of(law), float(law.preload_displacement)
     reach = z0 * np.tan(np.radians(angle))
