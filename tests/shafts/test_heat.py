@@ -159,7 +159,7 @@ def test_warming_up_ends_in_the_equilibrium():
     np.testing.assert_allclose(over[-1], last, atol=0.02)
 
 
-def test_seats_feel_the_warmth():
+def test_solve_heat_with_and_without_seats():
     """Without seats temperature acts through the oil alone."""
     with_seats = solve_heat(spindle(), network())
     without = solve_heat(spindle(mounting=None), network())

@@ -84,7 +84,7 @@ BACK = {"pitch_angle": np.pi / 2 - CONE}
         stage(),
     ],
 )  # fmt: skip
-def test_action_is_reaction(system):
+def test_mesh_forces_are_opposite(system):
     """The force on each gear, from its own torque and geometry, is minus that on its
     mate; and power comes out."""
     flow = power_flow(system)
