@@ -165,7 +165,7 @@ def test_operating_contact_angles():
     np.testing.assert_allclose(found.cage, want)
 
 
-def test_the_wrong_things():
+def test_kinematics_and_waviness_reject_invalid_numbers():
     bearing, speed = ROWS["305"][0], bj.Speed(1.0)
     with pytest.raises(ValueError, match="`contact_angle` is given for rollers"):
         kinematic_frequencies(next(iter(rollers().values())), speed, 0.1)

@@ -99,7 +99,7 @@ def only(place, speed=SPEED, turns=200, **options):
     return line.name
 
 
-def test_the_simplest_name_wins():
+def test_name_lines_prefers_simplest_name():
     # The cage passes 14 balls over a fixed raceway in a turn: 14 cage is BPFO.
     assert only(OUTER, harmonics=20) == "BPFO"
     # All balls over both raceways: a harmonic of the shaft, or sidebands of BPFI.

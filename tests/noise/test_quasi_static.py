@@ -233,7 +233,7 @@ def test_derivatives(held):
         assert float(slope[k]) == pytest.approx(float(difference), rel=DIFFERENCE)
 
 
-def test_wrong_things():
+def test_excitation_rejects_invalid_arguments():
     model = with_waves(EIGHT, 17)(1)
     still = dataclasses.replace(model, speed=bj.Speed(0.0))
     with pytest.raises(ValueError, match="`speed` is 0"):
