@@ -943,7 +943,7 @@ def test_scene_file_without_read_permission(run, tmp_path, monkeypatch):
     assert one_line(run("solve", path)) == "bad.toml: cannot be read: Permission denied"
 
 
-def test_tables_without_end(run, tmp_path):
+def test_scene_file_with_deep_nesting(run, tmp_path):
     text = TAPER + "x = " + 2000 * "[" + 2000 * "]"
     assert one_line(run("solve", a_file(tmp_path, text))).startswith("bad.toml: ")
 
@@ -957,7 +957,7 @@ def test_scene_of_a_contact(run, command):
     )
 
 
-def test_mark_before_the_text(tmp_path):
+def test_scene_file_with_byte_order_mark(tmp_path):
     """As editors of Windows write it."""
     path = tmp_path / "marked.toml"
     path.write_text(TAPER, encoding="utf-8-sig")
@@ -993,7 +993,7 @@ def test_solve_rejects_malformed_setting(run, setting):
     assert message.startswith(start)
 
 
-def test_lines_of_a_setting_are_not_lost():
+def test_setting_of_two_lines_is_rejected():
     """The second line went unread."""
     with pytest.raises(SceneError, match=r"points`: '7\\nmore = 8' is not a whole"):
         read_scene("cylindrical_rig", ["output.points=7\nmore = 8"])
@@ -1323,7 +1323,7 @@ def test_huge_integer(run, key, digits):
     one_line(run("solve", "cylindrical_rig", "--set", setting))
 
 
-def test_article_of_an_angle():
+def test_message_article_before_angle():
     with pytest.raises(SceneError, match="; an angle with its unit is wanted"):
         read_scene("cylindrical_rig", ["bearing.first_azimuth=90"])
 

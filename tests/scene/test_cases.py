@@ -322,7 +322,7 @@ def test_cases_against_the_scene(scene, change, message):
         (["--table", "nowhere/x.csv"], "its folder does not exist"),
     ],
 )
-def test_wrong_command(run, scene, arguments, message):
+def test_sweep_command_rejects_invalid_arguments(run, scene, arguments, message):
     ended = run("sweep", scene(GRID), *arguments)
     assert ended.status == 2 and message in ended.err
 
@@ -342,7 +342,7 @@ def test_sweep_table_rejected_without_optional_package(
     assert ended == (2, "", problem)
 
 
-def test_a_sheet_has_so_many_rows(run, scene, monkeypatch):
+def test_sweep_table_rejects_rows_above_sheet_limit(run, scene, monkeypatch):
     monkeypatch.setattr(sweep_table, "MOST_ROWS", 11)
     monkeypatch.setattr(bj.scene, "run_cases", None)
     ended = run("sweep", scene(GRID), "--table", "x.xlsx")

@@ -415,7 +415,7 @@ def test_load_bearing_suggests_similar_designations(written):
 
 
 @pytest.mark.parametrize("given", [6205, None, ["6205"], b"6205"])
-def test_a_designation_is_a_text(given, untyped):
+def test_catalogue_entry_rejects_non_text_designation(given, untyped):
     names = {bj.load_bearing: "source", bj.catalogue_entry: "designation"}
     for read, name in names.items():
         with pytest.raises(TypeError, match=f"`{name}` is .*; it must be a text such"):
@@ -588,7 +588,7 @@ def test_wrong_capacity_of_the_catalogue(run):
     assert done.err.startswith("bearingjax: --min-capacity: '10' has no unit")
 
 
-def test_a_designation_is_no_scene(run):
+def test_solve_command_rejects_designation_as_scene(run):
     done = run("solve", "6205/C3")
     assert done.status == 2
     assert done.err.endswith(

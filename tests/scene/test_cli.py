@@ -74,7 +74,7 @@ def size_of_png(path):
     return struct.unpack(">II", head[16:24])
 
 
-def test_solved(run, tmp_path):
+def test_solve_command_writes_json_plot_and_report(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run("solve", "cylindrical_rig", "--json", out, "--plot", picture)
     assert done.status == 0 and done.err == ""
@@ -172,7 +172,7 @@ def test_a_report_of_strange_names_is_still_a_page(run, tmp_path):
     assert "# </pre><script>x</script>" in "\n".join(Page(text).words)
 
 
-def test_no_report_of_no_solution(run, tmp_path):
+def test_solve_without_solution_removes_old_report(run, tmp_path):
     path = tmp_path / "out.html"
     path.write_text("of an earlier run", encoding="utf-8")
     assert run(*PULLED, "--report", path).status == 3
@@ -231,7 +231,7 @@ def test_setting_changes_the_load(run, tmp_path):
     assert np.allclose(force, [-2e3, 0, 6e3, 0, 3], rtol=0.0, atol=6e3 * SOLVER)
 
 
-def test_pulled_apart(run, tmp_path):
+def test_solve_command_no_load_path(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.PNG"
     picture.write_text("of an earlier run", encoding="utf-8")
     drawing = tmp_path / "drawing.svg"
@@ -322,7 +322,7 @@ def test_help_tells_the_exit_status(capsys):
 
 @pytest.mark.usefixtures("no_solve")
 @pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_no_folder_to_write_to(run, tmp_path, option):
+def test_solve_rejects_output_in_missing_folder(run, tmp_path, option):
     path = tmp_path / "none" / "out.png"
     done = run("solve", "tapered", option, path)
     assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
@@ -331,7 +331,7 @@ def test_no_folder_to_write_to(run, tmp_path, option):
 
 @pytest.mark.usefixtures("no_solve")
 @pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_folder_to_write_to(run, tmp_path, option):
+def test_solve_rejects_folder_as_output(run, tmp_path, option):
     path = tmp_path / "out.png"
     path.mkdir()
     done = run("solve", "tapered", option, path)

@@ -129,7 +129,7 @@ def test_force_is_the_load_and_stands_in_balance(solved):
     assert np.allclose(force[:6] + force[6:], 0.0, rtol=0.0, atol=atol)
 
 
-def test_the_fixed_ring_stands(solved):
+def test_displacement_of_fixed_ring_is_zero(solved):
     q = solved["displacement"].copy()
     q[solved.moving] = 0.0
     assert np.all(q == 0.0)
@@ -148,7 +148,7 @@ def test_azimuths_are_those_of_the_drawing(solved):
     assert np.allclose(solved["azimuth"], expected, rtol=ROUNDING, atol=0.0)
 
 
-def test_pressure_stands_where_load_does(solved):
+def test_contact_pressure_nonzero_where_loaded(solved):
     load, pressure = solved["line_load"], solved["contact_pressure"]
     assert load.min() == 0.0 and pressure.min() == 0.0
     assert np.array_equal(load > 0.0, pressure > 0.0)
@@ -197,7 +197,7 @@ def test_json_is_the_dictionary(taper, tmp_path):
     assert json.loads(text) == taper.numbers
 
 
-def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
+def test_json_without_solution_omits_numbers(pulled, tmp_path):
     assert tuple(pulled.numbers) == WORDS
     assert pulled.numbers["result"] == "no_load_path"
     assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
@@ -207,7 +207,7 @@ def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
     assert read == pulled.numbers
 
 
-def test_json_knows_no_nan(tmp_path):
+def test_json_has_null_for_nan(tmp_path):
     solved = solve("cylindrical_rig", "operating.load.Fy=1e300 N")
     assert tuple(solved.numbers) == WORDS
     assert solved.numbers["result"] == "non_finite"
@@ -369,7 +369,7 @@ def test_a_warning_of_the_drawing_is_told_with_the_solution():
     assert f"\nwarning: {text}" in str(report(solved.found))
 
 
-def test_no_load_is_no_contact():
+def test_report_without_load():
     solved = solve("cylindrical_rig", "operating.load={}")
     text = str(report(solved.found))
     assert rows(text) == []

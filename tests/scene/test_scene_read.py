@@ -86,7 +86,7 @@ def read_text(folder, text, settings=()):
     return bj.read_scene(path, settings)
 
 
-def test_shipped_scenes_are_these():
+def test_shipped_scenes_list_is_complete():
     assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *SHAFTS, *NOISE}
 
 
@@ -569,7 +569,7 @@ def test_settings_are_toml_or_bare_text():
     assert bj.read_scene("cylindrical_rig").load[1] == -10600.0
 
 
-def test_speeds_of_zero_are_no_speed():
+def test_read_scene_zero_speed_is_none():
     assert bj.read_scene("tapered", ["operating.inner_speed=0 rpm"]).speed is None
 
 
