@@ -391,12 +391,12 @@ def test_overview_shows_five_plots_and_the_results(bearing, solution):
 
 
 @pytest.mark.parametrize("which", ["unloaded", "one_roller", "non_finite"])
-def test_overview_survives(which, bearing, request):
+def test_overview_of_unloaded_and_failed_solutions(which, bearing, request):
     figure = plot.overview(bearing, request.getfixturevalue(which))
     assert figure.get_suptitle() == "CylindricalRollerBearing"
 
 
-def test_absence_of_matplotlib_is_explained(monkeypatch):
+def test_plot_without_matplotlib_installed(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
     with pytest.raises(ImportError, match=r'pip install "bearingjax\[plot\]"'):
         plot.load_displacement([1.0], [1.0])
