@@ -44,7 +44,7 @@ def imported_layers(path):
 
 
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_a_file_imports_only_its_own_layer_and_those_before(path):
+def test_module_imports_respect_layers(path):
     own = path.relative_to(PACKAGE).parts[0]
     allowed = set(LAYERS[: LAYERS.index(own) + 1]) - NOT_SEEN.get(own, set())
     foreign = set(imported_layers(path)) & set(LAYERS) - allowed

@@ -68,7 +68,7 @@ def test_parabolic_zone_has_closed_form_down_to_a_sliver(height):
     assert result[3][0] == pytest.approx(stiffness, rel=10 * rtol)
 
 
-def test_open_contact_carries_nothing():
+def test_line_moments_vanish_for_open_contact():
     energy, force, moment, second = line_moments(-1e-6, 1e-5, np.zeros_like, C, HALF)
     assert (energy, force, moment) == (0.0, 0.0, 0.0)
     assert not second.any()
@@ -176,7 +176,7 @@ def test_alike_raceways_leave_the_roller_half_way():
     assert motion[1:] == pytest.approx([-15e-6, 2.5e-4], rel=1e-12)
 
 
-def test_loose_rollers_carry_nothing():
+def test_evaluate_vanishes_for_loose_rollers():
     bearing = _surrogate()
     bearing.clearance = 60e-6
     slices = (midpoint_slices(bearing.roller_length, 20),) * 2

@@ -61,7 +61,7 @@ def test_units_of_fields_are_those_of_the_docstring(kind):
         ), name
 
 
-def test_an_entry_has_the_unit_of_its_axis():
+def test_unit_of_array_entry():
     class Example(eqx.Module):
         motion: tuple = eqx.field(metadata=unit(("m", "m", "rad")))
         ratio: float = eqx.field(metadata=unit("1"))

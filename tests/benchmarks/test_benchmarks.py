@@ -61,7 +61,7 @@ def run(script, *given):
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_script_asks_a_question_and_explains_itself(script):
+def test_benchmark_script_docstring_and_help(script):
     first = (FOLDER / script).read_text().splitlines()[0]
     assert first.startswith('"""') and "?" in first
     assert "usage" in run(script, "--help")

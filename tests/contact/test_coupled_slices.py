@@ -55,7 +55,7 @@ def at():
 
 @pytest.mark.parametrize("name", PROFILES)
 @pytest.mark.parametrize("tilt", [0.0, 3e-4])
-def test_the_load_is_that_of_the_half_space(name, tilt, at):
+def test_coupled_slices_match_halfspace(name, tilt, at):
     profile = PROFILES[name]
     roller = RollerContact(
         LENGTH,
@@ -190,7 +190,7 @@ def test_apart_touching_and_at_a_huge_load(at):
     assert np.all(np.isnan(lost.load))
 
 
-def test_a_batch_is_its_cases(at):
+def test_coupled_slices_batch_equals_single_cases(at):
     line = coupled(bj.Logarithmic())
     rng = np.random.default_rng(3)
     a = 10 ** rng.uniform(-8, -4, 64)
@@ -205,7 +205,7 @@ def test_a_batch_is_its_cases(at):
         assert np.allclose(many.load[k], one.load, rtol=0, atol=SOLVER * size)
 
 
-def test_the_bearing_has_it():
+def test_solve_load_with_coupled_slices():
     """A load is carried, line loads and their sums agree, and the raceway balances."""
     bearing = bj.CylindricalRollerBearing(
         9, 0.0725, DIAMETER, LENGTH, radial_internal_clearance=10e-6
@@ -228,7 +228,7 @@ def test_the_bearing_has_it():
     )
 
 
-def test_a_measured_profile_counts_by_its_mean_over_a_slice():
+def test_coupled_slices_average_tabulated_profile():
     """Ridges from one point of a table to the next, of which a slice has some four."""
     s = np.linspace(-0.5, 0.5, 49) * LENGTH
     ridges = 4e-6 * (np.arange(49) % 4 > 0)
@@ -241,7 +241,7 @@ def test_a_measured_profile_counts_by_its_mean_over_a_slice():
     np.testing.assert_allclose(made.drop, want, rtol=1e-3)
 
 
-def test_what_does_not_fit_is_refused():
+def test_coupled_slices_reject_invalid_arguments():
     with pytest.raises(ValueError, match="`slices` is 3; it must be a whole number"):
         bj.contact.CoupledSlices(3)
     bearing = bj.CylindricalRollerBearing(9, 0.0725, DIAMETER, LENGTH)

@@ -24,7 +24,7 @@ STEEL = bj.Material(210e9, 0.3)
 
 
 @pytest.mark.parametrize("make", [even_grid, graded_grid])
-def test_images_are_a_longer_roller(make):
+def test_free_end_influence_matches_mirrored_pressure(make):
     """Mirrored pressure on three lengths, by the plain influence."""
     grid = make(0.01, 2e-4, 6, 8)
     edges = np.asarray(grid.edges)
@@ -67,7 +67,7 @@ def test_stress_on_the_end_face_is_boussinesqs(poisson):
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
-def test_the_factor_is_that_of_a_quarter_space(poisson):
+def test_free_end_factor_matches_quarter_space(poisson):
     # The fit leaves 0.002, its rounding less.
     for row in quarter_space.run((poisson,), across=(0.0, 0.5, 2.0, 10.0, 30.0)):
         np.testing.assert_allclose(row["used"], row["found"], atol=0.003)
@@ -77,7 +77,7 @@ def test_the_factor_is_that_of_a_quarter_space(poisson):
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
-def test_far_along_the_edge_it_is_a_wedge(poisson):
+def test_quarter_space_edge_approaches_wedge(poisson):
     """Not built into the table: waves as long as it has."""
     edge = quarter_space.Edge(poisson)
     i, j = 80, 110
@@ -125,7 +125,7 @@ def test_order_of_the_pressure_at_a_free_end():
     assert slopes[1] == pytest.approx(0.19, abs=0.03)
 
 
-def test_mutual_and_as_traced():
+def test_free_end_influence_is_symmetric_and_traceable():
     """Places change sides; tables under jit are those made by NumPy."""
     roller = RollerContact(0.015, 0.01, 0.012, free_ends=FreeEnds())
     grid = roller.grid(2e-4, 9, 12)
@@ -198,7 +198,7 @@ def test_free_ends_are_softer_and_bear_less():
     assert all(float(s.load) == pytest.approx(3000.0, rel=1e-11) for s in found)
 
 
-def test_the_share_is_the_rollers():
+def test_free_ends_weight_by_compliance_of_roller():
     rigid = bj.Material(1e30, 0.3)
 
     def weight(factor, roller):
@@ -212,6 +212,6 @@ def test_the_share_is_the_rollers():
     assert weight(1.0, ceramic) == pytest.approx(part, rel=1e-9)
 
 
-def test_what_does_not_fit_is_refused():
+def test_free_ends_reject_negative_factor():
     with pytest.raises(ValueError, match="`factor` is -1; it must be above 0"):
         FreeEnds(-1.0)

@@ -48,7 +48,7 @@ def at(solution, *places):
     return np.interp(places, y[::-1], 1e-6 * np.asarray(solution.centre_pressure)[::-1])
 
 
-def test_method_004_on_its_own_grid(paper):
+def test_pressure_matches_method_004_on_equal_cells(paper):
     """AF004-5 to 7: the ends of cells of 0.43 mm, the middle, the least."""
     assert float(paper.approach) == pytest.approx(6.35510e-6, rel=1e-5)
     small, middle, large = at(paper, 0.0, 7.5, 15.0)
@@ -153,7 +153,7 @@ def test_profiled_cylinder_with_and_without_tilt():
     assert not flat.truncated and not tilted.truncated
 
 
-def test_lundberg_at_its_design_load():
+def test_lundberg_profile_at_design_load():
     material = bj.Material(elastic_modulus=206e9)
     pair = {"material": material, "raceway_material": material}
     roller = RollerContact(
@@ -292,7 +292,7 @@ def test_derivatives(given):
         assert (reverse[0, 5] == 0) == (radius == jnp.inf)
 
 
-def test_a_part_that_is_not_finite_is_no_derivative(taper):
+def test_solve_pressure_derivative_is_nan_for_nan_tangent(taper):
     """NaN among what a derivative is asked for is not taken for a solved one."""
     grid = taper.grid(HALF_WIDTH, 9, 12)
     matrix, gap = influence(grid, taper.modulus), taper.gap(grid)
@@ -304,7 +304,7 @@ def test_a_part_that_is_not_finite_is_no_derivative(taper):
     assert np.isnan(change)
 
 
-def test_what_cannot_be_carried_and_what_is_nothing(taper):
+def test_roller_contact_solve_without_load_and_invalid_loads(taper):
     grid = taper.grid(HALF_WIDTH, 9, 12)
     zero = taper.solve(0.0, grid=grid)
     assert not zero.pressure.any() and float(zero.load) == 0.0
@@ -324,7 +324,7 @@ def test_what_cannot_be_carried_and_what_is_nothing(taper):
         taper.solve(100.0, grid=grid, solver=short)
 
 
-def test_a_grid_that_does_not_hold_the_contact(taper):
+def test_roller_contact_reports_grid_misfit(taper):
     """Too narrow, the pressure piles up at its sides; too wide, it has no shape."""
 
     def peak(width, load):
@@ -382,7 +382,7 @@ def test_a_grid_of_another_roller(taper):
     assert solve(0.9).result == bj.Result.NON_FINITE
 
 
-def test_one_bad_case_stays_alone(taper):
+def test_solve_pressure_batch_isolates_invalid_loads(taper):
     grid = taper.grid(HALF_WIDTH, 9, 12)
     matrix, gap = influence(grid, taper.modulus), taper.gap(grid)
 

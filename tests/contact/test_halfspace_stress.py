@@ -55,7 +55,7 @@ def test_a_rectangle_is_the_integral_of_point_loads(nu):
         assert np.abs(got - wanted).max() < 1e-12
 
 
-def test_corners_at_the_surface_and_beside_themselves_are_finite():
+def test_corner_stress_is_finite_at_surface_and_edges():
     values = jnp.asarray([-1.0, 0.0, 1e-9, 1.0])
     u, v = (w.ravel() for w in jnp.meshgrid(values, values))
     for z in (0.0, 1e-12, 1.0):
@@ -71,7 +71,7 @@ def line():
     return roller.solve(3000.0, grid=roller.grid(1.6 * 87e-6))
 
 
-def test_below_a_long_roller_it_is_hertzs_line(line):
+def test_stress_below_long_roller_matches_hertz_line(line):
     """0.300 p0 in 0.786 b, the largest shear; von Mises 0.558 p0 in 0.704 b."""
     middle = line.grid.shape[1] // 2
     pressure = float(line.centre_pressure[middle])
@@ -94,7 +94,7 @@ def test_below_a_long_roller_it_is_hertzs_line(line):
     assert float(below.zz[0]) == pytest.approx(-pressure, rel=1e-9)
 
 
-def test_below_a_sphere_it_is_hertzs_point():
+def test_stress_below_sphere_matches_hertz_point():
     radius, load = 0.01, 100.0
     half = np.cbrt(0.75 * load * radius / MODULUS)
     grid = even_grid(2.5 * half, 1.25 * half, 65, 65)
@@ -114,7 +114,7 @@ def test_below_a_sphere_it_is_hertzs_point():
     assert top == pytest.approx(float(shear.greatest) * pressure, rel=2e-3)
 
 
-def test_a_plane_below_carries_the_load(line):
+def test_stress_below_integrates_to_load(line):
     """The normal stress over a wide plane: the load, and no force along the roller."""
     depth = 2e-3
     nodes, weights = np.polynomial.legendre.leggauss(80)
@@ -129,7 +129,7 @@ def test_a_plane_below_carries_the_load(line):
     assert abs(pull) < 1e-6 * float(line.load)
 
 
-def test_it_is_in_equilibrium(line):
+def test_stress_below_satisfies_equilibrium(line):
     """The divergence of the stress vanishes, by automatic derivatives."""
 
     def tensor(place):
@@ -141,7 +141,7 @@ def test_it_is_in_equilibrium(line):
         assert np.abs(divergence).max() < 1e-9 * np.abs(slopes).max()
 
 
-def test_half_of_a_grid_gives_what_all_of_it_does():
+def test_stress_below_symmetric_grid_matches_full_grid():
     roller = RollerContact(0.01, 0.01, 0.012, material=STEEL, raceway_material=STEEL)
     found = []
     for symmetric in (True, False):

@@ -189,14 +189,14 @@ def test_reverse_by_design(solved):
     assert np.max(np.abs(reverse - by_design[:, 0]) / size) < 1e-10
 
 
-def test_the_constant_is_a_factor(solved):
+def test_line_contact_is_proportional_to_constant(solved):
     _, _, got = solved
     value, by_design = np.asarray(got["value"]), np.asarray(got["forward"][0])
     error = np.abs(by_design[..., 0] * DESIGN[0] - value)
     assert np.all(error <= ROUNDING * size_of(value))
 
 
-def test_apart(solved):
+def test_line_contact_vanishes_when_apart(solved):
     """No contact: zero, and so is every derivative."""
     _, _, got = solved
     for leaf in jax.tree.leaves(got):

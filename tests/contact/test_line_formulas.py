@@ -44,7 +44,7 @@ def test_half_width_of_the_table():
     np.testing.assert_allclose(widths, printed, rtol=1e-5)
 
 
-def test_how_far_they_are_apart():
+def test_line_formulas_spread():
     spread = []
     for bodies in (INNER, OUTER):
         found = np.stack([f(LOADS, bodies) for f in LINE_FORMULAS.values()])

@@ -171,7 +171,7 @@ class Power(AbstractSliceLaw):
 
 
 @pytest.mark.slow
-def test_a_law_of_ones_own_is_the_built_in_one_of_the_same_power():
+def test_custom_line_law_matches_built_in_of_equal_power():
     """Of an element: energy, force and stiffness, and derivatives by the law."""
     bearing, q = bearings()["cylindrical, crowned ends"], jnp.asarray(motion())
 

@@ -25,7 +25,7 @@ def four_point(**change):
     return bj.FourPointBallBearing(14, 0.0775, 0.014288, **(values | change))
 
 
-def test_clearance_and_contact_angle_are_one():
+def test_clearance_and_contact_angle_are_equivalent():
     for angle in (0.0, 1e-3, 0.13, 1.2):
         one = deep(contact_angle=angle)
         two = deep(radial_internal_clearance=one.clearance)
@@ -69,7 +69,7 @@ def test_derivative_of_the_free_angle():
     ],
     ids=["deep", "clearance", "angular", "four-point", "thrust"],
 )
-def test_balls_touch_as_they_should(bearing, gap):
+def test_grooves_touch_balls_at_given_clearance(bearing, gap):
     """Unloaded and without play every groove is one ball radius from its ball."""
     gaps = [
         float(g.radius) - 0.5 * float(bearing.ball_diameter)
@@ -138,7 +138,7 @@ def test_four_point_geometry():
         ),
     ],
 )
-def test_wrong_calls_say_what_is_allowed(make, message):
+def test_ball_bearings_reject_invalid_arguments(make, message):
     with pytest.raises((ValueError, TypeError), match=message):
         make()
 
@@ -157,7 +157,7 @@ BAD_CHOICES = {
 
 
 @pytest.mark.parametrize("choice, message", BAD_CHOICES.values(), ids=BAD_CHOICES)
-def test_a_choice_of_another_kind_is_no_other_choice(untyped, choice, message):
+def test_bearing_element_rejects_choices_of_wrong_type(untyped, choice, message):
     """Finite, or its name, for Finite() was taken for linearised kinematics."""
     with pytest.raises(TypeError, match="^BearingElement: " + message):
         bj.BearingElement(deep(), **choice)
@@ -196,7 +196,7 @@ def test_sets():
     assert rows_of(angular())[0].bearing.n_balls == 12  # type: ignore[union-attr]
 
 
-def test_everything_real_is_traced():
+def test_ball_bearing_leaves_are_float64_arrays():
     leaves = jax.tree.leaves(four_point(outer_shoulder=2e-3))
     assert all(isinstance(leaf, jax.Array) for leaf in leaves)
     assert all(leaf.dtype == jnp.float64 for leaf in leaves)

@@ -177,7 +177,7 @@ def test_an_aluminium_housing_lets_go_when_warm():
     assert left < 0 and found.housing_pressure == 0
 
 
-def test_a_ring_that_rotates():
+def test_fit_state_growth_of_rotating_ring():
     speed = 3000.0
     loose = mounting(shaft_interference=-1e-4)
     found = state(loose, FitConditions(speed=speed))
@@ -404,7 +404,7 @@ def test_the_drive_up_of_a_reduction_is_the_inverse():
     np.testing.assert_allclose(-slope * back, 1.0, rtol=ROUNDING)
 
 
-def test_bores_that_cannot_be_driven_up():
+def test_drive_up_rejects_invalid_bores():
     with pytest.raises(
         ValueError, match="`drive_up` is 0.0001 m; it must be 0 m: a cy"
     ):
@@ -429,7 +429,7 @@ def test_bores_that_cannot_be_driven_up():
         needed_drive_up(driven(0.0), -1e-6)
 
 
-def test_what_is_not_allowed(untyped):
+def test_fits_reject_invalid_arguments(untyped):
     with pytest.raises(
         ValueError, match="Mounting: `inner_raceway`.*above `bore`, 0.025"
     ):

@@ -71,12 +71,12 @@ def test_limits(name):
         np.testing.assert_allclose(found, published, atol=1e-9)
 
 
-def test_the_exception_of_the_standard():
+def test_limits_exception_m6_above_250_mm():
     # The rule of the neighbouring ranges gives -11 to -43.
     np.testing.assert_allclose(limits("M6", 0.3), np.array([-41, -9]) * MICRON)
 
 
-def test_every_class_is_as_wide_as_its_grade():
+def test_limits_width_equals_standard_tolerance():
     for name in LIMIT_CLASSES:
         grade = int(name.lstrip(ascii_letters))
         for diameter in (0.003, 0.01, 0.07, 0.5):
@@ -85,12 +85,12 @@ def test_every_class_is_as_wide_as_its_grade():
             assert np.isclose(found.upper - found.lower, width, rtol=1e-12)
 
 
-def test_a_range_includes_its_end():
+def test_limits_diameter_range_includes_upper_end():
     found = [limits("h5", diameter).lower / MICRON for diameter in (0.03, 0.0301)]
     np.testing.assert_allclose(found, [-9, -11])
 
 
-def test_what_is_not_known():
+def test_limits_reject_unknown_classes_and_grades():
     with pytest.raises(ValueError, match="`name` is 'q6'.*k4 to k7.*JS1 to JS11"):
         limits("q6", 0.05)
     for name in ("k9", "k", "K12", "5k", "h6 "):
@@ -126,7 +126,7 @@ def test_limits_of_bearings(find, diameters, lower):
         assert np.isclose(found.lower, published * MICRON, atol=0) and found.upper == 0
 
 
-def test_bearings_that_are_not_known():
+def test_bearing_limits_reject_sizes_out_of_range():
     with pytest.raises(ValueError, match="`outside_diameter` is 0.005 m.*above 0.006"):
         outside_limits(0.005)
     with pytest.raises(ValueError, match="`bore` is 0.51 m"):
@@ -192,7 +192,7 @@ def test_classes_follow_each_other(find, least):
         assert (np.diff(rows, axis=0) > 0).all() and (np.diff(rows) > 0).all()
 
 
-def test_clearances_that_are_not_known():
+def test_clearance_classes_reject_unknown_names_and_bores():
     with pytest.raises(ValueError, match="`name` is 'C6'.*C2, CN, C3, C4, C5"):
         ball_clearance("C6", 0.025)
     with pytest.raises(ValueError, match="`name` is 'C4'.*C2, CN, C3 for a bore of"):

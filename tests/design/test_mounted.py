@@ -87,7 +87,7 @@ def test_raceways(bearing, inner, outer):
 
 
 @pytest.mark.parametrize("bearing", [DEEP, FOUR, CYLINDER, TAPER])
-def test_the_clearance_that_is_left(bearing):
+def test_mounted_clearance_matches_fit_state(bearing):
     state = fit_state(sized(SEATS, bearing), WARM)
     found = bj.design.mounted(bearing, SEATS, WARM)
     assert type(found) is type(bearing)
@@ -98,7 +98,7 @@ def test_the_clearance_that_is_left(bearing):
     assert own == near(float(state.radial_clearance) * tilt)
 
 
-def test_a_deep_groove_bearing_by_its_angle():
+def test_mounted_deep_groove_bearing_given_by_contact_angle():
     angle = np.arccos(1 - 12.5 * MICRON / (2 * A))
     by_angle = bj.DeepGrooveBallBearing(**BALLS, contact_angle=angle)
     found = bj.design.mounted(by_angle, SEATS).radial_internal_clearance
@@ -137,7 +137,7 @@ def test_angular_contact_meets_at_a_smaller_angle():
 ALUMINIUM = WarmMaterial(Material(70e9, 0.33, 2700.0), 23e-6)
 
 
-def test_what_grows_between_the_rows():
+def test_row_shifts_of_spaced_rows():
     """Middles 0.1 m apart: rings on 15 mm of it, on the rest shaft and housing."""
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.1)
     seats = replace(SEATS, shaft_interference=-1 * MICRON, housing=ALUMINIUM)
@@ -188,7 +188,7 @@ def test_a_turning_ring_is_shorter():
     assert float(found.inner_ring) == near(-nu / 206e9 * mean)
 
 
-def test_uniform_warmth_of_one_steel_presses_nothing():
+def test_row_shifts_vanish_at_uniform_temperature():
     pair = bj.BearingSet.face_to_face(ANGULAR, 0.1)
     warm = bj.FitConditions(*5 * [60.0])
     alike = replace(SEATS, shaft_interference=0.0)
@@ -221,7 +221,7 @@ def pushed(z):
     return np.eye(12)[8] * z
 
 
-def test_angular_contact_against_raceways_that_are_moved():
+def test_angular_contact_clearance_matches_raceway_deviation():
     # The inner groove is farther from the axis by 3 µm, the load 60 µm.
     growth, z = 6 * MICRON, 60 * MICRON
     deviation = np.zeros((7, 2, 3))
@@ -283,7 +283,7 @@ def test_warm_elements_take_clearance_along_the_contacts(bearing, angle):
     assert loss == pytest.approx(2 * float(size) * 120e-6 / np.cos(angle), rel=0.01)
 
 
-def test_tapers_against_raceways_that_are_moved():
+def test_tapered_clearance_matches_raceway_deviation():
     growth, z = 12 * MICRON, 120 * MICRON
     deviation = np.zeros((7, 2, 3))
     deviation[:, 0, 1] = -0.5 * growth
@@ -306,7 +306,7 @@ def test_slopes_by_interference_and_temperature():
     check_slopes(angle, sign=-1)  # all of them take clearance
 
 
-def test_slopes_of_what_grows_between_rows():
+def test_row_shifts_gradients():
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.02)
 
     def shift(x):
@@ -368,7 +368,7 @@ def test_stress_of_the_inner_ring():
     np.testing.assert_allclose(found.ring_stress, stress, rtol=1e-9)
 
 
-def test_an_outer_ring_that_rotates():
+def test_fit_state_growth_of_rotating_outer_ring():
     loose = jax.device_get(replace(sized(SEATS, DEEP), housing_interference=-1e-4))
     still, fast = (
         fit_state(loose, jax.device_get(bj.FitConditions(outer_speed=speed)))
@@ -383,7 +383,7 @@ def test_an_outer_ring_that_rotates():
     np.testing.assert_allclose(grown, fast.outer_raceway_growth, rtol=1e-9)
 
 
-def test_what_is_not_allowed():
+def test_mounted_rejects_invalid_arguments():
     thrust = bj.ThrustBallBearing(**BALLS)
     with pytest.raises(TypeError, match="`bearing` is a ThrustBallBearing"):
         bj.design.mounted(thrust, SEATS)

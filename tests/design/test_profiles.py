@@ -231,7 +231,7 @@ def test_crown_without_cancellation():
     np.testing.assert_allclose(got, 5e-15, rtol=ROUNDING)
 
 
-def test_table_is_smooth_and_meets_its_points():
+def test_tabulated_profile_is_smooth_through_points():
     """Through every point, and with one slope from one cubic to the next."""
     rng = np.random.default_rng(0)
     s = np.sort(rng.uniform(-0.9, 0.9, 9)) * L / 2
@@ -251,7 +251,7 @@ def test_table_is_smooth_and_meets_its_points():
         assert np.max(np.abs(a - b)) < 1e-4 * np.max(np.abs(a))
 
 
-def test_table_beside_its_interval_is_the_same():
+def test_tabulated_profile_around_matches_drop():
     """`around` one position per interval, many at once; and past the ends."""
     points = np.array([-0.6, -0.2, 0.1, 0.55]) * L
     profile = Tabulated(points, 1e-6 * np.array([3.0, 0.0, 1.0, 2.0]))
@@ -262,7 +262,7 @@ def test_table_beside_its_interval_is_the_same():
     np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-18)
 
 
-def test_table_is_linear_in_its_drops():
+def test_tabulated_profile_is_linear_in_drops():
     """The derivative by the drops is a partition of unity."""
     s = jnp.linspace(-L / 2, L / 2, 41)
     table = jnp.asarray(TABLE)
@@ -277,7 +277,7 @@ def test_table_is_linear_in_its_drops():
     )
 
 
-def test_fujiwara_kawase_ends_at_its_drop_however_sharp():
+def test_fujiwara_kawase_end_drop_at_sharp_ends():
     """Beyond 37 A the argument of the logarithm is lost against 1 unless it is built
     up from the end; beyond some 350 A the drop is limited."""
     unit = 1e3 / (np.pi * L * 206e9 / (2 * (1 - 0.3**2)))

@@ -95,12 +95,12 @@ def test_better_classes_run_truer():
         assert (np.diff(np.array(rows), axis=0) < 0).all()
 
 
-def test_a_range_includes_its_end():
+def test_running_accuracy_bore_range_includes_upper_end():
     inner = [running_accuracy("P6", bore, 0.1).inner for bore in (0.03, 0.0301)]
     np.testing.assert_allclose(inner, [8e-6, 10e-6])
 
 
-def test_what_is_not_known():
+def test_tolerances_reject_unknown_grades_and_classes():
     with pytest.raises(ValueError, match="`name` is 'G7'.*G3, G5, G10"):
         ball_grade("G7")
     with pytest.raises(ValueError, match="`name` is 'V'.*I, II, IIA"):

@@ -105,7 +105,7 @@ def test_fact_1_orbit_in_pure_rolling():
     assert float(k.orbit) == pytest.approx(82.0994, rel=1e-6)
 
 
-def test_rings_that_turn_alike_roll_nothing():
+def test_spin_to_roll_is_zero_at_equal_ring_speeds():
     """Then spin over rolling was 0/0, or round-off over round-off."""
     outer, inner = (jnp.asarray([np.sin(a), np.cos(a)]) for a in (0.38, 0.47))
     one, ratio = jnp.asarray(1.0), jnp.asarray(0.238339)

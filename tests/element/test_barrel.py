@@ -214,7 +214,7 @@ def test_mass_of_a_barrel_by_summing_discs():
 
 
 @pytest.mark.parametrize("kinematics", KINEMATICS)
-def test_tilt_about_the_sphere_costs_nothing(kinematics):
+def test_spherical_roller_tilt_about_sphere_keeps_energy(kinematics):
     """An outer ring turned about the centre of its sphere, by up to 2.5 degrees."""
     aligning = element(bj.BearingSet.self_aligning(spherical(9)), kinematics)
     q = jnp.zeros(12).at[6:9].set(jnp.asarray([60e-6, 10e-6, 40e-6]))
@@ -266,7 +266,7 @@ def test_toroidal_bearing_loses_clearance_as_two_arcs():
 
 
 @pytest.mark.parametrize("travel, tilt", [(6.5e-3, 0.0), (0.0, 5e-3), (3e-3, 2e-3)])
-def test_clearance_that_travel_and_tilt_take(travel, tilt):
+def test_toroidal_lost_clearance_by_travel_and_tilt(travel, tilt):
     """Two opposite rollers, in a clearance a little above and below it."""
     pair = toroidal(2, first_azimuth=0.0, radial_internal_clearance=0.0)
     # A taller bearing, so that a tilt takes clearance: R_I > A0.
@@ -347,7 +347,7 @@ def test_sets_are_made_under_vmap():
     assert spherical().end_drop() == pytest.approx(drop, rel=1e-12)
 
 
-def test_toroidal_bearing_needs_its_outer_radius():
+def test_toroidal_bearing_requires_outer_raceway_radius():
     with pytest.raises(ValueError, match="`outer_raceway_radius` is None"):
         toroidal(outer_raceway_radius=None)
 

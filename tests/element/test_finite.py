@@ -115,7 +115,7 @@ def result_of(element, push):
     return bj.Result(int(element.evaluate(jnp.asarray(q)).result))
 
 
-def test_saddle_has_its_code():
+def test_finite_kinematics_reports_saddle():
     """Tilting an upright roller shortens it: on one slice it never stands."""
     assert result_of(sharp(21, bj.element.Finite()), 20e-6) is bj.Result.SADDLE
     assert result_of(sharp(21, bj.element.Linearised()), 20e-6) is bj.Result.CONVERGED

@@ -47,7 +47,7 @@ def turned():
 
 
 @pytest.mark.parametrize("name", ["rollers", "unlike rows"])
-def test_at_a_time_it_is_the_element_turned_as_far(name):
+def test_orbiting_force_matches_rotated_element(name):
     element = ELEMENTS[name]
     function, parameters = element.as_function(SPEED)
     assert function is bj.element.orbiting_force
@@ -148,7 +148,7 @@ def test_a_number_of_damping_stands_between_the_rings():
     np.testing.assert_allclose(damped - still, expected, atol=1e-9)
 
 
-def test_rings_at_rest_carry_nothing_round():
+def test_orbiting_force_is_constant_for_rings_at_rest():
     function, parameters = ELEMENTS["rollers"].as_function()
     then, now = (function(pressed(), VELOCITY, t, parameters) for t in (0.0, 3.0))
     np.testing.assert_array_equal(then, now)

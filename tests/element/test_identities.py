@@ -120,7 +120,7 @@ def rigid_modes():
     return modes
 
 
-def test_everything_at_a_loaded_point(case):
+def test_evaluate_matches_autodiff_at_loaded_point(case):
     element, speed = case
     q = jnp.asarray(motion())
     e, inertia = _evaluate(element, q, speed)
@@ -220,7 +220,7 @@ def test_nan_in_failure_out(case):
     assert not np.all(np.isfinite(e.force))
 
 
-def test_zero_when_apart():
+def test_evaluate_vanishes_when_apart():
     element = mapped(taper())
     apart = np.zeros(12)
     apart[8] = -1e-3

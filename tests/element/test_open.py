@@ -76,7 +76,7 @@ def in_a_batch(one, q):
 
 
 @pytest.mark.parametrize("design", DESIGNS)
-def test_open_rollers_carry_nothing(design):
+def test_open_rollers_carry_no_load(design):
     build, told, untold = DESIGNS[design]
     element = bj.BearingElement(build(told))
     q = ring_motions()
@@ -101,7 +101,7 @@ def test_open_rollers_carry_nothing(design):
             np.testing.assert_allclose(mine, theirs, rtol=1e-9, atol=1e-9 * scale)
 
 
-def test_a_profile_that_may_stand_out_is_not_told():
+def test_is_open_is_none_for_protruding_tabulated_profile():
     # Between the points the parabolas swing out to 0.6 um above the generator.
     s = jnp.array([-5.0, -1.5, 1.5, 5.0]) * 1e-3
     profile = bj.Tabulated(s, jnp.array([15e-6, 0.0, 0.0, 15e-6]))
@@ -112,7 +112,7 @@ def test_a_profile_that_may_stand_out_is_not_told():
     assert roller.hints.is_open(RingMotion(zero, zero)) is None
 
 
-def test_what_is_not_a_number_is_not_open():
+def test_is_open_is_false_for_nan_motion():
     model = bj.BearingElement(cylindrical(roller_profile=bj.CircularCrown(1.0))).model()
     nothing = jnp.full(3, jnp.nan)
     hints = model.rows[0].element.hints
@@ -144,7 +144,7 @@ class ToldBulged(Bulged):
     protruding = True
 
 
-def test_a_profile_that_stands_out_in_the_middle_says_so():
+def test_profile_protruding_in_middle_must_be_declared():
     """Else rollers that it loads are taken for open."""
     with pytest.raises(ValueError, match="crown_drop` is -2.5e-06 m; .*protruding"):
         cylindrical(roller_profile=Bulged())

@@ -43,7 +43,7 @@ def none_of(bearing):
     ],
     ids=["balls", "balls, finite", "rollers", "barrels, finite"],
 )
-def test_a_wave_of_order_one_is_a_ring_that_has_moved(element):
+def test_raceway_waviness_of_order_one_equals_ring_shift(element):
     bearing = element.bearing
     at = np.asarray(azimuths(bearing))
     x, y, z = 4e-6, -2e-6, 3e-6

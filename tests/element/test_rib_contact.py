@@ -19,7 +19,7 @@ def section(bearing):
 
 @pytest.mark.parametrize("name", bj.design.RIB_NAMES)
 @pytest.mark.parametrize("kind", ["cylinder", "taper"])
-def test_sphere_touches_the_rib_at_its_height(kind, name):
+def test_rib_contact_point_of_sphere_end(kind, name):
     rib = bj.Rib(0.09, 1.2e-3, 5e-6)
     ribs = bj.Ribs(**{name: rib})
     bearing = (

@@ -34,7 +34,7 @@ def test_rollers_all_larger_are_rollers_of_less_clearance():
     assert abs(same - want.force).max() > 0.05 * abs(want.force).max()
 
 
-def test_a_larger_roller_carries_more_and_its_neighbours_less():
+def test_larger_roller_carries_more_load_than_neighbours():
     deviation = np.zeros(N)
     deviation[1] = 3e-6
     unlike = with_deviation(roller_deviation=deviation)
@@ -56,7 +56,7 @@ def test_a_larger_roller_carries_more_and_its_neighbours_less():
     assert slope == pytest.approx(difference, rel=DIFFERENCE)
 
 
-def test_uneven_spacing_is_every_element_turned_by_itself():
+def test_azimuth_deviation_moves_single_rollers():
     """All turned alike is another first azimuth; one alone changes its own load."""
     turn = 0.07
     all_turned = with_deviation(azimuth_deviation=np.full(N, turn))

@@ -37,7 +37,7 @@ def tilted(angle, direction=0.3):
     return jnp.zeros(12).at[9:11].set(angle * way)
 
 
-def test_a_tilt_of_any_size_costs_nothing(aligning):
+def test_self_aligning_tilt_keeps_energy(aligning):
     """The balls go with the inner ring, over the sphere."""
     straight = evaluate(aligning, tilted(0.0))[0]
     assert float(straight.energy) > 1e-4  # preloaded

@@ -106,7 +106,7 @@ def test_films_take_the_isoviscous_coefficient_unless_one_is_given(oil):
 
 
 @pytest.mark.parametrize("law", [Barus, Roelands])
-def test_a_viscosity_that_does_not_grow_has_no_coefficient(law):
+def test_pressure_coefficient_of_constant_viscosity_is_zero(law):
     """Nor NaN in its derivative: α* is the slope, of Barus' law α, and near no growth
     that of any law."""
 

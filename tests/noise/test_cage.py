@@ -32,7 +32,7 @@ def model(cage=CAGE, speed=0.0, bearing=UNLIKE):
     return NoiseModel(element, 0.3, load, bj.Speed(speed), cage=cage, tilts=False)
 
 
-def test_what_one_part_gains_another_loses():
+def test_cage_forces_are_balanced_and_symmetric():
     rng = np.random.default_rng(1)
     azimuth = 2 * np.pi / 7 * np.arange(7)
     scale = np.array([*[1.5e-4] * 9, 1.5e-4 / RADIUS, 1e-5, 1e-5])
@@ -62,7 +62,7 @@ def test_what_one_part_gains_another_loses():
     assert 0.3 * bound < fastest <= bound
 
 
-def test_a_centred_cage_feels_nothing():
+def test_cage_forces_vanish_for_centred_cage():
     still = jnp.zeros(3)
     places = still, jnp.zeros(7), still[:2], jnp.asarray(RADIUS), jnp.arange(7.0)
     found = cage_forces(*cage_loads(CAGE, *places), *places)
@@ -91,7 +91,7 @@ def moved():
     return run
 
 
-def test_every_ball_comes_to_roll_at_its_own_speed(moved):
+def test_balls_settle_at_individual_orbit_speeds(moved):
     """From its own diameter and contact angle, as the load solve has it."""
     turning = model(speed=20.0)
     found, _ = moved(turning, 0.0)
@@ -110,7 +110,7 @@ def test_every_ball_comes_to_roll_at_its_own_speed(moved):
     np.testing.assert_allclose(found.end[1][-10:-3], expected, atol=1e-2 * size)
 
 
-def test_a_cage_that_hits_the_balls_keeps_the_momentum(moved):
+def test_cage_impact_conserves_momentum(moved):
     """Without friction; the contacts' damping takes energy, never momentum."""
     sliding = model(dataclasses.replace(CAGE, friction=0.0))
     found, masses = moved(sliding, 30.0)

@@ -46,7 +46,7 @@ def test_apart_and_rising():
     assert np.isnan(force(CONTACT, jnp.array([np.nan]))[0])
 
 
-def test_finite_with_its_slopes_for_every_approach():
+def test_contact_force_and_derivatives_are_finite():
     most = np.finfo(float)
     at = [-most.max, -most.tiny, 0.0, most.tiny, 1e-300, 1e-100, 1e-12, 5e-6, 1.0]
     at = jnp.array([*at, 1e100, most.max])

@@ -62,7 +62,7 @@ def test_contacts_leave_the_mean_of_waves(pressure, radius):
     assert np.all(Surface(*surface[:2]).bridged(jnp.asarray(order)) == 1.0)
 
 
-def test_a_bearing_bridges_its_waves_by_the_width_of_its_contacts():
+def test_bridged_model_attenuates_short_waves():
     """Errors that the balls meet are those of waves made smaller by hand."""
     row = balls(7)
     order = np.array([3, 400])
@@ -95,5 +95,5 @@ def test_a_bearing_bridges_its_waves_by_the_width_of_its_contacts():
     assert "vibration.bridging" in told and not list(_short_waves(given, loads, None))
 
 
-def test_nothing_carries():
+def test_contact_half_width_without_load():
     assert contact_half_width(balls(7), np.zeros((7, 2))) == 0.0

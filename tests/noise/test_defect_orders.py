@@ -165,7 +165,7 @@ def test_operating_contact_angles():
     np.testing.assert_allclose(found.cage, want)
 
 
-def test_the_wrong_things():
+def test_kinematics_and_waviness_reject_invalid_numbers():
     bearing, speed = ROWS["305"][0], bj.Speed(1.0)
     with pytest.raises(ValueError, match="`contact_angle` is given for rollers"):
         kinematic_frequencies(next(iter(rollers().values())), speed, 0.1)
@@ -177,7 +177,7 @@ def test_the_wrong_things():
         waviness_force(bearing, speed, "inner", 0)
 
 
-def test_what_is_no_bearing_or_no_speed(untyped):
+def test_kinematic_frequencies_reject_invalid_arguments(untyped):
     pair = bj.BearingSet.back_to_back(ROWS["Rexnord ZA-2115"][0], 1.0, 0.0)
     with pytest.raises(TypeError, match="BearingSet.*rows"):
         kinematic_frequencies(pair, bj.Speed(25.0))  # type: ignore
@@ -265,7 +265,7 @@ def test_waves_summed_over_the_elements(part, z, n):
     np.testing.assert_allclose(found, turned, atol=1e-10)
 
 
-def test_a_ball_between_its_raceways():
+def test_ball_waviness_orders_match_squeeze_of_both_contacts():
     """Height of a wave at both contacts, pressed together: the lines of even orders."""
     speed = bj.Speed(inner=3.0 * TURN, outer=-1.3 * TURN)
     kinematic = kinematic_frequencies(EIGHT, speed)

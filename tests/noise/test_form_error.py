@@ -14,7 +14,7 @@ SURFACE = Surface(jnp.asarray(0.03), jnp.asarray(0.005))
 ANGLES = jnp.linspace(-7.0, 9.0, 301)
 
 
-def test_a_measured_profile_is_the_waves_through_its_points():
+def test_measured_harmonics_pass_through_points():
     points = np.random.default_rng(0).normal(size=33) * 1e-6
     points -= points.mean()
     shape = Harmonics.measured(points)
@@ -31,7 +31,7 @@ def test_a_flat_profile_has_finite_derivatives():
     assert np.all(np.isfinite(slope))
 
 
-def test_a_spall_is_the_arc_of_the_element_around_its_edges():
+def test_spall_height_follows_element_arc():
     length, deep = 2e-3, Spall(1.0, 2e-3, 1.0)
     arc = jnp.asarray([-0.5, -0.4, 0.0, 0.3, 0.5]) * length / 0.03
     inside = np.array([0.0, 0.1, 0.5, 0.2, 0.0]) * length

@@ -47,7 +47,7 @@ def test_waves_shake_where_their_forces_are():
     assert element == ("waves of the rolling elements, order 2",)
 
 
-def test_what_makes_nothing_is_no_cause():
+def test_line_causes_exclude_balanced_and_absent_waves():
     # Order 10 of 7 balls balances, order 14 has no size, odd waves of balls cancel.
     assert causes(10 * CAGE + 1.0, 2 * BPFI + 0.1, 3 * BSF + 0.1, 17.0) == ((),) * 4
 

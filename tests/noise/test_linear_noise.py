@@ -99,7 +99,7 @@ def test_the_true_bearing_comes_near_as_the_waves_get_small(answer):
     assert left[0] / left[1] == pytest.approx(2.0, rel=0.05)
 
 
-def test_slowly_it_is_the_stiffness_of_the_bearing():
+def test_transfer_at_low_frequency_matches_static_compliance():
     """Without sensor, far below the modes: receptance = condensed stiffness⁻¹."""
     alone = dataclasses.replace(model(), sensor=None, retardation=0.0)
     found = transfer(alone, np.array([1e-3]))

@@ -104,7 +104,7 @@ def test_runout_of_a_class():
     assert 0.003 < beyond < 0.03
 
 
-def test_what_is_drawn_follows_the_scale_of_its_source_alone():
+def test_draw_scales_each_source_alone():
     one = draw(SMALL, BEARING, KEY)
     other = draw(SMALL.scaled({"diameter": 0.0, "outer_axial": 3.0}), BEARING, KEY)
     assert np.all(other.diameter == 0.0)
@@ -195,7 +195,7 @@ def test_products_of_sources_are_told():
     assert share_warnings(alone) == []
 
 
-def test_what_makes_no_sense_is_refused():
+def test_monte_carlo_rejects_invalid_tolerances():
     with pytest.raises(ValueError, match="room between two neighbours"):
         monte_carlo(MODEL, Tolerances(spacing=1.0), 2, KEY, **HOW)
     with pytest.raises(ValueError, match="no source 'elements'"):

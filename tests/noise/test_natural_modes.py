@@ -76,7 +76,7 @@ def test_a_four_point_bearing_has_higher_modes_than_the_paper(radial):
         assert own == pytest.approx(1.153 * paper, rel=5e-3)
 
 
-def test_a_ring_tilts_unless_it_is_held():
+def test_noise_model_tilting_inertia_of_ring():
     """As a ring of square section around the circle of contact, of the mass given."""
     free = dataclasses.replace(RADIAL, tilts=True)
     radius = 0.5 * (0.0775 + 0.014288)
@@ -95,7 +95,7 @@ def test_a_ring_tilts_unless_it_is_held():
         dataclasses.replace(RADIAL, tilting_inertia=inertia)
 
 
-def test_balls_move_with_the_ring_in_its_modes_and_alone_above(radial):
+def test_ring_share_of_ring_and_ball_modes(radial):
     """AF003-3 and AF003-4."""
     along = int(np.argmin(np.abs(radial.frequency - 2695.0)))
     assert np.all(radial.frequency[along + 1 :] > 10_000.0)
@@ -132,7 +132,7 @@ def test_equations_of_the_paper(radial):
         assert found == pytest.approx(np.sqrt(square[0]) / 2 / np.pi, rel=SOLVER)
 
 
-def test_balls_that_carry_nothing_ride_on_the_outer_ring_at_speed(radial):
+def test_natural_modes_of_unloaded_balls_at_speed(radial):
     """Their mass then lowers the ring's frequencies, which no published one shows."""
     turning = dataclasses.replace(RADIAL, speed=bj.Speed(inner=1500 * np.pi / 30))
     found = natural_modes(turning)
@@ -144,7 +144,7 @@ def test_balls_that_carry_nothing_ride_on_the_outer_ring_at_speed(radial):
     assert np.min(found.frequency) > 100.0
 
 
-def test_modes_that_change_as_equal_balls_pass_are_told():
+def test_wandering_modes_warning_under_radial_load():
     """Eight of them, on the way of one to the place of the next."""
     eight = dataclasses.replace(BEARING, n_balls=8, radial_internal_clearance=20e-6)
     turning = bj.Speed(inner=10.0)

@@ -46,7 +46,7 @@ def test_bands_of_the_standard():
     np.testing.assert_allclose(thirds.upper[2], octaves.upper[3], rtol=ROUNDING)
 
 
-def test_bands_that_are_none():
+def test_octave_bands_reject_invalid_limits():
     with pytest.raises(ValueError, match="`lowest` is 5 Hz.*2, 4 or 8 Hz"):
         octave_bands(5.0)
     with pytest.raises(ValueError, match="`highest` is 9000 Hz.*8000 or"):
@@ -101,7 +101,7 @@ def test_parseval_over_bands(window):
         np.testing.assert_allclose(total, y.std(axis=0))
 
 
-def test_noise_fills_a_band_by_its_width():
+def test_band_rms_of_white_noise():
     """With a window too: lines count by the power of noise, not by their size."""
     y = np.random.default_rng(5).normal(size=(65536,))
     bands = octave_bands(250.0, 8000.0)
@@ -130,7 +130,7 @@ def test_bands_beyond_the_record_are_named():
 
 
 @pytest.mark.parametrize("place", [25.0, 24.1, 20.3, 22.5])
-def test_what_a_window_spreads_over_an_edge(place):
+def test_leakage_over_band_edge(place):
     """That of a lone line is what the lines beyond the edge have, by their sum."""
     time = 8 / SHAFT * np.arange(8192) / 8192
     y = np.cos(2 * np.pi * place * time + 0.4)
@@ -146,7 +146,7 @@ def test_what_a_window_spreads_over_an_edge(place):
     np.testing.assert_allclose(spread.need, abs(place - edge), rtol=5e-3)
 
 
-def test_bands_beside_a_strong_line_are_held_where_its_skirt_ends():
+def test_band_levels_beside_strong_line_need_resolution():
     """6205 at 1500 rpm: the shaft at 25 Hz stands 2.6 Hz beside the octave of 16 Hz."""
     bands = octave_bands(16.0, 63.0)
     line = noise.level(np.sqrt(0.5))
@@ -171,7 +171,7 @@ def test_bands_beside_a_strong_line_are_held_where_its_skirt_ends():
 
 
 @pytest.mark.parametrize("turns, told", [(1, "0.79 dB below"), (8, None)])
-def test_a_total_that_the_window_changes_is_told(turns, told, untyped):
+def test_warning_of_total_level_changed_by_window(turns, told, untyped):
     """One period of a sine keeps 5/6 of its power under Hann's window, more of them
     keep all."""
     time = turns / SHAFT * np.arange(turns * 64) / (turns * 64)

@@ -24,7 +24,7 @@ def test_accelerations_of_the_printed_levels():
     np.testing.assert_allclose(found[4] / found[1], 6.17, atol=5e-3)
 
 
-def test_octaves_of_the_paper_sum_to_its_totals():
+def test_combined_octave_levels_match_paper_totals():
     bands = np.array(list(MEASURED.values()), dtype=float)
     assert bands.shape == (7, len(OCTAVES)) and len(NORM) == len(OCTAVES)
     sums = noise.combined(np.array([NORM, *bands], dtype=float))

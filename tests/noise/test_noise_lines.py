@@ -99,7 +99,7 @@ def only(place, speed=SPEED, turns=200, **options):
     return line.name
 
 
-def test_the_simplest_name_wins():
+def test_name_lines_prefers_simplest_name():
     # The cage passes 14 balls over a fixed raceway in a turn: 14 cage is BPFO.
     assert only(OUTER, harmonics=20) == "BPFO"
     # All balls over both raceways: a harmonic of the shaft, or sidebands of BPFI.
@@ -129,7 +129,7 @@ def test_limits_of_the_search():
     assert only(11 * OUTER, sidebands=0) == "unnamed"
 
 
-def test_rings_that_turn():
+def test_name_lines_with_rotating_rings():
     both = bj.Speed(inner=SHAFT * TURN, outer=-7.3 * TURN)
     kinematic = kinematic_frequencies(BEARING, both, ANGLE)
     assert only(7.3, both) == "outer ring"

@@ -74,7 +74,7 @@ def pair():
     return one, linear_model(one)
 
 
-def test_stiffness_of_a_set_is_that_of_its_element(pair):
+def test_noise_set_stiffness_matches_element(pair):
     one, found = pair
     solution = bj.solve_load(one.element, LOAD, fixed_ring="inner", free=one.freedoms)
     ring, _ = condensed(found, 5)
@@ -82,7 +82,7 @@ def test_stiffness_of_a_set_is_that_of_its_element(pair):
     np.testing.assert_allclose(ring, element, rtol=0, atol=SOLVER * element.max())
 
 
-def test_deviations_push_a_set_as_they_push_its_element(pair):
+def test_noise_set_deviation_forces_match_element(pair):
     one, found = pair
     solution = bj.solve_load(one.element, LOAD, fixed_ring="inner", free=one.freedoms)
     q = solution.displacement
@@ -145,7 +145,7 @@ def test_rows_are_drawn_on_their_own():
     assert np.all(np.abs(one - other[:8]) > 0)
 
 
-def test_lines_of_rows_that_roll_otherwise_say_so():
+def test_name_lines_states_row_of_unequal_rows():
     turns, passage = 200, 9 * 0.4089
     time = np.arange(8 * turns * 4) / (8 * 4)
     heard = spectrum(np.cos(2 * np.pi * passage * time), turns / 1.0, 1.0)
@@ -155,7 +155,7 @@ def test_lines_of_rows_that_roll_otherwise_say_so():
     assert line.name == "BPFO of row 1"
 
 
-def test_gyroscopic_moments_that_are_left_out_are_told():
+def test_gyroscopic_warning_matches_harris():
     """As Harris has them, rolling on the outer raceway, at the free contact angle."""
     omega, load = 1500.0, np.full((2, 17, 2), 20.0)
     mass, ratio = 7850.0 * np.pi / 6.0 * 0.01**3, 0.2
@@ -185,7 +185,7 @@ def test_errors_of_a_set_are_one_for_each_row():
         model(OFF_CENTRE, errors=(*errors, FormErrors()))
 
 
-def test_what_is_not_for_sets_is_refused():
+def test_noise_model_rejects_sprung_and_unlike_sets():
     sprung = bj.BearingSet.back_to_back(ROW, 0.02, spring=bj.PreloadSpring(100.0))
     with pytest.raises(ValueError, match="that a spring presses"):
         model(sprung)

@@ -56,7 +56,7 @@ def test_bessels_sums():
     np.testing.assert_allclose(again, y, atol=100 * ROUNDING)
 
 
-def test_what_the_printed_sums_give():
+def test_bessels_sums_as_printed_double_every_line():
     y = record()[:, 0]
     a, b = sums(y)
     right = series(np.where(np.arange(N) == N // 2, a / 2, a), b, N // 2)
@@ -124,7 +124,7 @@ def test_a_line_between_bins(place):
         assert bare.power[9:13].sum() < 0.98 * 2.0
 
 
-def test_noise_has_its_power():
+def test_spectrum_keeps_power_of_white_noise():
     """Broad-band power within a few per cent, with and without a window."""
     count = 4096
     y = np.random.default_rng(1).normal(size=(count,))
@@ -166,7 +166,7 @@ def test_under_jit_and_vmap():
     assert single.power.dtype == single.order.dtype == jnp.float32
 
 
-def test_records_that_are_no_records():
+def test_spectrum_rejects_invalid_records():
     y = record()
     for wrong in (y[:-1], y[:2], 3.0):
         with pytest.raises(ValueError, match="`signal` has the shape.*even number"):
@@ -181,6 +181,6 @@ def test_records_that_are_no_records():
         assert np.isfinite(spectrum(y, turns / SHAFT, SHAFT, window=Hann()).power).all()
 
 
-def test_a_window_that_is_none(untyped):
+def test_spectrum_rejects_unknown_window(untyped):
     with pytest.raises(TypeError, match="`window` is 'hann'"):
         spectrum(record(), DURATION, SHAFT, window="hann")  # type: ignore

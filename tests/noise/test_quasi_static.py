@@ -200,7 +200,7 @@ def test_uneven_spacing_lets_every_order_shake(uneven):
     assert min(sizes) > 0.01 * max(sizes)
 
 
-def test_an_eccentric_raceway_turns_the_ring_with_it():
+def test_excitation_of_eccentric_raceway():
     model = with_waves(EIGHT, 17)(1, 1e-7)
     answer = excitation(model, samples=32, held=False)
     angle = SPEED.inner * answer.time
@@ -233,7 +233,7 @@ def test_derivatives(held):
         assert float(slope[k]) == pytest.approx(float(difference), rel=DIFFERENCE)
 
 
-def test_wrong_things():
+def test_excitation_rejects_invalid_arguments():
     model = with_waves(EIGHT, 17)(1)
     still = dataclasses.replace(model, speed=bj.Speed(0.0))
     with pytest.raises(ValueError, match="`speed` is 0"):

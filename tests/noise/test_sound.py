@@ -22,7 +22,7 @@ def test_pitch_and_size_stay(samples):
     assert np.abs(middle).max() == pytest.approx(2.0, rel=0.01)
 
 
-def test_no_click_where_it_begins_anew():
+def test_sound_loops_without_click():
     """A slow wave that ends far from where it began."""
     time = np.arange(4096) / 4096
     heard = sound(np.cos(np.pi * time), 0.2)
@@ -32,7 +32,7 @@ def test_no_click_where_it_begins_anew():
     assert np.abs(np.diff(heard[100:-100])).max() < steepest + 2e-3
 
 
-def test_the_file_says_what_full_scale_is(tmp_path):
+def test_write_sound_returns_full_scale(tmp_path):
     path = tmp_path / "a.wav"
     record = np.random.default_rng(0).normal(size=4096)
     full = write_sound(path, record, 0.08)

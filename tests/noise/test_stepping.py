@@ -28,13 +28,13 @@ def swinging():
 
 
 @pytest.mark.parametrize("frequency", [0.01, 0.2, 0.5 * HELD])
-def test_what_samples_can_tell_passes(swinging, frequency):
+def test_stepped_acceleration_passes_low_frequencies(swinging, frequency):
     acceleration, motion = swinging(frequency)
     np.testing.assert_allclose(acceleration, -motion, rtol=0, atol=DIFFERENCE)
 
 
 @pytest.mark.parametrize("frequency", [0.5, 0.7, 1.0, 1.3, 3.7])
-def test_what_would_look_slower_is_cut(swinging, frequency):
+def test_stepped_acceleration_cuts_aliased_frequencies(swinging, frequency):
     acceleration, motion = swinging(frequency)
     assert np.max(np.abs(motion)) > 0.5
     assert np.max(np.abs(acceleration)) < DIFFERENCE

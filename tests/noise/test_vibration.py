@@ -85,7 +85,7 @@ def test_damping_follows_the_rate_of_loads_along_their_normals():
     assert np.abs(found - load[:2]).max() > 1.0
 
 
-def test_a_bearing_that_nothing_presses_has_no_load_path():
+def test_in_time_without_load_path():
     """Its ring lies anywhere in its clearance, though inertia presses the balls."""
     bearing = dataclasses.replace(BALLS.bearing, radial_internal_clearance=1e-5)
     none = dataclasses.replace(
@@ -100,7 +100,7 @@ def test_a_bearing_that_nothing_presses_has_no_load_path():
     assert natural_modes(tight).result == bj.Result.CONVERGED
 
 
-def test_without_errors_nothing_moves():
+def test_in_time_without_form_errors_stays_at_rest():
     found = in_time(AXIAL, **(SHORT | {"settle": 0}))
     # What is out of balance by 1e-9 of the load may be there.
     assert np.max(np.abs(found.acceleration)) < 1e-9 * 100.0 / 0.2
@@ -188,7 +188,7 @@ def test_derivatives_of_the_level_of_a_band(slopes):
 
 
 @pytest.mark.slow
-def test_a_bearing_that_nothing_loads_has_finite_numbers(slopes):
+def test_gradients_of_unloaded_bearing_are_finite(slopes):
     """With clearance: balls ride on the outer ring, the inner one touches nothing."""
     loose = np.array([1e-8, 2e-8, 0.2, 0.0, 20e-6, 2e-6])
     gradient, (code, load) = slopes(loose)
@@ -213,14 +213,14 @@ def test_a_strongly_damped_contact_needs_shorter_steps():
     assert needed_steps(model, 64) > 5 * needed_steps(AXIAL, 64)
 
 
-def test_steps_that_are_too_long_are_told():
+def test_in_time_reports_too_few_steps():
     """Beyond what is stable a motion may stay finite, because contacts open."""
     found = in_time(AXIAL, **(SHORT | {"steps": 12}), throw=False)
     assert int(found.result) != int(bj.Result.CONVERGED)
     assert int(in_time(AXIAL, **SHORT).result) == int(bj.Result.CONVERGED)
 
 
-def test_steps_that_prove_too_long_are_halved(monkeypatch):
+def test_in_time_halves_unstable_steps(monkeypatch):
     """As where form errors press contacts much harder than the load does."""
     module = sys.modules[in_time.__module__]
     monkeypatch.setattr(module, "needed_steps", lambda *_: 12)

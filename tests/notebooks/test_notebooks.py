@@ -37,7 +37,7 @@ def test_code_runs(path):
     assert ran > 3
 
 
-def test_they_are_found_executed_and_name_no_machine():
+def test_notebooks_are_executed_without_local_paths():
     paths = sorted(FOLDER.glob("*.ipynb"))
     assert len(paths) == 9
     for path in paths:

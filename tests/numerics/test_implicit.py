@@ -126,7 +126,7 @@ def test_every_argument_is_differentiated():
     np.testing.assert_allclose(got, -np.outer(inverse[2], y), rtol=ROUNDING)
 
 
-def test_value_is_the_solution_and_its_own_derivative_is_ignored():
+def test_attach_roots_ignores_derivative_of_given_solution():
     def off(p):
         return attach_roots(cubic, 7.0 * p, p)
 
@@ -161,7 +161,7 @@ def test_no_host_callback():
     assert "callback" in str(with_callback)
 
 
-def test_stop():
+def test_stop_blocks_gradient_of_arrays():
     tree = {"x": jnp.asarray(2.0), "n": 3, "k": jnp.asarray(4)}
     kept = stop(tree)
     assert kept["n"] == 3 and kept["k"] == 4
@@ -172,7 +172,7 @@ def test_stop():
     assert jax.grad(through)(jnp.asarray(2.0)) == 2.0
 
 
-def test_what_failed_has_no_derivative():
+def test_unless_failed_gives_nan_derivative_on_failure():
     def doubled(x, solved):
         return jnp.sum(unless_failed(lambda x: 2.0 * x, (x,), solved))
 
@@ -183,7 +183,7 @@ def test_what_failed_has_no_derivative():
     assert float(value) == -2.0 and np.isnan(lost).all()
 
 
-def test_what_failed_and_is_masked_spoils_no_derivative():
+def test_unless_failed_keeps_derivatives_of_masked_cases():
     """√x beside 1/x, of a design p that all cases share and an x of their own."""
 
     def of(p, x):

@@ -69,7 +69,7 @@ def test_singular_stays_finite():
     assert np.all(np.isfinite(got))
 
 
-def test_missing_directions_do_not_harm_the_others():
+def test_solve_many_with_singular_directions():
     """Unknowns that the matrix does not know, and two that it holds as one."""
     zero = np.zeros((3, 3))
     unheld = np.array([[4.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 2.0]])
@@ -82,7 +82,7 @@ def test_missing_directions_do_not_harm_the_others():
     assert got[1, 1, 0] == 0.0
 
 
-def test_nan_is_not_lifted():
+def test_solve_symmetric_keeps_nan_pivot():
     """A NaN pivot must not be taken for a small one."""
     matrix = jnp.eye(3).at[1, 1].set(jnp.nan)
     assert jnp.any(jnp.isnan(solve_symmetric(matrix, jnp.ones(3))))
@@ -114,7 +114,7 @@ def test_smallest_pivot_by_hand():
 
 
 @pytest.mark.parametrize("rank", [0, 3, 5])
-def test_null_space_is_that_of_the_eigenvectors(rank):
+def test_null_space_matches_eigenvectors(rank):
     """Aslant of the axes; what is held softly is held."""
     turned, _ = np.linalg.qr(np.random.default_rng(rank).normal(size=(5, 5)))
     held = turned[:, :rank]

@@ -83,7 +83,7 @@ def name_of(monkeypatch, store):
 @pytest.mark.parametrize(
     "scene, choices", [("tapered", OF_ROLLERS), ("ball_pair", OF_BALLS)]
 )
-def test_every_choice_has_a_program_of_its_own(name_of, scene, choices):
+def test_program_names_differ_between_choices(name_of, scene, choices):
     names = [name_of(scene, *([choice] if choice else [])) for choice in choices]
     assert None not in names
     assert len(set(names)) == len(names)
@@ -124,7 +124,7 @@ class Foreign(eqx.Module):
     factor: float = 2.0
 
 
-def test_what_is_not_known_for_certain_has_no_structure():
+def test_structure_rejects_unknown_objects():
     closure = bj.numerics.Result.label.fget  # named, but not found by its name
     for value in (Foreign(), lambda x: x, closure, {1, 2}, object(), np.array([None])):
         with pytest.raises(UnknownStructure):
@@ -133,7 +133,7 @@ def test_what_is_not_known_for_certain_has_no_structure():
         structure({1: "a"})
 
 
-def test_arrays_that_are_not_traced_count_by_value():
+def test_structure_includes_values_of_static_arrays():
     """Were one static field to hold an array, its values are in the program."""
     texts = {structure(np.array(values)) for values in ([1.0, 2.0], [1.0, 3.0])}
     assert len(texts) == 2
@@ -183,7 +183,7 @@ def test_a_kept_program_is_not_traced_again(kept):
     assert [file.stat().st_mode & 0o777 for file in files] == [0o600] * 2
 
 
-def test_program_that_calls_back_is_not_kept(store, monkeypatch):
+def test_program_with_callback_is_not_stored(store, monkeypatch):
     """A file cannot hold a function of Python; it runs all the same."""
     calls = []
 
@@ -242,7 +242,7 @@ print(*bj.rotor.modes(rotor, 100.0, count=2).frequency)
 """
 
 
-def test_program_that_calls_lapack_is_loaded_by_a_new_process(tmp_path):
+def test_stored_program_with_lapack_loads_in_new_process(tmp_path):
     """JAX finds LAPACK when it lowers a call of it; without, the program crashed."""
     folder = str(tmp_path / "programs")
     first, second = (
@@ -288,7 +288,7 @@ for name in ("no folder", "folder", "folder"):
 """
 
 
-def test_a_program_that_jax_keeps_too_is_kept_whole(tmp_path):
+def test_stored_program_beside_jax_compilation_cache(tmp_path):
     """What JAX's own cache has of it would lack its functions when kept once more."""
     done = subprocess.run(
         [sys.executable, "-c", BESIDE_JAX, tmp_path],
@@ -338,7 +338,7 @@ HOWS = (
 
 
 @pytest.mark.parametrize("how", HOWS)
-def test_a_file_that_cannot_be_trusted_is_compiled_anew(kept, how, capsys):
+def test_untrusted_program_file_is_recompiled(kept, how, capsys):
     kept()
     (path,) = kept.folder.iterdir()
     spoil(path, how)
@@ -348,7 +348,7 @@ def test_a_file_that_cannot_be_trusted_is_compiled_anew(kept, how, capsys):
 
 
 @pytest.mark.parametrize("how", ["group", "all", "link", "owner", "full", "no folder"])
-def test_a_folder_that_cannot_be_trusted_keeps_nothing(kept, monkeypatch, how, capsys):
+def test_untrusted_program_folder_is_not_used(kept, monkeypatch, how, capsys):
     kept()
     folder = kept.folder
     before = sorted(folder.iterdir())
@@ -377,7 +377,7 @@ def test_a_folder_that_cannot_be_trusted_keeps_nothing(kept, monkeypatch, how, c
     assert capsys.readouterr() == ("", "")
 
 
-def test_what_was_not_used_for_longest_goes(kept, monkeypatch):
+def test_store_evicts_least_recently_used_program(kept, monkeypatch):
     kept(word="old")
     (old,) = kept.folder.iterdir()
     os.utime(old, (1, 1))
@@ -391,7 +391,7 @@ def test_what_was_not_used_for_longest_goes(kept, monkeypatch):
     assert old in names and used not in names and len(names) == 2
 
 
-def test_a_kept_program_that_does_not_run_is_compiled_anew(kept, monkeypatch):
+def test_stored_program_failing_to_run_is_recompiled(kept, monkeypatch):
     assert kept()
 
     def broken(arrays):
@@ -403,7 +403,7 @@ def test_a_kept_program_that_does_not_run_is_compiled_anew(kept, monkeypatch):
     assert not kept()
 
 
-def test_an_option_that_xla_does_not_know(kept, monkeypatch):
+def test_program_with_unknown_xla_option_still_compiles(kept, monkeypatch):
     monkeypatch.setattr(programs, "OPTIONS", ({"xla_no_such_option": True},))
     assert kept() and not kept()
 

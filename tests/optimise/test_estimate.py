@@ -64,9 +64,7 @@ def test_published_bearings_are_found(name):
         ("cylindrical_roller", (75, 130, 25), (130.0, 156.0), 1.0, 18, 15.0),
     ],
 )
-def test_a_capacity_that_its_maker_has_raised_is_seen(
-    kind, size, ratings, raised, count, diameter
-):
+def test_estimate_detects_raised_capacity(kind, size, ratings, raised, count, diameter):
     """SKF's 6309, 6205 and NU 215 ECP beside the ordinary class of others; wanted are
     the published balls and rollers (18 in the NU 215)."""
     (d, big, b), (c, c0) = (1e-3 * x for x in size), (1e3 * x for x in ratings)
@@ -249,13 +247,13 @@ GOOD = (0.025, 0.052, 0.015, "deep_groove_ball", 14.0e3, 7.85e3)
         ({4: 26e3}, "with a static capacity of 7850 N attain"),
     ),
 )
-def test_what_no_bearing_attains_is_named(changed, words):
+def test_estimate_rejects_unattainable_arguments(changed, words):
     given = [changed.get(k, value) for k, value in enumerate(GOOD)]
     with pytest.raises(ValueError, match=words):
         bj.optimise.estimate_geometry(*given)
 
 
-def test_an_estimate_prints_its_numbers():
+def test_estimate_report_states_numbers():
     found = bj.optimise.estimate_geometry(*GOOD)
     words = str(found)
     assert words == repr(found) == found.report()
@@ -266,7 +264,7 @@ def test_an_estimate_prints_its_numbers():
     )
 
 
-def test_an_estimate_is_not_traced(untyped):
+def test_estimate_rejects_traced_numbers(untyped):
     with pytest.raises(TypeError, match="`bore` is traced; numbers must be known"):
         jax.jit(lambda bore: bj.optimise.estimate_geometry(bore, *GOOD[1:]).misfit)(
             GOOD[0]

@@ -147,7 +147,7 @@ def test_smooth_maximum_and_minimum_keep_their_bounds(exponent):
         assert np.isclose(slope @ values, smooth(values, exponent), rtol=1e-11)
 
 
-def test_smooth_maximum_of_nothing_and_of_nan():
+def test_smooth_maximum_of_zeros_nan_and_infinity():
     value, slope = jax.value_and_grad(smooth_maximum)(jnp.zeros(5))
     assert value == 0 and np.all(slope == 0)
     assert np.isnan(smooth_maximum(jnp.array([1.0, jnp.nan])))
@@ -169,9 +169,7 @@ def test_smooth_maximum_of_nothing_and_of_nan():
     [None, "slsqp", "nelder-mead", optax.sgd(0.005)],
     ids=lambda m: m if isinstance(m, str) else type(m).__name__,
 )
-def test_stiffness_is_met_by_the_clearance_that_has_it(
-    straight, one_case, wanted, method
-):
+def test_optimise_recovers_clearance_from_stiffness(straight, one_case, wanted, method):
     found = search(straight, one_case, wanted, method=method, tolerance=1e-6)
     assert found.converged, found.message
     assert np.isclose(found.values[0], 15e-6, rtol=1e-5)
@@ -194,9 +192,7 @@ def test_stiffness_is_met_by_the_clearance_that_has_it(
         assert history.gradient[-1] < history.gradient[0]
 
 
-def test_adam_gets_near_and_turns_back_from_what_does_not_solve(
-    straight, one_case, wanted
-):
+def test_adam_backtracks_from_failed_designs(straight, one_case, wanted):
     """The second one's first step, 0.5 of the box, would be to 30 µm."""
     near = search(straight, one_case, wanted, method="adam", tolerance=1e-4)
     assert np.isclose(near.values[0], 15e-6, rtol=1e-3) and not near.rejected
@@ -252,7 +248,7 @@ def beyond_20_um_is_nan(element):
 
 
 @pytest.mark.parametrize("method", ["l-bfgs-b", "slsqp", "nelder-mead"])
-def test_designs_that_do_not_solve_are_rejected_and_told(
+def test_optimise_rejects_and_reports_failed_designs(
     straight, one_case, wanted, method
 ):
     """The optimum at 15 µm; beyond 20 µm nothing solves; steps overshoot it."""
@@ -291,7 +287,7 @@ def test_optimum_behind_rejected_designs_is_not_called_converged(
     assert re.search(f"rejected near by, at {text}", found.message), found.message
 
 
-def test_variable_that_moves_nothing_is_said(straight, one_case, wanted):
+def test_optimise_reports_variables_without_influence(straight, one_case, wanted):
     """The density of the rollers counts only where they turn."""
     density = bj.optimise.Variable("bearing.material.density", 7e3, 8e3)
     found = search(straight, one_case, wanted, variables=[play(), density])
@@ -313,7 +309,7 @@ def test_start_at_the_optimum_is_said_and_round_off_is_not_steep(
     assert near.converged and near.n_evaluations < 5
 
 
-def test_start_that_does_not_solve_raises(straight, one_case, wanted):
+def test_optimise_raises_for_failing_starting_design(straight, one_case, wanted):
     with pytest.raises(bj.SolveError, match="starting design fails: case 0: non_fin"):
         search(
             straight,
@@ -541,7 +537,7 @@ def test_wrong_parts(make, text):
         make()
 
 
-def test_step_limit_counts_steps_that_did_not_move():
+def test_step_limit_counts_steps_without_movement():
     """A search that stands at a bound has used its steps all the same."""
     sloped = Trial(
         np.array([0.0]), 1.0, np.array([-1.0]), np.zeros(0), np.zeros((0, 1))

@@ -64,7 +64,7 @@ def test_disc_of_rejected_designs_is_passed(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_nothing_is_converged_where_rejected_designs_bar_the_minimum(method):
+def test_search_not_converged_at_wall_of_rejected_designs(method):
     """Beyond a slanted wall; the least at the wall is 0.05 above the minimum's."""
     row, limit = np.array([1.0, 0.5]), 0.8
     tried = trials(lambda unit: unit @ row > limit)
@@ -92,7 +92,7 @@ def test_constraint_holds_the_gradient_with_a_multiplier_of_the_right_sign(start
     assert optimality(turned, TOLERANCE) > 0.01
 
 
-def test_constraint_that_cannot_be_met():
+def test_search_with_infeasible_constraint():
     tried = trials(nowhere, kept=(np.array([1.0, 1.0]), 3.0))
     ending, best = run("slsqp", tried, 1)
     assert not ending.settled and not arrived(best, TOLERANCE)
@@ -113,7 +113,7 @@ def test_step_limit_is_no_minimum():
     assert ending.limited and not arrived(best, TOLERANCE)
 
 
-def test_own_search_is_called_as_it_says():
+def test_custom_search_callable_arguments():
     def own(attempt, start, max_steps, tolerance, step):
         step(start + 0.1)
         return Ending(start, attempt(start).objective < 0, f"{max_steps} {tolerance}")

@@ -157,7 +157,7 @@ def test_no_contact(solutions, sliced):
 
 @pytest.mark.parametrize("section", ["across", "along"])
 @pytest.mark.parametrize("kind", ["von_mises", "greatest_shear"])
-def test_stress_marks_its_largest_value(solutions, section, kind):
+def test_contact_stress_marks_largest_value(solutions, section, kind):
     """The cross stands where the stress is what the head says."""
     solution = solutions[1]
     ax = plot.contact_stress(solution, section=section, y=1e-3, kind=kind)

@@ -190,7 +190,7 @@ def test_every_kind_of_bearing_and_profile_is_tried():
     assert profiles <= {type(part) for part in parts} | {bj.Logarithmic}
 
 
-def test_a_set_has_every_number_of_its_rows_and_each_bearing_once():
+def test_drawing_of_set_lists_rows_and_distinct_bearings():
     rows = THREE.rows
     figure = plot.drawing(THREE, "three")
     assert figure.get_suptitle() == "three"

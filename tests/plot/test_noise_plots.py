@@ -50,7 +50,7 @@ def test_acceleration_over_turns():
     assert ax.get_ylabel() == "acceleration [m/s²]"
 
 
-def test_spectrum_has_the_level_and_the_names_of_its_lines():
+def test_noise_spectrum_shows_levels_and_line_names():
     found = record()
     lines = spectrum(found.acceleration, found.duration, 25.0, window=Hann())
     size = np.sqrt(1.0 + 9.0 + 4.0)

@@ -92,7 +92,7 @@ def test_load_zone_bars_are_the_roller_loads_in_kilonewton(solution):
 
 
 @pytest.mark.parametrize(("count", "told"), [(9, True), (17, False)])
-def test_labels_of_the_load_zone_find_room_or_the_title_tells_them(count, told):
+def test_load_zone_labels_fit_or_move_to_title(count, told):
     """Of balls that are all loaded; of both rows of a pair at one azimuth."""
     pair = bj.BearingSet.back_to_back(balls(count, contact_angle=0.4), spacing=0.02)
     made_up = made.solution(pair, (0.25, 0.25))
@@ -112,7 +112,7 @@ def test_labels_of_the_load_zone_find_room_or_the_title_tells_them(count, told):
             assert not any(box.contains(*point) for point in edge)
 
 
-def test_load_zone_refuses_axes_that_are_not_polar(solution):
+def test_load_zone_rejects_non_polar_axes(solution):
     with pytest.raises(ValueError, match="polar"):
         plot.load_zone(solution, plt.figure().add_subplot())
 
@@ -188,7 +188,7 @@ def test_load_displacement_scales_by_name(
     assert f"{freedom} [{y_unit}]" in ax.get_ylabel()
 
 
-def test_load_displacement_leaves_gaps_where_nothing_converged():
+def test_load_displacement_leaves_gaps_at_unconverged_points():
     ax = plot.load_displacement(
         [1.0, 2.0, 3.0], jnp.ones(3), converged=jnp.array([True, False, True])
     )
@@ -199,7 +199,7 @@ def test_load_displacement_leaves_gaps_where_nothing_converged():
     "arguments",
     [{"load_name": "Q"}, {"freedom": "y"}, {"converged": [True]}],
 )
-def test_load_displacement_refuses_what_does_not_fit(arguments):
+def test_load_displacement_rejects_invalid_arguments(arguments):
     with pytest.raises(ValueError):
         plot.load_displacement([1.0, 2.0], [1.0, 2.0], **arguments)
 
@@ -271,7 +271,7 @@ def arc_through(points):
     return centre, np.linalg.norm(middle - centre)
 
 
-def test_section_of_a_spherical_row_has_its_arcs():
+def test_section_of_spherical_row_profile_arcs():
     """The outer raceway is about the origin; gaps along the normal, 10 µm cos α."""
     parts = section(SPHERICAL)
     outer, inner = parts.raceways
@@ -350,7 +350,7 @@ def test_sections_of_balls_name_dimensions():
             assert words.count(word) == 1
 
 
-def test_a_section_of_a_set_has_all_its_rollers():
+def test_cross_section_of_set_draws_all_rollers():
     pair = bj.BearingSet.face_to_face(taper(5), 0.03)
     ax = plot.cross_section(pair)
     drawn: Any = ax.patches
@@ -391,12 +391,12 @@ def test_overview_shows_five_plots_and_the_results(bearing, solution):
 
 
 @pytest.mark.parametrize("which", ["unloaded", "one_roller", "non_finite"])
-def test_overview_survives(which, bearing, request):
+def test_overview_of_unloaded_and_failed_solutions(which, bearing, request):
     figure = plot.overview(bearing, request.getfixturevalue(which))
     assert figure.get_suptitle() == "CylindricalRollerBearing"
 
 
-def test_absence_of_matplotlib_is_explained(monkeypatch):
+def test_plot_without_matplotlib_installed(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
     with pytest.raises(ImportError, match=r'pip install "bearingjax\[plot\]"'):
         plot.load_displacement([1.0], [1.0])
@@ -463,7 +463,7 @@ def test_ellipses_have_their_true_shape(of_balls, name):
     assert f"{told:.2g} times" in ax.get_xlabel() and "true shape" in ax.get_xlabel()
 
 
-def test_ellipses_that_would_overlap_are_narrower_and_said_to_be(of_balls):
+def test_ellipses_are_narrowed_where_overlapping(of_balls):
     bearing, found = of_balls["thrust"]
     round_ = eqx.tree_at(
         lambda s: s.semi_axes, found, found.semi_axes.at[..., 0].set(1.5e-3)
@@ -522,7 +522,7 @@ def test_stiffness_over_speed():
         bj.plot.stiffness_over_speed([0.0], np.eye(12))
 
 
-def test_a_chart_is_data_with_units_of_its_fields(solution):
+def test_chart_axes_have_units_of_fields(solution):
     """The numbers of a panel are in SI; its axes know the units of the result."""
     load = Axis.of(solution, "roller_load")
     assert (load.label, load.scale) == ("roller load [kN]", 1e-3)

@@ -94,7 +94,7 @@ def test_lines_of_action_tell_how_a_bearing_is_mounted():
 
 
 @pytest.mark.parametrize("width", [0.02, 0.2])
-def test_a_disc_has_its_size_back(width):
+def test_disc_size_recovers_dimensions(width):
     disc = bj.rotor.Disc.of_size(0, 0.4, width, 0.05, STEEL)
     found = disc_size(disc, 0.05, STEEL)
     assert found is not None
@@ -144,7 +144,7 @@ def test_mode_shapes_tell_frequency_damping_and_direction():
     assert [len(line) for line in named(ax, "_support")] == [3, 3]
 
 
-def test_an_inclined_orbit_is_seen_across_its_longer_axis():
+def test_mode_shape_drawn_along_major_axis_of_inclined_orbit():
     turn, size = 0.4, np.array([1.0, 0.5, 0.2, 0.0]) * np.exp(1j)
     along, aside = size, 0.2j * size
     x = along * np.cos(turn) - aside * np.sin(turn)
@@ -305,7 +305,7 @@ def run(**parts):
     return SimpleNamespace(task=task, rotor=ROTOR, **(whole | parts))
 
 
-def test_the_page_shows_what_was_asked_for():
+def test_rotor_overview_shows_requested_parts():
     page = plot.rotor_overview(run(), "a_$_b")
     assert [ax.get_title() for ax in page.axes] == ["Rotor, to scale"]
     time = np.linspace(0.0, 1.0, 400)

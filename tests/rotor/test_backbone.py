@@ -154,7 +154,7 @@ def test_a_critical_speed_falls_with_the_amplitude():
     assert np.isclose(found.damping_ratio[0], 0.01, rtol=0.05)
 
 
-def test_what_is_not_found_says_so():
+def test_backbone_reports_failed_points_and_invalid_freedom():
     system = duffing(jnp.nan)
     with pytest.raises(bj.SolveError, match="point 0, peak 0.5 .non_finite.*smaller"):
         backbone(system, [0.5, 1.5], 0, HarmonicBalance(1, 8))

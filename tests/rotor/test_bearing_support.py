@@ -57,7 +57,7 @@ def test_stiffness_of_the_published_bearings(angle):
     np.testing.assert_allclose(across[0], across[1], rtol=ROUNDING)
 
 
-def test_turned_round():
+def test_bearing_support_turned():
     """The same bearing looks the other way: a half turn about x of motion and force."""
     plain, turned = (preloaded(12, turned=t) for t in (False, True))
     motion = jnp.array([3e-6, -2e-6, 1e-6, 2e-5, -1e-5])
@@ -68,7 +68,7 @@ def test_turned_round():
     np.testing.assert_allclose(seen, np.outer(half, half) * stiffness, rtol=1e-9)
 
 
-def test_slopes_and_damping():
+def test_bearing_support_stiffness_and_damping():
     """The stiffness is that of differences; damping adds to force and linear part."""
     support = preloaded(12, damping=[10.0, 20.0, 30.0, 0.1, 0.2])
     motion = jnp.array([3e-6, -2e-6, 1e-6, 2e-5, -1e-5])
@@ -85,7 +85,7 @@ def test_slopes_and_damping():
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_passage(turned):
+def test_bearing_support_ball_passage(turned):
     """Balls orbit with the shaft; after a pitch they stand as at first."""
     support = preloaded(12, turned=turned, passage=True)
     motion = jnp.array([2e-5, -1e-5, 1e-6, 2e-5, -1e-5])
@@ -107,7 +107,7 @@ def test_passage(turned):
     np.testing.assert_allclose(forced(put, 0.0), half, rtol=1e-8)
 
 
-def test_in_a_rotor():
+def test_bearing_support_modes_match_linear_support():
     """A rotor takes it as it takes its springs."""
     supports = [preloaded(26), preloaded(26, turned=True)]
     supports[1] = BearingSupport(

@@ -101,7 +101,7 @@ def test_a_branch_ends_at_frequency_zero(branches):
         follow(system, 0.0, 0.6, BALANCE, steps=STEPS)
 
 
-def test_nothing_is_compiled_anew(branches):
+def test_follow_does_not_retrace_for_new_values(branches):
     traces = []
 
     class Counted(eqx.Module):
@@ -188,7 +188,7 @@ class Wall(eqx.Module):
         return jnp.where(jnp.abs(q) > 1.0, jnp.nan, q)
 
 
-def test_a_branch_says_why_it_ends():
+def test_follow_reports_ending():
     system = oscillator(Wall(), 0.2, 0.05)
     branch = follow(system, 0.6, 1.6, BALANCE, steps=STEPS)
     assert branch.ending == Ending.SMALL_STEP

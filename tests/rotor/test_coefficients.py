@@ -16,7 +16,7 @@ SPEEDS = np.array([0.0, 500.0, 1500.0])
 LOAD = np.array([0.0, -600.0, 900.0, 0.0, 0.0, 0.0])
 
 
-def test_it_is_the_slope_of_the_load_solve_at_each_speed():
+def test_stiffness_table_matches_load_solve_slope():
     loads = LOAD * np.array([1.0, 0.7, 1.2])[:, None]
     table = bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads, tilts="free")
     assert table.shape == (3, 3, 3)
@@ -56,7 +56,7 @@ def test_symmetry_and_turned_loads():
     assert abs(along_y[:, 0, 0] / along_y[:, 1, 1] - 1).min() > 0.01
 
 
-def test_no_load_no_stiffness_is_said():
+def test_stiffness_table_warns_of_missing_stiffness():
     with pytest.warns(UserWarning, match="no stiffness in .* at 500 rad/s"):
         bj.rotor.stiffness_table(
             ELEMENT, SPEEDS, LOAD * np.array([1.0, 0, 1.0])[:, None]
@@ -68,7 +68,7 @@ def test_moments_on_held_tilts_are_refused():
         bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD + np.eye(6)[3])
 
 
-def test_a_failure_names_its_speed():
+def test_stiffness_table_failure_names_speed():
     loads = np.stack([LOAD, LOAD * [1, 0, -1, 1, 1, 1], LOAD])
     with pytest.raises(bj.SolveError, match="speed 500 rad/s: no_load_path: .*uz"):
         bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads)
@@ -118,7 +118,7 @@ def test_bad_damping_and_speeds():
         given(0.0, SPEEDS[::-1])
 
 
-def test_without_ross_the_message_says_what_to_install(monkeypatch):
+def test_to_ross_without_ross_installed(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)
     with pytest.raises(ImportError, match=r"bearingjax\[ross\]"):
         bj.rotor.to_ross(ELEMENT, 0, SPEEDS, LOAD)

@@ -51,7 +51,7 @@ def test_the_table_of_the_paper():
     assert np.isnan(hertz[:, 4]).all()  # there is no fifth
 
 
-def test_they_lie_on_the_campbell_diagram():
+def test_critical_speeds_lie_on_campbell_diagram():
     """With damping: modes at the speed found vibrate once per revolution."""
     rotor = friswell(1e6, 0.8e6, 5e2)
     critical = bj.rotor.critical_speeds(rotor, count=4)
@@ -81,7 +81,7 @@ def test_they_lie_on_the_campbell_diagram():
     assert critical.missed == locked.missed == rigid.missed == 0
 
 
-def test_coincident_critical_speeds_are_there_as_often_as_they_are():
+def test_critical_speeds_keep_multiplicity():
     """A disc without moments of inertia on supports alike in x and y."""
     shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04, material=bj.Material(density=1e-3))
     for damping in (0.0, 300.0):
@@ -141,7 +141,7 @@ def test_the_unbalance_response_of_ross():
     assert not found.motion[:, :, 2].any()
 
 
-def test_a_jeffcott_rotor_through_its_critical_speed():
+def test_unbalance_response_of_jeffcott_rotor():
     """x + iy = m e Ω²/(k - mΩ² + icΩ) exp(i(Ωt + φ)): a circle, turning forward."""
     k, c, moment, phase = 4e6, 800.0, 1e-3, 0.7
     shaft = bj.rotor.Shaft([-0.1, 0.0, 0.1], 0.04)

@@ -148,7 +148,7 @@ def veering():
     return rotor
 
 
-def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
+def test_campbell_lines_independent_of_speed_count():
     """Against modes followed with NumPy in small steps."""
     rotor, top = veering(), 6283.0
 
@@ -175,7 +175,7 @@ def test_lines_of_a_campbell_diagram_do_not_hang_on_how_many_speeds_it_has():
 
 
 @pytest.mark.parametrize("cause", ("stiffness", "damping"))
-def test_a_mode_that_grows_is_told_with_its_cause(cause):
+def test_modes_warns_of_unstable_mode_and_cause(cause):
     """Two masses, each on k: with k', -k' across the ratio is -k'/2k, with dampers c
     across it is -c/2√(km)."""
     k, mass, share = 1e7, 4.0, 8e-6
@@ -237,7 +237,7 @@ def measured(numbers):
     )
 
 
-def test_derivatives_of_everything():
+def test_modes_gradients_match_differences():
     run = with_slopes(measured)
     slope, values = run(NUMBERS)
     assert np.isfinite(slope).all()
@@ -273,7 +273,7 @@ def test_derivatives_where_modes_coincide():
         np.testing.assert_allclose(slope, expected, rtol=DIFFERENCE, atol=1e-16)
 
 
-def test_a_rotor_that_nothing_holds():
+def test_modes_of_unsupported_rotor():
     rotor = friswell(0.0, 0.0)
     found = bj.rotor.modes(rotor, 100.0)
     n = len(found.frequency)

@@ -145,7 +145,7 @@ def test_gradients_against_differences(name):
     assert (best < goal * np.abs(exact).max(axis=1, keepdims=True)).all()
 
 
-def test_the_balance_has_its_own_jacobian():
+def test_harmonic_balance_jacobian():
     system, z = rotor(36, base_acceleration=5.0), 0.3 * jnp.sin(jnp.arange(25.0))
     balance, ratio = HarmonicBalance(2, 12), jnp.asarray(0.9)
     left, jacobian = eqx.filter_jit(balance.linearised)(system, z, ratio)
@@ -159,7 +159,7 @@ def test_the_balance_has_its_own_jacobian():
     assert np.allclose(left, change(jnp.zeros(26)), rtol=ROUNDING)
 
 
-def test_what_has_no_orbit_says_so():
+def test_solve_orbit_reports_failure_and_invalid_arguments():
     system = duffing(force=jnp.nan)
     with pytest.raises(bj.SolveError, match="0.9 rad/s.*non_finite"):
         solve_orbit(system, 0.9, BALANCE)

@@ -124,7 +124,7 @@ def test_the_cubic_expansion():
 
 
 @pytest.mark.parametrize("angle", (12, 40))
-def test_how_far_the_expansion_reaches(angle):
+def test_cubic_expansion_error_over_displacement(angle):
     law = LAWS[angle]
     cubic, z0 = CubicExpansion.of(law), float(law.preload_displacement)
     reach = z0 * np.tan(np.radians(angle))
@@ -147,7 +147,7 @@ def test_how_far_the_expansion_reaches(angle):
     assert np.allclose(errors[4:, 2], [3.3e-2, 3.1e-3, -1.4e-3, -8.7e-3], rtol=0.05)
 
 
-def test_a_fixed_contact_angle_is_wrong_where_it_is_small():
+def test_fixed_angle_stiffness_error_at_small_contact_angles():
     printed = {12: 1.22, 15: 1.14, 26: 1.048, 36: 1.026, 40: 1.021}
     for angle, ratio in printed.items():
         moving = grooves(angle).moving_angle().stiffness()
@@ -156,7 +156,7 @@ def test_a_fixed_contact_angle_is_wrong_where_it_is_small():
         assert 1.0 < moving[0, 0] / fixed[0, 0] < 1.011
 
 
-def test_balls_that_lift_off_leave_finite_derivatives():
+def test_fixed_angle_derivatives_are_finite_at_lift_off():
     law, touching = LAWS[36], jnp.array([0.0, 0.0, -LAWS[36].preload_displacement])
     for motion in (touching, jnp.array([3e-5, 0.0, 0.0]), -jnp.ones(3)):
         slope = jax.hessian(law.potential)(motion)
@@ -185,7 +185,7 @@ def test_small_vibration_is_linear_and_axial_motion_of_second_order():
 
 
 @pytest.mark.parametrize("angle", TABLE)
-def test_laws_of_a_bearing_from_its_design_and_preload(angle):
+def test_laws_of_bearing_from_design_and_preload(angle):
     """The bearing of the drawing, pushed with P0, gives the laws of the drawing.
 
     Its free angle follows from the radii, so the preloaded one is a result.
@@ -204,7 +204,7 @@ def test_laws_of_a_bearing_from_its_design_and_preload(angle):
     assert cubic.radial_stiffness == CubicExpansion.of(law).radial_stiffness
 
 
-def test_a_law_needs_one_row_of_balls_that_bear():
+def test_laws_of_bearing_reject_unloaded_and_roller_bearings():
     element = bj.BearingElement(of_drawing(12))
     with pytest.raises(ValueError, match="`offset` is -0.001 m; it must be so large"):
         FixedAngle.of_bearing(element, -1e-3)

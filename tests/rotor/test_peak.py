@@ -136,7 +136,7 @@ def whirled(frequency, start):
 
 
 @pytest.mark.slow
-def test_peak_of_two_freedoms_that_whirl():
+def test_peak_of_two_whirling_freedoms():
     """An unbalance, gyroscopic moments, unlike springs: on a bent resonance, beside
     a fold, where an independent orbit is as large, and less large on either side."""
     system = VibratingSystem(

@@ -40,7 +40,7 @@ def shaft(ross):
     return parts, [ross.DiskElement.from_geometry(2, steel, 0.04, 0.025, 0.2)]
 
 
-def test_its_frame_is_ours(ross, bearings, shaft):
+def test_ross_frame_conventions(ross, bearings, shaft):
     """Freedoms, right-handed tilts, sense of rotation, weight."""
     shafts, disks = shaft
     order = ("x", "y", "z", "alpha", "beta", "theta")
@@ -70,7 +70,7 @@ def test_its_frame_is_ours(ross, bearings, shaft):
     np.testing.assert_allclose(weight[1], -9.8065 * rotor.m, rtol=DIFFERENCE)
 
 
-def test_its_matrices_are_the_table(bearings):
+def test_to_ross_matrices_match_stiffness_table(bearings):
     table = np.asarray(bj.rotor.stiffness_table(ELEMENT, SPEEDS, LOAD))
     assert abs(table[:, 0, 1]).max() > 1e-3 * table.max()
     for speed, k in zip(SPEEDS, table, strict=True):
@@ -83,7 +83,7 @@ def test_its_matrices_are_the_table(bearings):
         )
 
 
-def test_a_rotor_in_its_bearings(ross, bearings, shaft):
+def test_to_ross_rotor_modes(ross, bearings, shaft):
     """Modes of the rotor from our stiffness put into ROSS's shaft by hand."""
     rotor = ross.Rotor(*shaft, bearings)
     speed = SPEEDS[2]

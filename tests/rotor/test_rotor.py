@@ -51,7 +51,7 @@ def test_the_rigid_rotor_of_the_paper():
         np.testing.assert_allclose(getattr(got, name), matrix, atol=atol, err_msg=name)
 
 
-def test_symmetry_and_what_a_rotor_weighs():
+def test_rotor_matrices_symmetry_and_mass():
     rotor = stepped()
     matrices = linearised(rotor, 100.0)
     mass, gyroscopic = np.asarray(matrices.mass), np.asarray(matrices.gyroscopic)
@@ -74,7 +74,7 @@ def test_symmetry_and_what_a_rotor_weighs():
     assert abs((k @ shaft)[30] / 5e7 - 1) < ROUNDING
 
 
-def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
+def test_disc_of_size_inertia_and_gyroscopic_moment():
     outer, bore, wide, rho = 0.3, 0.05, 0.07, 7850.0
     disc = bj.rotor.Disc.of_size(0, outer, wide, bore)
     m = rho * np.pi / 4 * (outer**2 - bore**2) * wide
@@ -95,7 +95,7 @@ def test_a_disc_from_its_size_and_a_tilt_of_its_axis():
     assert not still.any()
 
 
-def test_a_disc_that_no_body_can_be_is_told():
+def test_disc_warns_of_impossible_inertia():
     with pytest.warns(UserWarning, match="is above twice `diametral_inertia`"):
         bj.rotor.Disc(0, 6.0, 0.0201, 0.01)
     bj.rotor.Disc(0, 6.0, 0.02, 0.01)  # flat
@@ -120,7 +120,7 @@ def test_a_housing_is_in_series():
     assert found.housing.shape == (8, 1, 3) and found.shape.shape == (8, 3, 5)
 
 
-def test_modal_damping_is_that_of_every_mode():
+def test_modal_damping_applies_to_every_mode():
     for rigid in (True, False):
         found = bj.rotor.modes(paper(1.4e8, 1.3e7, bj.rotor.ModalDamping(0.02), rigid))
         np.testing.assert_allclose(found.damping_ratio, 0.02, rtol=1e-5)

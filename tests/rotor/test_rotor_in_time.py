@@ -26,7 +26,7 @@ FINE = {"tolerance": 1e-10, "max_steps": 4000}
 COUNT = 12
 
 
-def test_a_linear_oscillator_against_its_closed_form():
+def test_simulate_linear_oscillator_matches_closed_form():
     z, w, force = 0.1, 0.8, 0.3
     start = [0.5], [-0.2]
     history = simulate(
@@ -190,7 +190,7 @@ def test_phase_of_a_frequency_table():
     assert np.isinf(stopped.time_at(jnp.asarray(1.5)))
 
 
-def test_what_does_not_reach_its_end_says_so():
+def test_simulate_reports_failure_and_invalid_arguments():
     given = {"n_times": COUNT, **FINE}
     with pytest.raises(bj.SolveError, match="non_finite after .* of 20 s"):
         simulate(duffing(force=jnp.nan), 20.0, 0.9, **given)

@@ -34,7 +34,7 @@ class Cubic(AbstractSupport):
         return 2e7 * motion + hard + 200.0 * velocity
 
 
-def test_it_is_the_linear_rotor_where_supports_are_linear():
+def test_vibrating_rotor_with_linear_supports_matches_linear_rotor():
     housing = Housing(4.0, [3e8, 3e8, 3e8], [100.0, 100.0, 100.0])
     shaft = Shaft([0.0, 0.2, 0.5], [0.03, 0.03])
     disc = bj.rotor.Disc(1, 6.0, 0.02, 0.01)
@@ -58,7 +58,7 @@ def test_it_is_the_linear_rotor_where_supports_are_linear():
     assert orbit.steps == 1
 
 
-def test_damping_of_modes_counts_supports_as_they_are_at_the_speed():
+def test_vibrating_rotor_modal_damping_with_speed_supports():
     series = np.zeros((2, 5, 5))
     series[0] = np.diag([2e7, 2e7, 1e7, 1e3, 1e3])
     series[1] = -0.5 * series[0]
@@ -79,7 +79,7 @@ def test_damping_of_modes_counts_supports_as_they_are_at_the_speed():
         assert np.allclose(system.damping, wanted, rtol=0, atol=ROUNDING * largest)
 
 
-def test_the_rigid_rotor_is_that_of_the_paper():
+def test_rigid_rotor_matches_paper_rotor():
     angle, law = 36, grooves(36).fixed_angle()
     own = rotor(angle, damping_ratio=0.01, unbalance=3e-6)
     shaft = Shaft([0.0, 0.125, 0.5], [0.025, 0.025], material=bj.Material(2.1e11, 0.3))
@@ -107,7 +107,7 @@ def test_the_rigid_rotor_is_that_of_the_paper():
     assert np.isclose(ROTOR.mass()[4, 4], whole.mass, rtol=1e-12)
 
 
-def test_an_unbalance_that_speeds_up_has_a_tangential_force():
+def test_harmonic_load_of_accelerating_unbalance():
     """The force is less the second derivative of its moment in time."""
     load = eqx.tree_at(
         lambda load: (load.unbalance_cosine, load.unbalance_sine),

@@ -30,7 +30,7 @@ def opposed(offset=14e-6, diameter=0.025, load=WEIGHT, inertia=False):
     return bj.rotor.Rotor(shaft, bj.rotor.Disc(1, 10.0, 0.2, 0.1), supports), load
 
 
-def test_springs():
+def test_static_equilibrium_on_springs():
     """On springs it is what the whole stiffness matrix says."""
     rotor = stepped()
     loads = bj.rotor.RotorLoads(
@@ -92,7 +92,7 @@ def test_derivatives():
     assert (best < DIFFERENCE * np.abs(slopes).max(axis=1)[:, None]).all()
 
 
-def test_follows_the_speed():
+def test_static_equilibrium_over_speed():
     """Where balls feel the speed, the rotor over speeds is the one settled at each."""
     rotor, loads = opposed(inertia=True)
     over = bj.rotor.static_equilibrium_over(rotor, loads, 1000.0)
@@ -118,7 +118,7 @@ def test_follows_the_speed():
     np.testing.assert_array_equal(*ends)
 
 
-def test_nothing_holds_it():
+def test_static_equilibrium_without_load_path():
     """A load that nothing takes up, and a bearing that bears nothing, are said."""
     rotor, _ = opposed()
     rollers = bj.rotor.Rotor(
@@ -140,7 +140,7 @@ def test_nothing_holds_it():
     assert any("nothing holds" in text for text in texts)
 
 
-def test_settle_says_where_a_preload_is_lost():
+def test_static_equilibrium_warns_of_lost_preload():
     """Two bearings that face the same way push the shaft until neither presses."""
     rotor, loads = opposed(bj.rotor.preload_offset(ELEMENT, 200.0))
     shoved = bj.rotor.RotorLoads(
@@ -159,7 +159,7 @@ def test_settle_says_where_a_preload_is_lost():
     bj.rotor.static_equilibrium(rotor, loads)  # warns of nothing
 
 
-def test_clearance():
+def test_static_equilibrium_with_clearance():
     """Bearings with clearance take up the weight where they meet it."""
     rotor, loads = opposed(-5e-6, 0.05)
     found = bj.rotor.static_equilibrium(rotor, loads)

@@ -914,7 +914,7 @@ def test_wrong_file(run, tmp_path, name):
     assert message.startswith(f"bad.toml: {expected}")
 
 
-def test_file_that_is_not_text(run, tmp_path):
+def test_scene_file_not_utf8(run, tmp_path):
     path = tmp_path / "bad.toml"
     path.write_bytes(b"[bearing]\nname = '\xff'")
     message = one_line(run("solve", path))
@@ -933,7 +933,7 @@ def test_folder_in_place_of_a_file(run, tmp_path):
     assert one_line(run("solve", folder)) == f"{folder}: is a folder; name a file"
 
 
-def test_file_that_may_not_be_read(run, tmp_path, monkeypatch):
+def test_scene_file_without_read_permission(run, tmp_path, monkeypatch):
     path = a_file(tmp_path, TAPER)
 
     def refuse(*_, **__):
@@ -943,7 +943,7 @@ def test_file_that_may_not_be_read(run, tmp_path, monkeypatch):
     assert one_line(run("solve", path)) == "bad.toml: cannot be read: Permission denied"
 
 
-def test_tables_without_end(run, tmp_path):
+def test_scene_file_with_deep_nesting(run, tmp_path):
     text = TAPER + "x = " + 2000 * "[" + 2000 * "]"
     assert one_line(run("solve", a_file(tmp_path, text))).startswith("bad.toml: ")
 
@@ -957,7 +957,7 @@ def test_scene_of_a_contact(run, command):
     )
 
 
-def test_mark_before_the_text(tmp_path):
+def test_scene_file_with_byte_order_mark(tmp_path):
     """As editors of Windows write it."""
     path = tmp_path / "marked.toml"
     path.write_text(TAPER, encoding="utf-8-sig")
@@ -973,7 +973,7 @@ def test_revolutions_per_minute(unit):
 
 
 @pytest.mark.parametrize("text", ["2 Nm", "2000 N mm", "2000 Nmm", "0.002 kNm"])
-def test_moments_as_they_are_written(text):
+def test_moment_unit_spellings(text):
     scene = read_scene("tapered", [f"operating.load.Mx={text}"])
     assert scene.load[3] == pytest.approx(2.0, rel=1e-15)
 
@@ -987,19 +987,19 @@ def test_name_of_no_scene(run):
 
 
 @pytest.mark.parametrize("setting", ["operating.load.Fy", "=3", "a..b=3", "a b=3"])
-def test_what_is_not_a_setting(run, setting):
+def test_solve_rejects_malformed_setting(run, setting):
     message = one_line(run("solve", "cylindrical_rig", "--set", setting))
     start = f"cylindrical_rig.toml: {setting!r} is not a setting; write key=value, "
     assert message.startswith(start)
 
 
-def test_lines_of_a_setting_are_not_lost():
+def test_setting_of_two_lines_is_rejected():
     """The second line went unread."""
     with pytest.raises(SceneError, match=r"points`: '7\\nmore = 8' is not a whole"):
         read_scene("cylindrical_rig", ["output.points=7\nmore = 8"])
 
 
-def test_reader_raises_what_the_command_line_prints():
+def test_read_scene_raises_scene_error():
     with pytest.raises(SceneError, match=r"^tapered\.toml: `bearing\.n_rollers`: 0 is"):
         read_scene("tapered", ["bearing.n_rollers=0"])
 
@@ -1286,7 +1286,7 @@ BAD_UNITS = [
 
 
 @pytest.mark.parametrize("setting", BAD_UNITS)
-def test_unit_that_is_none(setting):
+def test_read_scene_rejects_invalid_units(setting):
     with pytest.raises(SceneError, match=setting.split("=")[0].replace(".", r"\.")):
         read_scene("cylindrical_rig", [setting])
 
@@ -1323,7 +1323,7 @@ def test_huge_integer(run, key, digits):
     one_line(run("solve", "cylindrical_rig", "--set", setting))
 
 
-def test_article_of_an_angle():
+def test_message_article_before_angle():
     with pytest.raises(SceneError, match="; an angle with its unit is wanted"):
         read_scene("cylindrical_rig", ["bearing.first_azimuth=90"])
 

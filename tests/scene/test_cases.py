@@ -74,7 +74,7 @@ def scene(tmp_path):
     return write
 
 
-def test_grid_runs_its_last_key_fastest(scene):
+def test_cases_grid_varies_last_key_fastest(scene):
     table = read_cases(scene(GRID))
     cases = table.cases
     assert cases.count == 12
@@ -105,7 +105,7 @@ def test_spectrum_has_hours(scene):
     assert table.cases.design is None
 
 
-def test_list_has_units_in_its_header(scene):
+def test_cases_list_units_in_header(scene):
     table = read_cases(scene('[cases]\nfile = "l.csv"', files={"l.csv": LIST}))
     np.testing.assert_allclose(table.cases.load[:, 1], [-1e3, -2e3])
     np.testing.assert_allclose(table.cases.load[:, 3], [0.5, 0.0])
@@ -164,7 +164,7 @@ def test_command_writes_a_row_per_case(run, undrawn, scene, tmp_path):
     undrawn("sweep_overview", out, "sweep", path, "--table", csv, others=[csv])
 
 
-def test_command_tells_of_cases_that_fail(run, scene, tmp_path):
+def test_sweep_command_reports_failed_cases(run, scene, tmp_path):
     cases = '[cases.grid]\noperating.load.Fz = ["0 N", "100 N"]'
     ended = run("sweep", scene(cases), "--table", tmp_path / "t.csv")
     assert ended.status == 3 and "1 of 2 cases not solved" in ended.err
@@ -322,7 +322,7 @@ def test_cases_against_the_scene(scene, change, message):
         (["--table", "nowhere/x.csv"], "its folder does not exist"),
     ],
 )
-def test_wrong_command(run, scene, arguments, message):
+def test_sweep_command_rejects_invalid_arguments(run, scene, arguments, message):
     ended = run("sweep", scene(GRID), *arguments)
     assert ended.status == 2 and message in ended.err
 
@@ -330,7 +330,7 @@ def test_wrong_command(run, scene, arguments, message):
 @pytest.mark.parametrize(
     ("name", "needed"), [("x.csv", "pyarrow"), ("x.XLSX", "openpyxl")]
 )
-def test_a_table_without_its_package_is_refused_before_the_sweep(
+def test_sweep_table_rejected_without_optional_package(
     run, scene, monkeypatch, name, needed
 ):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
@@ -342,7 +342,7 @@ def test_a_table_without_its_package_is_refused_before_the_sweep(
     assert ended == (2, "", problem)
 
 
-def test_a_sheet_has_so_many_rows(run, scene, monkeypatch):
+def test_sweep_table_rejects_rows_above_sheet_limit(run, scene, monkeypatch):
     monkeypatch.setattr(sweep_table, "MOST_ROWS", 11)
     monkeypatch.setattr(bj.scene, "run_cases", None)
     ended = run("sweep", scene(GRID), "--table", "x.xlsx")
@@ -410,7 +410,7 @@ def test_wrong_outputs(run, scene):
     assert ended.status == 2 and "names 'presure'; there are" in ended.err
 
 
-def test_warnings_of_designs_that_differ_in_numbers_are_one():
+def test_warnings_of_designs_merge_if_alike_but_for_numbers():
     told = cases_table._alike(
         ["loose by 0.42 µm"], ["loose by 0.42 µm", "loose by 3e-1 µm", "x"]
     )

@@ -58,7 +58,7 @@ def test_all_types_and_sixty_bearings_of_their_own():
     assert {e.geometry for e in ENTRIES} == {"published", "estimated"}
 
 
-def test_the_files_hold_nothing_that_is_not_read():
+def test_catalogue_files_hold_known_keys_only():
     known = {"also", "arrangements", "assumed", "bearing", "capacity_source"}
     known |= {"geometry", "geometry_source", "letter", "other", "printed"}
     sizes = {"bore", "outside_diameter", "width", "inner_width", "outer_width"}
@@ -199,7 +199,7 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
 
 
 @pytest.mark.parametrize("kind", sorted({e.type for e in ENTRIES}))
-def test_every_bearing_loads_and_its_new_scene_reads(kind, tmp_path):
+def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
     for entry in ENTRIES:
         # The arrangements of ribs differ in one word.
         if entry.type != kind or entry.table.get("arrangement", "NU") != "NU":
@@ -226,7 +226,7 @@ def test_every_bearing_loads_and_its_new_scene_reads(kind, tmp_path):
 @pytest.mark.parametrize(
     "name", ["6205", "30205", "7208B", "51108", "NU 208", "22220", "29412", "C2218K"]
 )
-def test_what_a_new_scene_offers_can_be_taken(name, tmp_path):
+def test_new_scene_with_optional_tables_reads(name, tmp_path):
     """All that may be added to it, with its # taken off, is a scene with a life."""
     scene, _, further = new_scene(bj.scene.catalogue_entry(name)).partition(
         "# What may"
@@ -361,7 +361,7 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     )
 
 
-def test_letters_that_change_the_geometry():
+def test_designation_letters_change_geometry():
     b, ac = (bj.catalogue_entry(f"7218 {letter}") for letter in ("B", "AC"))
     assert (b.table["contact_angle"], ac.table["contact_angle"]) == ("40 deg", "25 deg")
     assert b.table["n_balls"] == ac.table["n_balls"]
@@ -408,14 +408,14 @@ WRONG = {
 
 
 @pytest.mark.parametrize("written", WRONG)
-def test_wrong_designations_name_what_is_near(written):
+def test_load_bearing_suggests_similar_designations(written):
     with pytest.raises(bj.SceneError) as caught:
         bj.load_bearing(written)
     assert WRONG[written] in str(caught.value)
 
 
 @pytest.mark.parametrize("given", [6205, None, ["6205"], b"6205"])
-def test_a_designation_is_a_text(given, untyped):
+def test_catalogue_entry_rejects_non_text_designation(given, untyped):
     names = {bj.load_bearing: "source", bj.catalogue_entry: "designation"}
     for read, name in names.items():
         with pytest.raises(TypeError, match=f"`{name}` is .*; it must be a text such"):
@@ -520,7 +520,7 @@ def test_lines_left_over_from_another_designation_are_told(name, tmp_path):
     assert told is None or found[0].startswith("bearing: ") and told in found[0]
 
 
-def test_designs_of_a_sweep_are_told_once_and_what_varies_is_meant(tmp_path):
+def test_sweep_merges_catalogue_warnings_of_designs(tmp_path):
     path = tmp_path / "new.toml"
 
     def told(grid):
@@ -588,7 +588,7 @@ def test_wrong_capacity_of_the_catalogue(run):
     assert done.err.startswith("bearingjax: --min-capacity: '10' has no unit")
 
 
-def test_a_designation_is_no_scene(run):
+def test_solve_command_rejects_designation_as_scene(run):
     done = run("solve", "6205/C3")
     assert done.status == 2
     assert done.err.endswith(

@@ -74,7 +74,7 @@ def size_of_png(path):
     return struct.unpack(">II", head[16:24])
 
 
-def test_solved(run, tmp_path):
+def test_solve_command_writes_json_plot_and_report(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run("solve", "cylindrical_rig", "--json", out, "--plot", picture)
     assert done.status == 0 and done.err == ""
@@ -125,7 +125,7 @@ class Page(HTMLParser):
             self.words.append(data)
 
 
-def test_report_that_stands_alone(run, tmp_path):
+def test_solve_report_is_self_contained_html(run, tmp_path):
     path, pictures = tmp_path / "out.html", [tmp_path / "a.png", tmp_path / "b.png"]
     change = "operating.load.Fy=-9 kN"
     arguments = ("solve", "cylindrical_rig", "--set", change, "--report", path)
@@ -172,7 +172,7 @@ def test_a_report_of_strange_names_is_still_a_page(run, tmp_path):
     assert "# </pre><script>x</script>" in "\n".join(Page(text).words)
 
 
-def test_no_report_of_no_solution(run, tmp_path):
+def test_solve_without_solution_removes_old_report(run, tmp_path):
     path = tmp_path / "out.html"
     path.write_text("of an earlier run", encoding="utf-8")
     assert run(*PULLED, "--report", path).status == 3
@@ -180,7 +180,7 @@ def test_no_report_of_no_solution(run, tmp_path):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_report_that_cannot_be_written(run, tmp_path, monkeypatch):
+def test_solve_rejects_unwritable_report(run, tmp_path, monkeypatch):
     done = run("solve", "tapered", "--report", "out.pdf")
     assert done == (2, "", "bearingjax: out.pdf: a report ends in .html\n")
     path = tmp_path / "none" / "out.html"
@@ -231,7 +231,7 @@ def test_setting_changes_the_load(run, tmp_path):
     assert np.allclose(force, [-2e3, 0, 6e3, 0, 3], rtol=0.0, atol=6e3 * SOLVER)
 
 
-def test_pulled_apart(run, tmp_path):
+def test_solve_command_no_load_path(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.PNG"
     picture.write_text("of an earlier run", encoding="utf-8")
     drawing = tmp_path / "drawing.svg"
@@ -302,7 +302,7 @@ def test_wrong_usage(capsys, arguments):
     assert shown.out == "" and shown.err.startswith("usage: bearingjax")
 
 
-def test_an_unknown_option_is_told_with_the_usage_of_its_command(capsys):
+def test_unknown_option_prints_usage_of_command(capsys):
     with pytest.raises(SystemExit) as stop:
         cli.main(["life", "life_spectrum", "--plto", "out.png"])
     assert stop.value.code == 2
@@ -322,7 +322,7 @@ def test_help_tells_the_exit_status(capsys):
 
 @pytest.mark.usefixtures("no_solve")
 @pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_no_folder_to_write_to(run, tmp_path, option):
+def test_solve_rejects_output_in_missing_folder(run, tmp_path, option):
     path = tmp_path / "none" / "out.png"
     done = run("solve", "tapered", option, path)
     assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
@@ -331,7 +331,7 @@ def test_no_folder_to_write_to(run, tmp_path, option):
 
 @pytest.mark.usefixtures("no_solve")
 @pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_folder_to_write_to(run, tmp_path, option):
+def test_solve_rejects_folder_as_output(run, tmp_path, option):
     path = tmp_path / "out.png"
     path.mkdir()
     done = run("solve", "tapered", option, path)
@@ -339,7 +339,7 @@ def test_folder_to_write_to(run, tmp_path, option):
     assert str(path) in done.err and done.err.count("\n") == 1
 
 
-def test_reader_that_left(monkeypatch):
+def test_main_with_closed_pipe(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
     back, front = os.pipe()
@@ -397,14 +397,14 @@ def test_picture_without_matplotlib(run, tmp_path, monkeypatch, words):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_bad_scene_writes_nothing(run, tmp_path):
+def test_solve_bad_scene_writes_no_file(run, tmp_path):
     out = tmp_path / "out.json"
     bad = ("--set", "bearing.n_rollers=0")
     assert run("solve", "tapered", *bad, "--json", out).status == 2
     assert not out.exists()
 
 
-def test_as_a_program_of_its_own(tmp_path):
+def test_solve_in_new_process_reuses_stored_programs(tmp_path):
     """Float64, nothing on standard error, and the program kept for another load."""
     program = "import sys; from bearingjax.cli import main; sys.exit(main())"
     hidden = ("JAX_", "XLA_", "PYTHONWARNINGS")

@@ -68,7 +68,7 @@ def test_compare_two_loads(run, other, tmp_path):
     assert len(rows) == 1 + len(told) and "<h2>Results</h2>" in page.read_text("utf-8")
 
 
-def test_compare_a_scene_with_itself(run):
+def test_compare_identical_scenes(run):
     done = run("compare", SCENE, SCENE)
     assert done.status == 0
     assert done.out.startswith("the scenes are the same\n")
@@ -105,7 +105,7 @@ def test_difference(values, expected):
     np.testing.assert_equal(difference(np.array(values)), expected)
 
 
-def test_compare_leaves_out_what_is_small_beside_its_kind():
+def test_compare_omits_negligible_numbers():
     first = {"displacement_uy [m]": 1e-5, "displacement_ux [m]": 1e-13, "load [N]": 1.0}
     other = {"displacement_uy [m]": 2e-5, "displacement_ux [m]": -3e-11}
     found = _side_by_side([first, other])

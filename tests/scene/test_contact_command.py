@@ -193,7 +193,7 @@ def test_wrong_scenes(run, tmp_path, settings, message):
     assert not out.exists()
 
 
-def test_no_roller(tmp_path):
+def test_read_contact_without_roller_or_file(tmp_path):
     path = tmp_path / "empty.toml"
     path.write_text("[operating]\nload = '1 kN'\n", encoding="utf-8")
     with pytest.raises(SceneError, match=r"^empty\.toml: `roller`: is missing"):
@@ -202,7 +202,7 @@ def test_no_roller(tmp_path):
         read_contact("none.toml")
 
 
-def test_solved(run, rerun, tmp_path):
+def test_contact_command_writes_json_and_plot(run, rerun, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run(*TAPER, "--json", out, "--plot", picture)
     assert done.status == 0
@@ -228,7 +228,7 @@ def test_solved(run, rerun, tmp_path):
         (["numerics.half_width=0.03 mm"], "grid_misfit"),
     ],
 )
-def test_not_solved(run, tmp_path, settings, label):
+def test_contact_command_unsolved_case(run, tmp_path, settings, label):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     picture.write_text("of an earlier run", encoding="utf-8")
     changes = [word for text in settings for word in ("--set", text)]
@@ -256,7 +256,7 @@ def test_one_load_of_two_not_solved(run, tmp_path):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_nowhere_to_write(run, tmp_path):
+def test_contact_command_rejects_unwritable_output(run, tmp_path):
     path = tmp_path / "none" / "out.png"
     for option in ("--json", "--plot"):
         done = run(*ONE, option, path)
@@ -265,7 +265,7 @@ def test_nowhere_to_write(run, tmp_path):
     assert done.status == 2 and "ends in .png, .pdf or .svg" in done.err
 
 
-def test_a_roller_of_a_bearing(run, tmp_path):
+def test_contact_command_of_bearing_scene(run, tmp_path):
     """The scene of a bearing: solved, and one of its rollers looked at."""
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run(

@@ -109,7 +109,7 @@ def test_shipped_scene_is_the_published_case():
     assert "`half_angle` is 3 deg" in warning and "make 3.814 deg" in warning
 
 
-def test_cylinder_and_its_defaults(cylinder):
+def test_read_contact_cylinder_defaults(cylinder):
     scene = read_contact(cylinder)
     contact = scene.contact
     assert scene.warnings == () and not scene.listed and scene.tilt is None

@@ -66,7 +66,7 @@ def test_another_geometry_is_rated_by_the_standards(read):
     assert not_published(scene, harmless) == []
 
 
-def test_ratings_that_nobody_prints_are_told_so(read):
+def test_not_published_lists_unprinted_ratings(read):
     scene = read('designation = "7308 C"', "[life]\n")
     assert rated(life_conditions(scene)) == (None, None, None)
     (line,) = not_published(scene)
@@ -103,14 +103,14 @@ def test_who_gave_a_rating_is_told(read):
     assert list(rating_origins(other)) == ["dynamic_capacity"]
 
 
-def test_both_rows_of_a_self_aligning_bearing_are_in_its_ratings(read):
+def test_rated_capacity_of_self_aligning_bearing_covers_both_rows(read):
     entry = bj.catalogue_entry("1205")
     assert rated(life_conditions(read('designation = "1205"')))[0] == (
         entry.dynamic_capacity
     )
 
 
-def test_a_clearance_that_only_restates_the_catalogue_is_its_class(read):
+def test_clearance_restating_catalogue_keeps_class(read):
     fit = '[fit]\nshaft = "k5"\nhousing = "H7"\nhousing_diameter = "80 mm"\n'
     restated = 'designation = "6205"\nradial_internal_clearance = "12.5 um"'
     limits = read(restated, fit).fits.limits["clearance"]
@@ -198,14 +198,14 @@ def test_every_command_tells_the_speeds_of_the_catalogue(command, tmp_path):
     assert not any("catalogue" in line for line in slow(path))
 
 
-def test_each_bearing_of_a_sweep_has_its_own_speeds(tmp_path):
+def test_sweep_over_designations_limiting_speed_warnings(tmp_path):
     text = f'[bearing]\ndesignation = "6205"\n{LOAD}inner_speed = "12000 rpm"\n'
     text += '[cases.grid]\nbearing.designation = ["6205", "6210", "6206"]\n'
     told = [line for line in cases(tmp_path, text).warnings if "limiting" in line]
     assert len(told) == 1 and told[0].endswith("in 1 of 3 cases, worst case 1")
 
 
-def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):
+def test_sweep_over_designations_ratings(tmp_path):
     names = ["7208 BE", "7210 BE", "7308 C"]
     table = cases(tmp_path, f"{CATALOGUED}bearing.designation = {names}")
     assert [made["bearing.designation"] for made in table.settings] == names
@@ -218,7 +218,7 @@ def test_each_bearing_of_a_sweep_has_its_own_ratings(tmp_path):
     assert found["7308 C"] is None  # from the geometry
 
 
-def test_rows_that_vary_have_their_ratings(tmp_path):
+def test_sweep_over_row_count_ratings(tmp_path):
     tandem = '[set]\narrangement = "tandem"\nspacing = "18 mm"\n'
     text = CATALOGUED.replace("[cases", tandem + "[cases")
     counts = "{ start = 1, stop = 2, count = 2 }"
@@ -234,7 +234,7 @@ def test_rows_with_bearings_of_their_own_are_rated_by_the_standards(read):
     assert rated(life_conditions(scene)) == (None, None, None)
 
 
-def test_a_clearance_that_varies_is_that_of_the_scene(tmp_path):
+def test_sweep_over_clearance_of_catalogue_bearing(tmp_path):
     key = "bearing.radial_internal_clearance"
     text = CATALOGUED.replace("7208 B", "6205") + f'{key} = ["10 um", "12.5 um"]'
     (part,) = (table := cases(tmp_path, text)).structures
@@ -256,7 +256,7 @@ def test_ratings_come_back_from_the_json(read, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["NJ 206 EC", "30205 J2", "1205 E/C3", "51108"])
-def test_an_echo_overrides_nothing(read, tmp_path, name):
+def test_echo_of_designation_overrides_no_keys(read, tmp_path, name):
     scene = read(f'designation = "{name}"', settings=["operating.load.Fz=1 N"])
     path = tmp_path / "again.json"
     path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")

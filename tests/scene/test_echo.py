@@ -42,7 +42,7 @@ def echoed(path, scene):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_units_of_the_echo_are_read_as_they_are(kind):
+def test_echo_units_are_si(kind):
     assert to_si(f"0.1 {KINDS[kind][0]}", kind) == 0.1
 
 
@@ -147,7 +147,7 @@ def check_same(one, other):
 
 
 @pytest.mark.parametrize("what", OTHERS)
-def test_the_echo_of_every_command_is_its_scene(tmp_path, what):
+def test_echo_of_every_command_reads_as_scene(tmp_path, what):
     reader, name, settings = OTHERS[what]
     task = reader(name, settings)
     path = tmp_path / f"{name}.json"
@@ -157,7 +157,7 @@ def test_the_echo_of_every_command_is_its_scene(tmp_path, what):
     check_same(task, again)
 
 
-def test_what_stands_in_files_stands_in_the_echo(tmp_path):
+def test_echo_includes_contents_of_files(tmp_path):
     """Or where the file is, so that the echo is read from anywhere."""
     folder, away = tmp_path / "here", tmp_path / "away"
     folder.mkdir()
@@ -197,7 +197,7 @@ def test_defaults_are_filled_in():
     assert inputs["numerics"]["points"] == 32
 
 
-def test_a_designation_stands_beside_its_numbers(tmp_path):
+def test_echo_of_designation_keeps_numbers(tmp_path):
     path = tmp_path / "listed.toml"
     path.write_text('[bearing]\ndesignation = "6205/C3"\n', encoding="utf-8")
     scene = read_scene(path)
@@ -222,7 +222,7 @@ shaft_roughness = "0.8 um"
 """
 
 
-def test_fits_are_in_it(tmp_path):
+def test_echo_includes_fits(tmp_path):
     """A class of clearance stands for the number that the bearing has not."""
     text = bj.scene.shipped_scenes()["deep_groove"].read_text(encoding="utf-8")
     lines = [x for x in text.splitlines() if "radial_internal_clearance" not in x]
@@ -237,7 +237,7 @@ def test_fits_are_in_it(tmp_path):
         np.testing.assert_array_equal(one, other)
 
 
-def test_settings_are_in_it():
+def test_echo_includes_settings():
     inputs = read_scene("tapered", ["operating.load.Fz=-6 kN"]).inputs
     assert inputs["operating"]["load"]["Fz"] == "-6000.0 N"
 

@@ -48,7 +48,7 @@ def fails(code):
 
 
 @pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
-def test_the_scene_is_not_overwritten(run, own, command):
+def test_output_rejects_path_of_read_scene(run, own, command):
     before = own.read_bytes()
     done = run(command, "self.toml", "--json", own)
     problem = "is read as self.toml here; --json would overwrite it; name another file"
@@ -56,7 +56,7 @@ def test_the_scene_is_not_overwritten(run, own, command):
     assert own.read_bytes() == before
 
 
-def test_nor_by_a_link_or_from_another_folder(run, own, tmp_path):
+def test_output_rejects_link_to_read_scene(run, own, tmp_path):
     (tmp_path / "deep").mkdir()
     os.link(own, tmp_path / "hard.toml")
     (tmp_path / "soft.json").symlink_to(own)
@@ -66,13 +66,13 @@ def test_nor_by_a_link_or_from_another_folder(run, own, tmp_path):
     assert own.read_text(encoding="utf-8").endswith('file = "list.csv"\n')
 
 
-def test_nor_a_shipped_scene(run, own):
+def test_output_rejects_path_of_shipped_scene(run, own):
     path = bj.scene.shipped_scenes()["tapered"]
     done = run("solve", "tapered", "--json", path)
     assert done.status == 2 and "is read as tapered.toml here" in done.err
 
 
-def test_nor_the_list_of_cases(run, own, tmp_path):
+def test_output_rejects_path_of_cases_list(run, own, tmp_path):
     done = run("sweep", "self.toml", "--table", "list.csv")
     assert done.status == 2 and done.err.count("\n") == 1
     assert "list.csv: is read as list.csv here; --table would overwrite" in done.err
@@ -80,7 +80,7 @@ def test_nor_the_list_of_cases(run, own, tmp_path):
 
 
 @pytest.mark.parametrize("place", ["x.png", "./x.png", "link.png"])
-def test_no_place_twice(run, own, tmp_path, place):
+def test_outputs_reject_equal_json_and_plot_path(run, own, tmp_path, place):
     (tmp_path / "link.png").symlink_to("x.png")
     done = run("solve", "self.toml", "--json", "x.png", "--plot", place)
     problem = "is named by --json and by --plot; name two files"
@@ -88,12 +88,12 @@ def test_no_place_twice(run, own, tmp_path, place):
     assert done.err.endswith(f"{place[-5:]}: {problem}\n")
 
 
-def test_table_and_json_at_one_place(run, own):
+def test_outputs_reject_equal_json_and_table_path(run, own):
     done = run("sweep", "self.toml", "--json", "x.csv", "--table", "x.csv")
     assert done.status == 2 and "x.csv: is named by" in done.err
 
 
-def test_write_protected(own, tmp_path, monkeypatch):
+def test_check_outputs_rejects_write_protected_paths(own, tmp_path, monkeypatch):
     """As for somebody who is not the superuser, who may write anywhere."""
     path = tmp_path / "x.json"
     path.write_text("old", encoding="utf-8")
@@ -121,7 +121,7 @@ def test_files_come_together_or_not_at_all(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["one.json", "two.png"]
 
 
-def test_a_picture_that_fails_costs_itself_alone(tmp_path):
+def test_write_outputs_with_failing_writers(tmp_path):
     error, part = ValueError("no scale"), Incomplete("without its drawing")
 
     def wrong(path):
@@ -143,7 +143,7 @@ def test_a_picture_that_fails_costs_itself_alone(tmp_path):
     assert page.read_text(encoding="utf-8") == "whole"
 
 
-def test_an_interrupted_writer_leaves_nothing(tmp_path):
+def test_write_outputs_interrupted_leaves_no_files(tmp_path):
     def stopped(path):
         path.write_text("half", encoding="utf-8")
         raise KeyboardInterrupt
@@ -153,14 +153,14 @@ def test_an_interrupted_writer_leaves_nothing(tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_what_this_run_does_not_have_is_removed(tmp_path):
+def test_write_outputs_removes_stale_files(tmp_path):
     stale = tmp_path / "old.png"
     stale.write_text("old", encoding="utf-8")
     assert write_outputs([(stale, None), (tmp_path / "none.png", None)])[0] == [stale]
     assert os.listdir(tmp_path) == []
 
 
-def test_a_link_stays_and_so_do_the_rights(tmp_path):
+def test_write_outputs_keeps_link_and_permissions(tmp_path):
     (tmp_path / "far").mkdir()
     target, link = tmp_path / "far" / "x.json", tmp_path / "x.json"
     target.write_text("old", encoding="utf-8")
@@ -171,28 +171,28 @@ def test_a_link_stays_and_so_do_the_rights(tmp_path):
     assert target.stat().st_mode & 0o777 == 0o640
 
 
-def test_a_device_is_written_straight(tmp_path):
+def test_write_outputs_to_device(tmp_path):
     null = type(tmp_path)(os.devnull)
     check_outputs({"--json": null, "--plot": null})
     write_outputs([(null, text("x"))])
     assert not null.is_file()
 
 
-def test_numbers_that_are_not_finite_are_null(tmp_path):
+def test_write_numbers_non_finite_as_null(tmp_path):
     path = tmp_path / "x.json"
     write_numbers(path, {"a": [1.0, float("nan")], "b": {"c": float("inf"), "d": "x"}})
     numbers = json.loads(path.read_text(encoding="utf-8"))
     assert numbers == {"a": [1.0, None], "b": {"c": None, "d": "x"}}
 
 
-def test_a_dash_is_no_file(run, own, tmp_path):
+def test_output_rejects_dash(run, own, tmp_path):
     done = run("solve", "self.toml", "--json", "-")
     problem = "--json -: name a file; /dev/stdout is the screen"
     assert done == (2, "", f"bearingjax: {problem}\n")
 
 
 @pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
-def test_interrupted(run, own, monkeypatch, command):
+def test_command_interrupted_exit_status(run, own, monkeypatch, command):
     def stop(*_, **__):
         raise KeyboardInterrupt
 

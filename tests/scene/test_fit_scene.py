@@ -132,7 +132,7 @@ def test_the_usual_fits_of_a_6205(scene):
     assert clearance(read.running()) == pytest.approx(left, rel=1e-9)
 
 
-def test_a_bearing_of_the_catalogue_brings_its_sizes(scene):
+def test_fit_of_catalogue_bearing(scene):
     text = FIT.replace('bore = "25 mm"\noutside_diameter = "52 mm"\n', "").replace(
         'clearance = "CN"\n', ""
     )
@@ -212,7 +212,7 @@ housing_diameter = "270 mm"
 """
 
 
-def test_a_tapered_bore_is_driven_up_its_seat(scene):
+def test_fit_drive_up_of_tapered_bore(scene):
     text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
     read = bj.read_scene(scene(text))
     facts = read.fits.facts
@@ -366,7 +366,7 @@ def test_hybrid_balls_expand_less(scene):
     assert float(seats.elements.material.elastic_modulus) == 310e9
 
 
-def test_a_pair_is_pressed_by_its_fits(scene):
+def test_fit_of_pair_changes_inner_offsets(scene):
     settings = ["fit.at=tightest", "fit.shaft=j5"]
     fit = FIT.replace('clearance = "CN"', 'ring_width = "15 mm"')
     read = bj.read_scene(scene(PAIR + fit), settings)
@@ -473,7 +473,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     assert _on_seats(table.structures[0], solved) is solved
 
 
-def test_what_varies_need_not_stand_in_the_scene(scene):
+def test_fit_key_varied_by_cases_may_be_absent(scene):
     """The first value is the scene's own then; each case has its own all the same."""
     fit = FIT.replace('shaft = "k5"\n', "")
     grid = '[cases.grid]\nfit.shaft_interference = ["4 um", "9 um"]\n'
@@ -577,7 +577,7 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
     np.testing.assert_allclose(each / each[-1], by_hand, rtol=1e-9)
 
 
-def test_an_interference_that_is_sought_need_not_stand_in_the_scene(scene):
+def test_fit_key_optimised_may_be_absent(scene):
     """It begins in the middle of its bounds, or where it is told to; cases have it."""
     text = BEARING + FIT.replace('shaft = "k5"\n', "").replace('housing = "H7"\n', "")
     text += (
@@ -792,7 +792,7 @@ def test_wrong_fits(scene, name):
     assert "\n" not in message
 
 
-def test_bearings_that_need_numbers(scene):
+def test_fit_rejects_unsuitable_bearings(scene):
     with pytest.raises(SceneError, match="`fit`: is for radial bearings"):
         bj.read_scene(scene(THRUST + FIT))
     fit = FIT.replace('clearance = "CN"', "")
@@ -827,7 +827,7 @@ temperature = { inner_ring = "45 degC", shaft = "45 degC" }
 """
 
 
-def test_a_rotor_turns_on_its_fits(scene):
+def test_read_rotor_with_fits(scene):
     """Each bearing has the clearance of its own fits, at the speed of the rotor."""
     other = scene(BEARING + FIT)
     path = other.with_name("rotor.toml")
@@ -861,7 +861,7 @@ def test_a_rotor_turns_on_its_fits(scene):
         assert clearance(support.element) == clearance(other.element)
 
 
-def test_what_a_rotor_tells_of_its_fits(scene):
+def test_rotor_report_and_warnings_of_fits(scene):
     path = scene(BEARING + FIT).with_name("rotor.toml")
     path.write_text(ROTOR, encoding="utf-8")
     task = read_rotor(path, ["rotor.bearings.0.bearing=own"])
@@ -973,7 +973,7 @@ objective = "rating_life"
 
 
 @pytest.mark.slow
-def test_command_optimises_a_life_by_its_fit(run, scene, tmp_path, untyped):
+def test_optimise_command_life_by_interference(run, scene, tmp_path, untyped):
     """It tells hours, and warns of the seats of the best design, not of the start."""
     turning = BEARING.replace("[operating]", '[operating]\ninner_speed = "1500 rpm"')
     seats = FIT.replace('shaft = "k5"', 'shaft_interference = "20 um"')

@@ -35,7 +35,7 @@ def solution():
     return run_scene(bj.read_scene(SCENE, SAID))
 
 
-def test_a_scene_has_the_conditions_of_its_life():
+def test_read_scene_life_conditions():
     life = bj.read_scene(SCENE).life
     assert isinstance(life, bj.LifeConditions)
     oil = OILS["ISO VG 68"]().kinematic_viscosity(343.15)
@@ -66,7 +66,9 @@ def test_dirt_of_a_grease_goes_with_a_supply_of_grease(supply, dirt, told):
     assert told is None or told in found[0]
 
 
-def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, untyped):
+def test_solve_command_life_matches_rating_life(
+    run, rerun, tmp_path, solution, untyped
+):
     out = tmp_path / "out.json"
     told = run("solve", SCENE, *SETTINGS, "--json", out)
     assert told.status == 0 and "[cases] are for sweep" in told.err
@@ -108,9 +110,7 @@ def test_solve_tells_the_life_that_python_has(run, rerun, tmp_path, solution, un
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
-def test_a_spectrum_adds_up_the_damage_of_its_cases(
-    run, rerun, undrawn, tmp_path, untyped
-):
+def test_life_command_spectrum_sums_damage(run, rerun, undrawn, tmp_path, untyped):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
     page, picture = tmp_path / "out.html", tmp_path / "out.png"
     drawn = ("--report", page, "--plot", picture)
@@ -152,7 +152,7 @@ def test_a_spectrum_adds_up_the_damage_of_its_cases(
     undrawn("life_overview", out, *again, others=[table])
 
 
-def test_a_case_that_is_not_solved_leaves_no_life(run, tmp_path):
+def test_life_command_with_unsolved_case_has_no_life(run, tmp_path):
     """Likewise a sweep whose cases carry no speed leaves no hours."""
     path, out = tmp_path / "bad.toml", tmp_path / "out.json"
     text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
@@ -243,7 +243,7 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     assert not any(re.search(" h$", line) for line in lines)
 
 
-def test_cases_are_told_by_what_differs(untyped):
+def test_spectrum_report_labels_cases_by_differing_keys(untyped):
     """Whatever the key; and how each runs, the least safe one by its number."""
     run = two_cases()[0]
     text = str(spectrum_report(run))
@@ -264,7 +264,7 @@ def test_cases_are_told_by_what_differs(untyped):
         assert label == "\n".join(["1", *told.split(", ")])
 
 
-def test_a_page_says_whose_fits_it_shows(untyped):
+def test_spectrum_page_fits_of_scene(untyped):
     """Those of the scene, beside the clearances of its cases."""
     fit = "bore=25 mm", "outside_diameter=62 mm", "housing_diameter=90 mm"
     seats = [f"fit.{one}" for one in (*fit, "shaft=k5", "housing=H7")]

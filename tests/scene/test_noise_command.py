@@ -173,7 +173,7 @@ def test_a_model_by_hand_vibrates_alike(scene):
     assert np.allclose(doubled, 2.0 * found.analysis.acceleration, atol=0.05 * size)
 
 
-def test_lines_name_the_wave_that_makes_them(scene):
+def test_noise_lines_name_causing_wave(scene):
     """Order 8 of 7 balls shakes the rings radially, at BPFI + the shaft."""
     task = read_noise(scene)
     modes = jax.device_get(natural_modes(task.model))
@@ -205,7 +205,7 @@ def test_lines_name_the_wave_that_makes_them(scene):
     assert causes == ("waves of the inner raceway, order 8",)
 
 
-def test_what_is_not_solved_is_no_result(run, scene, tmp_path):
+def test_noise_command_unsolved_static_equilibrium(run, scene, tmp_path):
     out, table = tmp_path / "a.json", tmp_path / "a.csv"
     table.write_text("of an earlier run", encoding="utf-8")
     files = ("--json", out, "--table", table)
@@ -239,7 +239,7 @@ def test_round_off_is_no_noise(scene):
         assert any(text.startswith("nothing shakes") for text in found.warnings)
 
 
-def test_a_motion_that_runs_away_is_no_result(scene):
+def test_run_noise_diverging_motion_is_non_finite(scene):
     # As many steps as the scene itself needs: far too few for so much damping.
     steps = needed_steps(read_noise(scene).model, 64)
     given = ["vibration.retardation=1 ms", f"vibration.steps={steps}"]
@@ -250,7 +250,7 @@ def test_a_motion_that_runs_away_is_no_result(scene):
     assert set(noise_as_dict(found)) == WORDS
 
 
-def test_what_is_doubtful_is_told(scene):
+def test_noise_model_warnings(scene):
     task = read_noise(scene, ["deviations.waves.0.order=60"])
     few, *high, fast = model_warnings(task.model, 64, 1)
     least = needed_steps(task.model, 64)
@@ -313,7 +313,7 @@ def test_random_bearings(run, scene, tmp_path):
     assert picture.stat().st_size > 10_000
 
 
-def test_random_bearings_need_to_know_how_they_scatter(run, scene):
+def test_noise_monte_carlo_requires_tolerance(run, scene):
     done = run("noise", "noise_four_point", "--monte-carlo", 2)
     assert done.status == 2 and "`vibration.tolerance`: is missing" in done.err
     done = run("noise", scene, "--monte-carlo", 0)

@@ -281,7 +281,7 @@ def test_shipped_scenes_read(name):
     assert bj.read_scene(name).load == tuple(map(float, task.model.load))
 
 
-def test_the_paper_bearing_is_that_of_its_tables():
+def test_read_noise_four_point_matches_paper_tables():
     task = read_noise("noise_four_point")
     model = task.model
     bearing = model.element.bearing
@@ -368,7 +368,7 @@ def test_tolerances_by_grade_and_by_number():
     assert (task.seed, task.bearings) == (4, 5)
 
 
-def test_random_bearings_have_what_all_of_the_line_have():
+def test_read_noise_random_bearings_keep_common_errors():
     """Waves and spalls; spectra, profiles and unlike balls are of one bearing alone."""
     task = read_noise("noise_deep_groove", bearings=2)
     one, line = (model.errors_of_rows[0] for model in (task.model, task.line))
@@ -399,7 +399,7 @@ def test_tighter_grades_and_classes_make_less_of_their_sources():
     assert read_noise("noise_deep_groove", [best], bearings=2).tighter == ()
 
 
-def test_the_ring_that_moves_is_the_one_that_is_not_fixed():
+def test_read_noise_moving_ring():
     for settings, moving in (
         (["operating.fixed_ring=outer"], "inner"),
         (["operating.fixed_ring=outer", "vibration.moving_ring=inner"], "inner"),
@@ -417,7 +417,7 @@ HELD = (
 
 
 @pytest.mark.parametrize("settings", HELD, ids=lambda s: s[0].partition("=")[0])
-def test_the_ring_tilts_unless_it_is_held(settings):
+def test_read_noise_held_tilt(settings):
     free, held = (
         read_noise("noise_four_point"),
         read_noise("noise_four_point", settings),
@@ -430,7 +430,7 @@ def test_the_ring_tilts_unless_it_is_held(settings):
     assert float(given.model.inertia) == pytest.approx(float(free.model.inertia))
 
 
-def test_a_moment_needs_a_ring_that_tilts():
+def test_read_noise_rejects_moment_with_held_tilt():
     moment = "operating.load={Fz='85 N', Mx='1 N m'}"
     assert read_noise("noise_four_point", [moment]).model.load[3] == 1.0
     with pytest.raises(SceneError, match="NoiseModel: `load` is .*it does not tilt"):

@@ -136,7 +136,7 @@ def test_wrong_oils(scene, setting):
     assert str(caught.value).startswith(f"oil.toml: {WRONG[setting]}")
 
 
-def test_a_scene_that_skids_may_say_both():
+def test_read_skid_with_supply_and_roughness():
     settings = ["lubricant.supply=oil_jet", "lubricant.roughness=0.2 um"]
     from bearingjax.scene import read_skid
 

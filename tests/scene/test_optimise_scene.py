@@ -115,7 +115,7 @@ def test_start_without_a_solution(run, scene, tmp_path):
     assert "starting design fails: case 0: no_load_path: No load path in uz" in done.err
 
 
-def test_measure_that_does_not_fit_is_an_error_of_the_scene(run, scene, monkeypatch):
+def test_optimise_command_invalid_measure_is_scene_error(run, scene, monkeypatch):
     def refuse(*_, **__):
         raise ValueError("Displacement: `freedom` is 'ux', which is not free")
 
@@ -125,7 +125,7 @@ def test_measure_that_does_not_fit_is_an_error_of_the_scene(run, scene, monkeypa
     assert "free: Displacement: `freedom` is 'ux'" in done.err
 
 
-def test_progress_is_shown_to_who_watches_and_wants_it(run, scene, monkeypatch):
+def test_optimise_command_progress_on_terminal_only(run, scene, monkeypatch):
     asked = []
 
     def note(*_, progress, **__):
@@ -143,7 +143,7 @@ def test_progress_is_shown_to_who_watches_and_wants_it(run, scene, monkeypatch):
     assert asked == [False, True, False]
 
 
-def test_shipped_scene_says_what_it_wants():
+def test_read_optimisation_of_shipped_scene():
     task = read_optimisation("fujiwara_kawase")
     assert [v.name.rpartition(".")[2] for v in task.variables] == [
         "load_factor",
@@ -348,12 +348,12 @@ def test_scene_without_the_table(run):
     assert "cylindrical_rig.toml: `optimise` is missing" in done.err
 
 
-def test_picture_only_where_it_can_be_written(run, tmp_path):
+def test_optimise_command_rejects_unwritable_plot(run, tmp_path):
     done = run("optimise", "fujiwara_kawase", "--plot", tmp_path / "no" / "x.png")
     assert done.status == 2 and "its folder does not exist" in done.err
 
 
-def test_a_free_number_is_read_in_the_unit_of_its_field():
+def test_read_optimisation_variable_units():
     ask = "optimise.objective=peak_pressure", "optimise.exponent=32"
     shoulder = "bearing.outer_shoulder"
     table = '{"%s" = {from = "1 mm", to = "%s"}, "bearing.outer_osculation"'

@@ -24,7 +24,7 @@ def test_column_cells(column, cells):
     assert column.cells() == cells
 
 
-def test_column_heading_has_the_unit_that_is_shown():
+def test_column_heading_units():
     assert Column("load", [1.0], "N").heading == ("load", "kN")
     assert Column("both", [1e-6], ["m"]).heading == ("both", "")
     assert Column("none", [], "Pa").heading == ("none", "MPa")
@@ -68,6 +68,6 @@ def test_report_text_and_page_hold_the_same():
     assert "<h2>Empty</h2>" not in page and page.count('<table class="grid">') == 2
 
 
-def test_report_shows_the_sections_that_are_asked_for():
+def test_report_only_selects_sections():
     report = Report({"a": ["first"], "b": ["second"]}, ["odd"]).only(("b", "none"))
     assert str(report) == "second\nwarning: odd"

@@ -109,7 +109,7 @@ def test_interrupted_twice_and_taken_up(run, scene, tmp_path, struck, ending):
     assert done.status == 0 and "6 converged" in done.out
 
 
-def test_only_what_belongs_together(run, scene, tmp_path, struck):
+def test_resume_rejects_table_of_other_scene(run, scene, tmp_path, struck):
     path, table = scene(), tmp_path / "t.csv"
     struck.append(signal.SIGINT)
     assert run("sweep", path, "--table", table).status == 130
@@ -138,7 +138,7 @@ def test_only_what_belongs_together(run, scene, tmp_path, struck):
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet", "xlsx"])
-def test_numbers_of_designs_come_back_as_they_were_written(tmp_path, ending):
+def test_resume_design_columns_round_trip(tmp_path, ending):
     """A clearance with its unit, bare numbers of other spellings, a load of nought."""
     grid = """
 [cases.grid]
@@ -160,7 +160,7 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
         np.testing.assert_array_equal(again[name], values)
 
 
-def test_what_is_zero_has_no_column_and_comes_back(tmp_path):
+def test_resume_restores_omitted_zero_columns(tmp_path):
     """A tilt held at zero, free motions that are, a ring that stands; a tilt that is
     zero in some cases only has its column."""
     tilts = {"gx": [0.0, 0.0, 0.0], "gy": [0.0, 1e-3, 0.0]}
@@ -209,7 +209,7 @@ def test_resume_needs_a_table(run, scene):
     assert done == (2, "", f"bearingjax: {problem}\n")
 
 
-def test_without_a_table_it_says_what_would_help(run, scene, struck):
+def test_interrupted_sweep_without_table_suggests_resume(run, scene, struck):
     struck.append(signal.SIGINT)
     done = run("sweep", scene())
     assert done.status == 130

@@ -192,7 +192,7 @@ def _same_as_the_library(found):
     ),
 )
 @pytest.mark.slow
-def test_a_shaft_with_fast_modes_has_its_linear_response_by_every_method(response):
+def test_run_rotor_fast_modes_match_linear_response(response):
     """Modes of up to 80 times the excitation, peaks between the samples, and
     resonances of some hundred times the preload of a bearing."""
     unbalance = "[{station=1, moment='1 kg mm', phase='20 deg'}]"
@@ -213,7 +213,7 @@ def test_a_shaft_with_fast_modes_has_its_linear_response_by_every_method(respons
     assert apart.max() < 1e-6 * found.amplitude.max()
 
 
-def test_a_reduction_that_changes_the_response_is_told():
+def test_run_rotor_warns_of_coarse_reduction():
     task = read_rotor(
         "rotor_paper_12",
         settings(
@@ -226,7 +226,7 @@ def test_a_reduction_that_changes_the_response_is_told():
     )
 
 
-def test_what_is_not_asked_for_is_not_there(run, rerun, tmp_path):
+def test_rotor_command_without_campbell_and_response(run, rerun, tmp_path):
     out = tmp_path / "a.json"
     text = _without("campbell", "response")
     path = tmp_path / "plain.toml"
@@ -247,7 +247,7 @@ def test_what_is_not_asked_for_is_not_there(run, rerun, tmp_path):
 IN_TIME = {"rotor.transient": "{duration='1 ms', n_times=3}"}
 
 
-def test_a_table_has_the_series_that_is_asked_for(run, tmp_path):
+def test_rotor_command_table_series(run, tmp_path):
     table = tmp_path / "a.csv"
     given = command(FEW, ON_SPRINGS, LINEAR, IN_TIME)
     done = run(*given, "--table", table)
@@ -264,7 +264,7 @@ def test_a_table_has_the_series_that_is_asked_for(run, tmp_path):
         rotor_series(only, "response")
 
 
-def test_stiffness_over_the_speed_reaches_as_far_as_it_is_asked():
+def test_rotor_top_speed_covers_requested_speeds():
     """Beyond the last speed a bearing's stiffness would silently stay what it is."""
     for more, top in (
         ({}, 16000.0),
@@ -317,7 +317,7 @@ def _without(*names):
     return text
 
 
-def test_a_linear_response_and_what_is_doubtful(monkeypatch):
+def test_run_rotor_linear_response_and_warnings(monkeypatch):
     def idle(*given):
         warnings.warn(
             "static_equilibrium: the bearing on station 0 bears nothing", stacklevel=2
@@ -348,7 +348,7 @@ def test_a_linear_response_and_what_is_doubtful(monkeypatch):
 
 
 @pytest.mark.parametrize("part", ["static", "response"])
-def test_what_is_not_solved_is_no_result(run, tmp_path, part):
+def test_rotor_command_unsolved_part(run, tmp_path, part):
     out, table = tmp_path / "a.json", tmp_path / "a.csv"
     if part == "static":
         # Nothing holds it across the shaft, and its weight pulls.

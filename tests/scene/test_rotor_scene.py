@@ -271,7 +271,7 @@ def test_shipped_rotors_read(name):
     assert len(task.mounts) == 2
 
 
-def test_the_paper_rotor_is_that_of_its_table():
+def test_read_rotor_paper_rotor_matches_table():
     task = read_rotor("rotor_paper_26")
     assert np.allclose(task.shaft.stations, [0.0, 0.125, 0.5], rtol=ROUNDING)
     assert task.rigid and task.axis == "none"
@@ -350,7 +350,7 @@ def test_frequencies_count_vibrations_or_turns():
         assert task.response.end == pytest.approx(value)
 
 
-def test_unbalance_at_a_speed_of_its_own_is_odd():
+def test_read_rotor_warns_of_response_at_other_speed():
     task = read_rotor("rotor_flexible", ["rotor.response.speed=3000 rpm"])
     (warning,) = task.warnings
     assert "unbalance turns at another speed" in warning
@@ -373,12 +373,12 @@ def test_unbalance_at_a_speed_of_its_own_is_odd():
         ),
     ),
 )
-def test_what_does_not_go_together_is_odd(settings, words):
+def test_read_rotor_warns_of_inconsistent_keys(settings, words):
     (warning,) = read_rotor("rotor_flexible", settings).warnings
     assert words in warning
 
 
-def test_a_clearance_beside_its_class_is_odd():
+def test_read_rotor_warns_of_clearance_beside_class():
     task = read_rotor("rotor_flexible", ["bearings.locating.designation=6208/C3"])
     (warning,) = task.warnings
     assert warning.startswith("locating: bearing: `radial_internal_clearance` (6 um)")

@@ -193,7 +193,7 @@ def test_skidding_solves_the_mounted_bearing(written):
     np.testing.assert_allclose(facts(found), facts(by_hand(False)), rtol=1e-12)
 
 
-def test_reports_show_the_bearing_that_is_solved(written, monkeypatch):
+def test_reports_show_solved_bearing(written, monkeypatch):
     """Drawing and text under [cases]: offsets of the preload included."""
     path, solved = written("cases"), by_hand()
     np.testing.assert_allclose(

@@ -129,7 +129,7 @@ def test_force_is_the_load_and_stands_in_balance(solved):
     assert np.allclose(force[:6] + force[6:], 0.0, rtol=0.0, atol=atol)
 
 
-def test_the_fixed_ring_stands(solved):
+def test_displacement_of_fixed_ring_is_zero(solved):
     q = solved["displacement"].copy()
     q[solved.moving] = 0.0
     assert np.all(q == 0.0)
@@ -148,7 +148,7 @@ def test_azimuths_are_those_of_the_drawing(solved):
     assert np.allclose(solved["azimuth"], expected, rtol=ROUNDING, atol=0.0)
 
 
-def test_pressure_stands_where_load_does(solved):
+def test_contact_pressure_nonzero_where_loaded(solved):
     load, pressure = solved["line_load"], solved["contact_pressure"]
     assert load.min() == 0.0 and pressure.min() == 0.0
     assert np.array_equal(load > 0.0, pressure > 0.0)
@@ -167,7 +167,7 @@ def test_logarithmic_rollers_are_unloaded_at_their_ends(taper):
     assert load[:, :, POINTS // 2].min() > 0.0
 
 
-def test_a_tilt_that_nothing_holds_is_a_warning(taper):
+def test_solve_warns_of_free_tilt(taper):
     (text,) = taper.numbers["warnings"]
     tilt = 1e3 * np.hypot(*taper["displacement"][9:11])
     assert text.startswith(f"the ring tilts freely, {tilt:.3g} mrad where makers of ro")
@@ -175,7 +175,7 @@ def test_a_tilt_that_nothing_holds_is_a_warning(taper):
     assert straight.numbers["warnings"] == []
 
 
-def test_only_the_rib_that_is_there_is_loaded(rig, taper):
+def test_rib_load_at_existing_rib_only(rig, taper):
     assert np.all(rig["rib_load"] == 0.0)
     ribs = taper["rib_load"]
     assert np.all(ribs[:, [0, 1, 3]] == 0.0) and np.all(ribs[:, 2] > 0.0)
@@ -197,7 +197,7 @@ def test_json_is_the_dictionary(taper, tmp_path):
     assert json.loads(text) == taper.numbers
 
 
-def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
+def test_json_without_solution_omits_numbers(pulled, tmp_path):
     assert tuple(pulled.numbers) == WORDS
     assert pulled.numbers["result"] == "no_load_path"
     assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
@@ -207,7 +207,7 @@ def test_json_of_no_solution_has_no_numbers(pulled, tmp_path):
     assert read == pulled.numbers
 
 
-def test_json_knows_no_nan(tmp_path):
+def test_json_has_null_for_nan(tmp_path):
     solved = solve("cylindrical_rig", "operating.load.Fy=1e300 N")
     assert tuple(solved.numbers) == WORDS
     assert solved.numbers["result"] == "non_finite"
@@ -235,7 +235,7 @@ def motion(text):
     return shift, load
 
 
-def test_telling_compiles_nothing(solved):
+def test_report_and_dict_run_no_jax_operations(solved):
     """Each small JAX operation on the way would be compiled, for 20 ms and more."""
     turning = BallKinematics(*np.ones((2, 4)), *np.ones((3, 4, 2)))
     with jax.transfer_guard("disallow"):  # nor can JAX compute with NumPy's numbers
@@ -339,7 +339,7 @@ def test_report_of_the_taper(taper):
     assert warning == taper.numbers["warnings"][0]
 
 
-def test_report_says_what_was_solved_with_what(rig, taper):
+def test_report_states_freedoms_speeds_materials_and_laws(rig, taper):
     """Freedoms, speeds, materials, laws: without them no number can be judged."""
     text = str(report(taper.found))
     assert "\nfree: ux uy uz gx gy (the default: all that the bearing" in text
@@ -369,7 +369,7 @@ def test_a_warning_of_the_drawing_is_told_with_the_solution():
     assert f"\nwarning: {text}" in str(report(solved.found))
 
 
-def test_no_load_is_no_contact():
+def test_report_without_load():
     solved = solve("cylindrical_rig", "operating.load={}")
     text = str(report(solved.found))
     assert rows(text) == []

@@ -86,7 +86,7 @@ def read_text(folder, text, settings=()):
     return bj.read_scene(path, settings)
 
 
-def test_shipped_scenes_are_these():
+def test_shipped_scenes_list_is_complete():
     assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *SHAFTS, *NOISE}
 
 
@@ -177,7 +177,7 @@ def test_pitch_diameter_follows_from_the_sphere(offset, tmp_path):
     assert float(found.element.bearing.pitch_diameter) == near(pitch)
 
 
-def test_shipped_spherical_roller_bearing_says_what_it_is():
+def test_design_sections_of_shipped_roller_scenes():
     """No solution is needed for its sizes."""
 
     def told(name):
@@ -569,7 +569,7 @@ def test_settings_are_toml_or_bare_text():
     assert bj.read_scene("cylindrical_rig").load[1] == -10600.0
 
 
-def test_speeds_of_zero_are_no_speed():
+def test_read_scene_zero_speed_is_none():
     assert bj.read_scene("tapered", ["operating.inner_speed=0 rpm"]).speed is None
 
 
@@ -706,7 +706,7 @@ def test_point_constants():
     assert [float(law.outer), float(law.inner)] == pytest.approx([3e10, 2.0])
 
 
-def test_slices_that_press_on_each_other():
+def test_read_scene_coupled_slices():
     setting = ("contact.line_law=coupled_slices", "contact.slices=12")
     element = bj.read_scene("tapered", setting).element
     assert element.line_law == bj.contact.CoupledSlices(12)

@@ -74,7 +74,7 @@ def left(read, at):
     return float(bj.statics.remaining_preload(bj.Installed(ground, None, *seats).at()))
 
 
-def test_solve_tells_it(run, scene, tmp_path):
+def test_solve_command_reports_preload(run, scene, tmp_path):
     out = tmp_path / "out.json"
     done = run("solve", scene, "--json", out)
     assert done.status == 0 and done.err == ""
@@ -128,7 +128,7 @@ def test_solve_tells_it(run, scene, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_sweep_tells_that_of_each_case(scene):
+def test_sweep_reports_preload_of_each_case(scene):
     """Of cases of two designs at three loads, each as by hand."""
     warmth = '"temperature.inner_ring" = ["45 °C", "30 °C"]'
     loads = '"operating.load.Fz" = ["500 N", "0 N", "-200 N"]'
@@ -153,7 +153,7 @@ def test_a_sweep_tells_that_of_each_case(scene):
     assert "operation: at `fit.at` alone, not over the tolerances" in report
 
 
-def test_a_search_may_free_it(scene):
+def test_read_optimisation_preload_force_variable(scene):
     free = '"set.preload_force" = { from = "50 N", to = "0.5 kN" }\n'
     with scene.open("a", encoding="utf-8") as file:
         file.write(
@@ -167,7 +167,7 @@ def test_a_search_may_free_it(scene):
     assert best.preload_force == best.installed.preload == 350.0
 
 
-def test_what_is_warned_of():
+def test_preload_and_range_warnings():
     def told(*numbers):
         return preload_warnings(SetPreload(*numbers))
 

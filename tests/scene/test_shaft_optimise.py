@@ -97,7 +97,7 @@ def scene(tmp_path):
 
 
 @pytest.mark.slow
-def test_command(run, scene, tmp_path):
+def test_optimise_command_of_shaft_scene(run, scene, tmp_path):
     """Text, JSON, page and picture; the lives are those of `bearingjax shaft`."""
     out, page, picture = (tmp_path / name for name in ("o.json", "o.html", "o.png"))
     written = {"--json": out, "--report": page, "--plot": picture}
@@ -121,7 +121,7 @@ def test_command(run, scene, tmp_path):
     assert alone.hours.min() == pytest.approx(after, rel=1e-6)
 
 
-def test_studies(scene):
+def test_study_of_optimise_scene(scene):
     """The scene is one of `optimise`; `shaft` takes its numbers as they stand."""
     path = scene()
     assert bj.scene.study_of(path) == "optimise"
@@ -129,7 +129,7 @@ def test_studies(scene):
     assert "optimise" in read_optimisation(path).inputs
 
 
-def test_what_may_be_free(scene):
+def test_shaft_numbers_list_variables(scene):
     """Numbers of bearings, segments and wheels, those of a mesh with all its gears."""
     from bearingjax.scene.shaft_optimise import shaft_numbers
 
@@ -189,7 +189,7 @@ def test_wrong_tables(scene, name):
     assert "\n" not in str(error.value)
 
 
-def test_heat(scene):
+def test_read_optimisation_rejects_heat_table(scene):
     with pytest.raises(SceneError, match="does not go with"):
         read_optimisation(
             scene(
@@ -198,7 +198,7 @@ def test_heat(scene):
         )
 
 
-def test_springs_have_no_life(scene):
+def test_read_optimisation_rejects_life_of_springs(scene):
     pair = (ASKED, f'{ASKED}\nof = "C"')
     with pytest.raises(SceneError, match="'C' is not known"):
         read_optimisation(scene(pair, more=GEARS))

@@ -418,7 +418,7 @@ def test_no_bearings(tmp_path):
         read_shafts(scene)
 
 
-def test_other_commands_say_whose_scene_it_is(run, path):
+def test_solve_command_rejects_shaft_scene(run, path):
     done = run("solve", path)
     assert done.status == 2
     assert "`bearingjax shaft gears` solves it" in done.err

@@ -249,7 +249,7 @@ def test_start_at_rest_under_turning_rings():
     assert any("gross skidding, slip up to 100 %" in text for text in done.warnings)
 
 
-def test_a_motion_that_ends_early_is_told_as_far_as_it_goes(run, history, tmp_path):
+def test_skid_output_of_incomplete_motion(run, history, tmp_path):
     """Five of nine times, as if the step limit had been met."""
     found = history.found
 
@@ -328,7 +328,7 @@ def changed(state, **values):
     return state._replace(**full)
 
 
-def test_what_is_doubtful(end):
+def test_skid_warnings_of_each_kind(end):
     """Each kind of warning, of conditions as they might be."""
     model, found, state = end.task.model, end.found, end.state
 
@@ -374,7 +374,7 @@ def test_what_is_doubtful(end):
     assert "films down to 0.02 µm, less than 3 times" in told(least_film=2e-8)
 
 
-def test_end_state_says_what_it_leaves_out():
+def test_skid_end_state_warns_of_ignored_keys():
     given = ("dynamics.axis=horizontal", "dynamics.load={time=['0 s'], Fy=['1 N']}")
     asked = read_skid("skid_combined", [*GIVEN, *given], steady=True)
     told = run_skid(asked).warnings
@@ -492,7 +492,7 @@ def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
     assert zones(single) == []
 
 
-def test_heat_of_a_contact_is_that_of_its_picture(end):
+def test_sliding_ellipse_heat_matches_contact_heat(end):
     """The integral over the points of the picture, by Simpson's rule."""
     found, model = end.found, end.task.model
     at = 3, 0

@@ -355,7 +355,7 @@ def test_shipped_roller_scene():
     assert task.scene.free == ("ux", "uy")
 
 
-def test_what_stands_in_the_tables_of_surroundings():
+def test_read_skid_cage_and_dynamics_tables():
     task = read_skid(
         "skid_axial",
         [
@@ -408,7 +408,7 @@ def test_oils():
     np.testing.assert_allclose(alone.viscosity(0.0, 323.15), 0.04, rtol=ROUNDING)
 
 
-def test_what_is_assumed_of_an_oil_is_said():
+def test_read_skid_warns_of_assumed_oil_density():
     task = read_skid("skid_axial", [ROELANDS + THIN + "}"])
     assert task.oil == "roelands"
     assert task.warnings == (
@@ -416,7 +416,7 @@ def test_what_is_assumed_of_an_oil_is_said():
     )
 
 
-def test_a_supply_that_changes_nothing_is_told():
+def test_read_skid_warns_of_supply_without_effect():
     (told,) = read_skid("skid_axial", ["lubricant.supply=grease"]).warnings
     assert told.startswith("`lubricant.supply` 'grease' counts for the friction torque")
 

@@ -27,7 +27,7 @@ def test_study_reads_every_shipped_scene(name):
     STUDIES[study_of(name)].read(name, [])
 
 
-def test_run_solves_the_scene_with_its_settings(untyped):
+def test_run_solves_scene_with_settings(untyped):
     found = bj.run("cylindrical_rig", ["operating.load.Fy=-2 kN"])
     assert isinstance(found, bj.Solution) and found.converged
     assert float(found.force[1]) == pytest.approx(-2000.0, rel=1e-9)

@@ -253,7 +253,7 @@ def test_floating_bearing():
         np.testing.assert_allclose(axial, wanted, atol=1e-6)
 
 
-def test_nothing_holds_the_shaft():
+def test_solve_system_without_axial_support():
     line = ShaftLine("s", [0.3], [0.04])
     seats = [ball(n, "s", z, floating=True) for n, z in (("A", 0.05), ("B", 0.25))]
     load = ShaftLoad("p", "s", 0.12, (0.0, -2000.0, 900.0))
@@ -262,7 +262,7 @@ def test_nothing_holds_the_shaft():
 
 
 @pytest.mark.parametrize("axial", [-900.0, 100.0])
-def test_tapers_that_face_one_way(axial):
+def test_solve_system_tapers_in_tandem_without_load_path(axial):
     """Nothing holds them against a pull, or against what their radial loads press them
     apart with."""
     taper = bj.Installed(bj.BearingElement(bj.load_bearing("30206")))
@@ -273,7 +273,7 @@ def test_tapers_that_face_one_way(axial):
         solve_system(ShaftSystem(line, seats, loads=load))
 
 
-def test_nothing_acts():
+def test_solve_system_without_load_and_weight():
     """A turning shaft in loose bearings without load and weight is in balance."""
     line = ShaftLine("s", [0.3], [0.04])
     seats = [ball(n, "s", z) for n, z in (("A", 0.05), ("B", 0.25))]
@@ -316,7 +316,7 @@ def test_places_of_gears_and_bearings():
         assert one.speed is not None
 
 
-def test_shaft_drawn_from_its_other_end():
+def test_solve_system_reversed_shaft_keeps_bearing_loads():
     """It is the same shaft, with its bearings turned. The elements stand mirrored about
     local x, and so in the same places: one of them stands at azimuth 0."""
     taper = bj.Installed(bj.BearingElement(bj.load_bearing("30206")))

@@ -50,7 +50,7 @@ def test_linear_case(growth):
     )
 
 
-def test_a_node_that_settles_fast():
+def test_steady_rises_with_fast_settling_node():
     """Steps in time grow even if one node settles a thousand times faster."""
 
     def made(rises, _):
@@ -159,7 +159,7 @@ def test_warming_up_ends_in_the_equilibrium():
     np.testing.assert_allclose(over[-1], last, atol=0.02)
 
 
-def test_seats_feel_the_warmth():
+def test_solve_heat_with_and_without_seats():
     """Without seats temperature acts through the oil alone."""
     with_seats = solve_heat(spindle(), network())
     without = solve_heat(spindle(mounting=None), network())
@@ -169,7 +169,7 @@ def test_seats_feel_the_warmth():
 
 
 @pytest.mark.slow
-def test_preload_that_grows_with_heat_runs_away():
+def test_solve_heat_thermal_runaway_of_preloaded_pair():
     """A stiffly preloaded pair without a way for its heat does not settle; the speed
     from which it does not lies between one that settles and one that does not."""
     hot = HeatNetwork(293.15, [ThermalPaths(0.05, 0.6, OIL, housing_share=0.0)] * 2)

@@ -140,7 +140,7 @@ def test_case_without_equilibrium(problem):
         (Variable("system.wheels.0.helix_angle", 0.1, 0.3), "meshing gears have"),
     ],
 )
-def test_bounds_that_no_design_allows(problem, variable, wanted):
+def test_optimise_rejects_inadmissible_shaft_variables(problem, variable, wanted):
     with pytest.raises(ValueError, match=wanted):
         optimise(problem.element, problem.cases, [variable], SystemLife())
 
@@ -166,7 +166,7 @@ def test_wrong_calls(problem):
         load_cases([design], [1.0, 2.0])
 
 
-def test_parts_keep_their_order():
+def test_with_parts_keeps_plans():
     """Other numbers of a system need no new order; its checks run."""
     system = stage(seats)
     moved = eqx.tree_at(lambda s: s.position, system.seats[0], jnp.asarray(0.05))

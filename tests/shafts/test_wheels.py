@@ -84,7 +84,7 @@ BACK = {"pitch_angle": np.pi / 2 - CONE}
         stage(),
     ],
 )  # fmt: skip
-def test_action_is_reaction(system):
+def test_mesh_forces_are_opposite(system):
     """The force on each gear, from its own torque and geometry, is minus that on its
     mate; and power comes out."""
     flow = power_flow(system)
@@ -253,7 +253,7 @@ def fork(*outputs):
     return ShaftSystem(lines, seats, drive, wheels, couplings=outputs)
 
 
-def test_power_that_divides():
+def test_power_flow_with_two_outputs():
     """One of two outputs follows from the other."""
     with pytest.raises(ValueError, match="may leave by the shafts b, c"):
         power_flow(fork())
@@ -266,7 +266,7 @@ def test_power_that_divides():
         power_flow(fork(Coupling("x", "b"), Coupling("y", "c")))
 
 
-def test_torques_that_do_not_balance():
+def test_solve_system_rejects_unbalanced_torques():
     system = published()
     wheel = Gear("G3", "A1", 0.2785, 24, 4e-3, mesh_angle=0.0, torque=100.0)
     wrong = ShaftSystem(system.shafts, system.seats, system.drive,

@@ -112,7 +112,7 @@ def test_slip_is_the_difference_of_surface_velocities(ball):
                 np.testing.assert_allclose(got, want, rtol=1e-11, atol=1e-12)
 
 
-def test_inlets_that_warm_up(ball):
+def test_tractions_film_with_inlet_heating(ball):
     """Films of the formula, and at rest as thick as cool ones."""
     oil, warm = mil_l_23699(), jnp.asarray(OIL_TEMPERATURE)
     loading = oil.thermal_loading(warm, 1.0)
@@ -172,7 +172,7 @@ def test_moments_are_those_of_the_forces(ball):
             np.testing.assert_allclose(pulls.ring_torque[c], on_ring, rtol=1e-11)
 
 
-def test_a_free_ball_keeps_its_angular_momentum(ball):
+def test_rates_of_free_ball_keep_angular_momentum(ball):
     """Seen from outside: dΩ/dt + ω x Ω = 0, and its orbit stays."""
     for state, speed in motions():
         pulls = tractions(ball, Newtonian(), sliding(ball, state, speed))
@@ -196,7 +196,7 @@ def test_rates_and_forces_agree(ball):
         np.testing.assert_allclose(float(ball.moment) * spinning, moment, rtol=1e-9)
 
 
-def test_an_unloaded_ball_feels_nothing():
+def test_tractions_of_unloaded_ball_vanish():
     """Values and gradients are finite, at rest too."""
 
     @jax.jit

@@ -134,7 +134,7 @@ def test_power(roller, law):
         np.testing.assert_allclose([held, pushed], 0.0, atol=1e-9)
 
 
-def test_an_unloaded_roller_feels_nothing():
+def test_tractions_of_unloaded_roller_vanish():
     """Values and gradients are finite, at rest too."""
 
     @jax.jit
@@ -218,7 +218,7 @@ def test_slip_falls_with_load_and_rises_with_speed(found):
 
 
 @pytest.mark.parametrize("name", [60.0, 1000.0, "both"])
-def test_loads_are_those_of_the_orbit_that_is_found(found, name):
+def test_steady_roller_loads_match_orbit_speed(found, name):
     """Rollers are thrown outwards as they orbit, however far they slip, and those that
     stand in the bearing carry its load."""
     end = found[0][name]
@@ -234,7 +234,7 @@ def test_loads_are_those_of_the_orbit_that_is_found(found, name):
     np.testing.assert_allclose(at[:, 1] @ np.sin(angle), 0.0, atol=1e-8 * load)
 
 
-def test_balances(found):
+def test_steady_rollers_power_and_force_balance(found):
     """Power of the drive is heat; forces of the cage add up to nothing; tractions on
     a roller add up to those of cage and oil."""
     for name in (*LOADS, "slow", "back", "both", "stiff"):
@@ -265,7 +265,7 @@ def test_loaded_rollers_drive_the_cage(found):
     assert ratio.min() < 0.995 * ratio.max()
 
 
-def test_without_drag_they_roll(found):
+def test_steady_rollers_roll_without_drag(found):
     end = found[0]["none"]
     np.testing.assert_allclose(end.slip, 0.0, atol=SOLVER)
     np.testing.assert_allclose(end.spin, end.rolling_spin, rtol=SOLVER)
@@ -299,7 +299,7 @@ def test_gradients(found):
 
 
 @pytest.mark.slow
-def test_in_time_they_end_where_the_steady_state_is(found):
+def test_simulated_rollers_reach_steady_state(found):
     """With pockets so tight and stiff that all orbit with the cage; from rolling on,
     the last orbits."""
     end = found[0][1000.0]

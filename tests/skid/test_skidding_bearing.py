@@ -125,7 +125,7 @@ def test_gradients_are_those_of_differences(evaluated):
 
 
 @pytest.mark.slow
-def test_a_case_at_rest_counts_for_nothing(evaluated):
+def test_skidding_case_at_rest_has_no_weight(evaluated):
     found = evaluated(design(), spectrum(speeds=np.array([SPEEDS[0], 0.0])))
     assert float(found.solution.cage_slip[1]) == 0.0
     alone = evaluated(design(), spectrum(speeds=np.full(2, SPEEDS[0])))
@@ -150,7 +150,7 @@ def test_least_torque_has_as_much_slip_as_is_allowed():
 
 
 @pytest.mark.slow
-def test_what_cannot_be_kept_is_named():
+def test_optimise_names_infeasible_constraint():
     found = search(1e-6, max_steps=8)
     assert found.result == "infeasible"
     assert "; slip of the cage is 0.00" in found.message
@@ -158,7 +158,7 @@ def test_what_cannot_be_kept_is_named():
 
 
 @pytest.mark.slow
-def test_designs_that_do_not_solve_say_why():
+def test_optimise_raises_for_failing_skid_cases():
     with pytest.raises(bj.SolveError, match="case 0: no_load_path"):
         search(cases=spectrum(axial=-200.0))
     with pytest.raises(bj.SolveError, match="must be a multiple of 12"):
@@ -166,7 +166,7 @@ def test_designs_that_do_not_solve_say_why():
 
 
 @pytest.mark.slow
-def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
+def test_message_of_unconverged_end_state(evaluated):
     start = design()
     solved = evaluated(start, spectrum()).solution
     lost = bj.Result.STEP_LIMIT
@@ -178,7 +178,7 @@ def test_an_end_state_that_is_not_found_rejects_the_design(evaluated):
 
 
 @pytest.mark.slow
-def test_what_is_doubtful_of_the_best_design():
+def test_optimise_warnings_of_end_states():
     """As of the end state of each case, and in how many cases."""
     cold = eqx.tree_at(lambda d: d.model.temperature, design(), np.float64(290.0))
     cases = spectrum(axial=[0.0, 480.0])

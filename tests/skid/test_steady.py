@@ -88,7 +88,7 @@ def row(result, k):
     return jax.tree.map(lambda a: np.asarray(a)[k], result)
 
 
-def test_axial_loads_end_where_they_should(axial):
+def test_steady_axial_loads_match_published_slip_and_pitch(axial):
     """AF001-11, AF001-12 and AF001-14."""
     assert np.all(axial.result == Result.CONVERGED)
     for k, (slip, angle) in enumerate(ENDS.values()):
@@ -209,7 +209,7 @@ def test_ring_displacement(combined):
     np.testing.assert_allclose(np.abs(moved[[1, 2, 3]]), want, rtol=1e-3)
 
 
-def test_one_place_stands_for_all(axial, many_places):
+def test_steady_single_place_matches_many_places(axial, many_places):
     """Under an axial load the periodic orbit is even."""
     many, end = row(many_places, -1), row(axial, list(ENDS).index(120.0))
     assert int(many.result) == Result.CONVERGED
@@ -296,7 +296,7 @@ def test_stiff_oil_does_not_hide_slip(stiff):
 
 
 @pytest.mark.parametrize("celsius", [-40.0, -20.0])
-def test_a_ring_finds_its_place_beside_the_tractions_of_a_glass(celsius):
+def test_steady_converges_for_glassy_oil(celsius):
     """Whose round-off is as large as the load that is not balanced at first."""
     model = at(celsius)
     load, speed = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0]), Speed(inner=1047.2)
@@ -306,7 +306,7 @@ def test_a_ring_finds_its_place_beside_the_tractions_of_a_glass(celsius):
     assert abs(float(end.imbalance)) < 1e-6
 
 
-def test_stress_beyond_what_oil_bears_is_told(stiff):
+def test_skid_warnings_shear_stress_above_pressure(stiff):
     """At 0 °C and 0.91 GPa."""
     end, model = stiff(600.0, SPEED, celsius=0.0), at(0.0)
     state = conditions(model, end, SPEED)
@@ -332,7 +332,7 @@ def test_derivative_of_the_torque_at_such_stress():
     np.testing.assert_allclose(got, (8.0 * narrow - wide) / 6.0, rtol=1e-5)
 
 
-def test_torque_is_that_of_the_ring_that_drives(stiff):
+def test_friction_torque_is_taken_at_driven_ring(stiff):
     outer = stiff(80.0, Speed(outer=SPEED.inner))
     torque = outer.friction_torque
     np.testing.assert_allclose(torque * float(SPEED.inner), outer.power.drive)
@@ -342,7 +342,7 @@ def test_torque_is_that_of_the_ring_that_drives(stiff):
 
 
 @pytest.mark.parametrize("axial, speed", [(40.0, SPEED), (400.0, STIFF)])
-def test_loads_are_those_of_the_orbit_that_is_found(stiff, axial, speed):
+def test_steady_ball_loads_match_orbit_speed(stiff, axial, speed):
     """As where load solve and end state are repeated in turn until they agree."""
     load = np.array([0.0, 0.0, axial, 0.0, 0.0, 0.0])
     end = skid.steady(MODEL, load, speed=speed, free=FREE, places=1)
@@ -371,13 +371,13 @@ def test_without_load_drag_stops_the_balls():
     assert any("nothing drives" in text for text in skid_warnings(MODEL, end, state))
 
 
-def test_one_place_does_not_stand_for_unlike_balls(one_place):
+def test_steady_single_place_rejects_unequal_loads(one_place):
     assert int(one_place.result[-1]) == Result.GRID_MISFIT
     with pytest.raises(ValueError, match="unlike loads"):
         under(600.0, radial=200.0)
 
 
-def test_failure_is_told():
+def test_steady_without_load_path():
     load = jnp.array([0.0, 0.0, -120.0, 0.0, 0.0, 0.0])  # pulled apart
     with pytest.raises(SolveError):
         skid.steady(MODEL, load, speed=SPEED, free=FREE, places=1)

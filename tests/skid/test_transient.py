@@ -102,7 +102,7 @@ def test_power_balance(given):
         np.testing.assert_allclose(work.drag[-1], mean, rtol=1e-2)
 
 
-def test_mean_torque_is_that_of_whole_orbits():
+def test_mean_friction_torque_over_whole_orbits():
     """Of a torque that swings twice an orbit of the cage, over two of four orbits."""
     found = run()
     turn = 2.0 * np.pi * np.linspace(0.0, 4.3, found.time.size)
@@ -118,7 +118,7 @@ def test_mean_torque_is_that_of_whole_orbits():
     assert short.mean_friction_torque[1] == 0
 
 
-def test_it_starts_at_rest():
+def test_simulate_from_rest():
     found = run(speed=FROM_REST)
     np.testing.assert_array_equal(found.orbit_speed[0], 0.0)
     np.testing.assert_array_equal(found.spin[0], 0.0)
@@ -128,7 +128,7 @@ def test_it_starts_at_rest():
     assert np.all(at_end > 0.1) and np.all(at_end < 1.0)
 
 
-def test_a_finer_tolerance_changes_less_than_it_says():
+def test_simulate_error_is_within_tolerance():
     """As long as the balls do not strike the cage."""
     coarse, fine, exact = (
         run(tolerance=t, duration=0.015).slip for t in (1e-6, 5e-7, 1e-9)
@@ -137,7 +137,7 @@ def test_a_finer_tolerance_changes_less_than_it_says():
     assert np.max(np.abs(fine - exact)) < 5e-7
 
 
-def test_it_ends_where_the_steady_state_is():
+def test_simulate_reaches_steady_state():
     """Balls free in wide pockets; the cage starts with their final speed."""
     end = steady(LIGHT)
     model = with_cage(pocket_clearance=8e-3)
@@ -158,7 +158,7 @@ def test_it_ends_where_the_steady_state_is():
         np.testing.assert_allclose(got, want, rtol=1e-6, atol=1e-6 * np.max(want))
 
 
-def test_under_a_radial_load_it_follows_the_periodic_motion():
+def test_simulate_follows_periodic_motion_under_radial_load():
     """As long as the balls do not touch the cage."""
     orbit = steady(BOTH)
     wide = with_cage(pocket_clearance=8e-3)
@@ -195,7 +195,7 @@ def varying():
     return swing, run(Varying(NOTHING, swing), tolerance=1e-6)
 
 
-def test_loads_that_vary_are_those_of_the_bearing_at_every_time(varying):
+def test_simulate_varying_load_matches_static_solutions(varying):
     """Solved alone, with the balls where they are at that time."""
     swing, found = varying
     assert np.ptp(found.displacement[:, 6]) > 5e-7
@@ -221,13 +221,13 @@ def test_loads_that_vary_are_those_of_the_bearing_at_every_time(varying):
         np.testing.assert_allclose(got, want.displacement, atol=2e-5 * near)
 
 
-def test_power_balance_under_a_load_that_varies(varying):
+def test_simulate_power_balance_under_varying_load(varying):
     _, found = varying
     assert int(found.result) == 0
     assert np.max(np.abs(found.imbalance)) < 1e-6 * float(found.work.drive[-1])
 
 
-def test_a_load_that_is_held_ends_where_the_steady_state_is():
+def test_simulate_reaches_steady_state_after_load_change():
     """Behind one across the axis; balls free in wide pockets, in no even spacing."""
     axial = np.array([0.0, 0.0, 120.0, 0.0, 0.0, 0.0])
     share = np.array([1.0, 1.0, 0.0, 0.0, 0.0])[:, None]
@@ -248,7 +248,7 @@ def test_a_load_that_is_held_ends_where_the_steady_state_is():
     )
 
 
-def test_a_load_that_ceases_and_comes_back():
+def test_simulate_interrupted_load():
     """Without load nothing holds the ring; balls lie in the outer raceway."""
     share = np.array([1.0, 1.0, 0.0, 0.0, 1.0])
     history = LoadHistory(TIMES, np.outer(share, BOTH))
@@ -262,7 +262,7 @@ def test_a_load_that_ceases_and_comes_back():
     assert np.max(np.abs(found.imbalance)) < 1e-5 * float(found.work.drive[-1])
 
 
-def test_a_load_that_pulls_the_ring_away_says_so():
+def test_simulate_reports_no_load_path_for_reversed_load():
     """An angular contact bearing bears axial loads of one sense only."""
     share = np.array([1.0, 1.0, -1.0, -1.0, 1.0])
     history = LoadHistory(TIMES, np.outer(share, BOTH))
@@ -271,7 +271,7 @@ def test_a_load_that_pulls_the_ring_away_says_so():
         run(Varying(history, still), tolerance=1e-5)
 
 
-def test_a_load_that_does_not_vary_is_that_of_the_table():
+def test_simulate_constant_load_matches_table():
     """At the beginning, with the balls where the ring was balanced for the table."""
     still = SinusoidalLoad(BOTH, np.zeros(6), SPEED.inner)
     given = dict(duration=1e-6, tolerance=1e-7)
@@ -322,7 +322,7 @@ def test_gravity_adds_no_energy_over_a_turn():
     assert np.max(np.abs(tilted.slip - flat.slip)) > 1e-4
 
 
-def test_without_load_it_still_ends():
+def test_simulate_without_load():
     found = run(np.zeros(6))
     assert int(found.result) == 0
     motion = eqx.tree_at(lambda f: f.solution, found, None)
@@ -330,7 +330,7 @@ def test_without_load_it_still_ends():
         assert np.all(np.isfinite(leaf))
 
 
-def test_what_was_computed_until_it_stopped():
+def test_simulate_step_limit_keeps_computed_part():
     given = dict(load=BOTH, tolerance=1e-13, duration=0.05)
     found = run(**given, throw=False)
     assert int(found.result) == Result.STEP_LIMIT
@@ -342,14 +342,14 @@ def test_what_was_computed_until_it_stopped():
         run(**given)
 
 
-def test_a_motion_without_numbers_says_so(prepared):
+def test_simulate_non_finite_start(prepared):
     _, start = prepared
     found = run(start=start._replace(orbit=start.orbit * jnp.nan), throw=False)
     assert int(found.result) == Result.NON_FINITE
     assert np.all(np.isnan(found.slip[1:]))
 
 
-def test_a_newtonian_glass_says_so():
+def test_simulate_reports_non_finite_for_newtonian_glass():
     """At 0 °C and above 1 GPa spins settle within 1e-15 s: no step is small enough."""
     heavy = np.array([400.0, 0.0, 600.0, 0.0, 0.0, 0.0])
     cold = eqx.tree_at(lambda m: m.temperature, FEW, jnp.asarray(273.15))

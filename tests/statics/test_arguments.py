@@ -43,13 +43,13 @@ def plain(name):
 
 
 @pytest.mark.parametrize("name", OF_ELEMENTS)
-def test_a_bearing_is_no_element(name):
+def test_functions_reject_bearing_for_element(name):
     cure = r"it must be BearingElement\(bearing\), which holds the contact laws\.$"
     with pytest.raises(TypeError, match=f"^{name}: `element` is a Cylindri.*; {cure}"):
         plain(name)(BEARING, *OF_ELEMENTS[name])
 
 
-def test_nor_is_a_scene_or_a_name():
+def test_functions_reject_scene_or_name_for_element():
     with pytest.raises(TypeError, match=r"is a Scene; it must be its `element`\.$"):
         plain("solve_load")(bj.read_scene("tapered"), LOAD)
     with pytest.raises(TypeError, match=r"is a str; it must be a BearingElement\.$"):
@@ -76,7 +76,7 @@ def test_nor_is_a_scene_or_a_name():
         ([0, -1e3, 0], r"`load` has shape \(3,\); it must be \(6,\): Fx Fy"),
     ],
 )
-def test_what_is_no_load(load, text):
+def test_solve_load_rejects_invalid_load(load, text):
     with pytest.raises((TypeError, ValueError), match=f"^solve_load: {text}"):
         plain("solve_load")(ELEMENT, load)
 
@@ -90,7 +90,7 @@ def test_what_is_no_load(load, text):
         ({"free": "ux"}, "`free` is 'ux'; it must be a list of names"),
     ],
 )
-def test_what_is_no_displacement(given, text):
+def test_solve_load_rejects_invalid_prescribed_and_free(given, text):
     with pytest.raises(TypeError, match=f"^solve_load: {text}"):
         plain("solve_load")(ELEMENT, **given)
 
@@ -106,12 +106,12 @@ def test_what_is_no_displacement(given, text):
         ("stiffness_table", {"fixed_ring": "left"}, "`fixed_ring` is 'left'"),
     ],
 )
-def test_settings_of_a_solve_are_refused_by_who_was_called(name, given, text):
+def test_invalid_solve_settings_name_called_function(name, given, text):
     with pytest.raises(ValueError, match=f"^{name}: {text}"):
         plain(name)(ELEMENT, *OF_ELEMENTS[name], **given)
 
 
-def test_what_is_no_speed_of_a_table():
+def test_stiffness_table_rejects_invalid_speeds_and_load():
     with pytest.raises(TypeError, match="^stiffness_table: `speeds` is '1000 rpm'"):
         plain("stiffness_table")(ELEMENT, "1000 rpm", LOAD)
     with pytest.raises(TypeError, match=r"^stiffness_table: `load` is \{'Fy'"):
@@ -132,7 +132,7 @@ def test_what_is_no_speed_of_a_table():
         ({"load": np.zeros((2, 6)), "design": [0.5, 1]}, "`design` is .* whole"),
     ],
 )
-def test_what_are_no_cases(given, text):
+def test_cases_reject_invalid_arguments(given, text):
     with pytest.raises((TypeError, ValueError), match=f"^Cases: {text}"):
         inspect.unwrap(bj.Cases.__init__)(object.__new__(bj.Cases), **given)
 

@@ -159,7 +159,7 @@ def test_preloaded_pair(angular):
 
 
 @pytest.mark.parametrize("make", ["back_to_back", "face_to_face", "four rows"])
-def test_stiffness_of_a_set_is_that_of_its_rows(angular, make):
+def test_bearing_set_stiffness_equals_sum_of_rows(angular, make):
     """Each row's own stiffness, carried to the middle of the set as a rigid body."""
     single = np.asarray(angular.stiffness(jnp.zeros(12).at[8].set(8e-6)))[6:, 6:]
     expected = np.zeros((6, 6))

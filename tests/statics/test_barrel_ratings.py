@@ -130,7 +130,7 @@ def test_ratings_are_those_by_hand(name):
     assert bool(found.axial) is axial
 
 
-def test_f_c_at_90_degrees_is_that_of_the_standard():
+def test_f_c_at_90_degrees_matches_iso_281():
     """ISO 281, thrust roller bearings; 293.1 (D/D_pw)^(2/9)."""
     table = {0.01: 105.4, 0.02: 122.9, 0.05: 150.7, 0.1: 175.7, 0.15: 192.3, 0.2: 205.0}
     for ratio, printed in table.items():
@@ -251,7 +251,7 @@ def test_crossed_rollers_of_a_published_example():
     np.testing.assert_allclose(slope[3:5], np.array([0.6, 0.8]) * 2 / 0.2775)
 
 
-def test_what_equivalent_loads_leave_out():
+def test_equivalent_load_left_out_components():
     load = jnp.asarray([3e3, 4e3, -500.0, 0.0, 0.0, 0.0])
     # The pressure centre of a spherical row is its origin, in a set as alone.
     for bearing in (spherical(), EXAMPLES["spherical"][0]):

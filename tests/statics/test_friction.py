@@ -51,7 +51,7 @@ def test_a_row_by_hand(bearing, radial, axial, supply, load, viscous, flange):
     np.testing.assert_allclose(1e3 * np.array(found), wanted, rtol=1e-9)
 
 
-def test_a_slow_bearing_has_the_torque_of_its_oil_at_2000():
+def test_friction_torque_is_constant_below_viscosity_speed_2000():
     force = np.zeros(6)
     slow, edge = (
         float(row(DEEP, force, flow * 2 * np.pi / 60e6, "oil_bath", 8000.0)[1])
@@ -199,7 +199,7 @@ def test_films_by_hand(pair):
     np.testing.assert_allclose(films.ratio, np.asarray(films.minimum) / 0.2e-6)
 
 
-def test_what_is_not_allowed(pair):
+def test_friction_and_films_reject_invalid_arguments(pair):
     oil, solution, *_ = pair
     still = eqx.tree_at(lambda s: s.speed, solution, None)
     with pytest.raises(ValueError, match="friction_torque: `solution` is at rest"):

@@ -353,7 +353,7 @@ def test_modified_lives_of_rollers_are_those_of_plain_numpy(rollers):
     )
 
 
-def test_one_roller_evenly_loaded_has_the_factor_of_its_load():
+def test_row_fatigue_of_evenly_loaded_rollers_matches_iso_16281():
     """Of ISO 16281: 0.323 where statics has 0.378, the outer ring's part as 1.038."""
     bearing = roller_element(jnp.asarray([0.0, 0.0, 0.0, 0.0, 0.00035])).bearing
     # Sjövall's distribution without clearance, by the same integrals as C.
@@ -519,7 +519,7 @@ A_ISO = {
 
 
 @pytest.mark.parametrize("balls_roll", [True, False])
-def test_a_iso_is_that_of_iso_281(balls_roll):
+def test_a_iso_matches_iso_281(balls_roll):
     ratios = jnp.asarray([0.01, 0.05, 0.1, 0.3, 1.0])
     radial = jax.jit(
         lambda k, x, thrust: life_factor(k, x, balls_roll, thrust),
@@ -648,7 +648,7 @@ def test_equivalent_loads_are_those_of_the_tables():
         np.testing.assert_allclose(found.static, static, rtol=1e-3)
 
 
-def test_factors_agree_with_catalogues_and_with_the_theory_behind_them():
+def test_x_y_factors_match_catalogues_and_iso_tr_1281():
     """ISO/TR 1281-1: X = 1 - 0.4 ξ/η, Y e = 1 - X; two rows have 1.625 X, 1.625 Y and
     0.625/e. Limits e as SKF and LYC print them, of 20 and 45 degrees as ISO 281."""
     angle = np.deg2rad(_ANGLES)
@@ -777,7 +777,7 @@ def test_a_moment_alone_is_told_of_a_life():
     assert "moment of 20 N m" in only and "reference life of ISO/TS 16281" in only
 
 
-def test_a_search_tells_of_its_lives_what_life_tells():
+def test_optimise_life_warnings_match_rating_life():
     """Of all cases at once, in its outcomes if a life is among its measures."""
     element = ball_element([0.0])
     loads = jnp.zeros((3, 6)).at[:, 1].set(jnp.asarray([-2e3, -20e3, -50.0]))
@@ -830,7 +830,7 @@ def test_equivalent_load_joins_where_the_axial_load_begins_to_count():
         assert abs(x + y * limit - 1.0) < 0.012
 
 
-def test_stress_at_the_ends_is_that_of_the_standard():
+def test_edge_stress_matches_iso_16281():
     stress = edge_stress(41)
     np.testing.assert_allclose(stress[[0, -1]], 1 - 0.01 / np.log(0.9925), rtol=1e-12)
     assert stress[20] == 1.0 and (stress[1:-1] < 1.25).all()
@@ -874,7 +874,7 @@ def test_a_peak_at_the_end_of_a_roller_is_seen(untyped):
         assert _peaks_at_an_end(found) == expected  # pyright: ignore[reportArgumentType]
 
 
-def test_what_is_doubtful_about_a_life_is_told(untyped):
+def test_life_warnings_of_each_kind(untyped):
     ratings = SimpleNamespace(dynamic_capacity=20e3, static_capacity=12e3)
     bearing = ball_element([0.0]).bearing
     sound = {
@@ -1011,7 +1011,7 @@ def doubted():
 
 
 @pytest.mark.parametrize("kind", LIFE_KINDS)
-def test_a_sweep_warns_of_lives_that_it_does_not_keep(kind, doubted):
+def test_sweep_warns_of_lives_without_life_outputs(kind, doubted):
     k, swept = doubted[kind]
     assert not set(LIFE_OUTPUTS) & set(swept.outputs)
     assert swept.warned[kind][k] > LIFE_KINDS[kind].limit
@@ -1019,7 +1019,7 @@ def test_a_sweep_warns_of_lives_that_it_does_not_keep(kind, doubted):
     assert f", in {swept.warning_counts()[kind]} of 5 cases, worst case" in told
 
 
-def test_numbers_of_what_did_not_converge_are_nan(balls):
+def test_rating_life_of_unconverged_solution_is_nan(balls):
     solution, life = balls(jnp.asarray([0.0, 1e40, 0.0, 0.0]))[1]["of"]
     assert not bool(solution.converged)
     for name in (*LIFE_OUTPUTS, "a_iso"):
@@ -1027,7 +1027,7 @@ def test_numbers_of_what_did_not_converge_are_nan(balls):
             assert np.isnan(getattr(life, name)).all(), name
 
 
-def test_straight_rollers_live_as_many_laminae_as_they_have():
+def test_straight_roller_life_depends_on_lamina_count():
     """What `MOST_AT_ENDS` says of evenly loaded straight rollers."""
     shares, lives = [], []
     for n in (30, 50, 200):
@@ -1058,12 +1058,12 @@ def test_single_precision_has_the_usual_reliability():
         ({"fatigue_load_limit": np.nan}, "`fatigue_load_limit` is nan N"),
     ],
 )
-def test_nonsense_is_refused(conditions, what, untyped):
+def test_life_conditions_reject_invalid_arguments(conditions, what, untyped):
     with pytest.raises((TypeError, ValueError), match=what):
         bj.LifeConditions(**conditions)
 
 
-def test_a_life_of_what_is_not_solved_is_refused(balls, rollers, untyped):
+def test_rating_life_rejects_invalid_arguments(balls, rollers, untyped):
     x = jnp.asarray([0.0, 1e3, 0.0, 0.0])
     solution, _ = balls(x)[1]["of"]
     element = ball_element(x)
@@ -1113,7 +1113,7 @@ def test_the_damage_of_cases_adds_up():
         bj.spectrum_life(still, np.zeros(2))
 
 
-def test_a_sweep_says_which_life_it_cannot_have(balls, untyped):
+def test_sweep_life_outputs_reject_missing_conditions(balls, untyped):
     solution, _ = balls(jnp.asarray([0.0, 1e3, 0.0, 0.0]))[1]["of"]
     life = bj.rating_life(solution)
     for name, needed in (("a_iso", "a lubricant"), ("life_hours", "ring speeds")):
@@ -1124,7 +1124,7 @@ def test_a_sweep_says_which_life_it_cannot_have(balls, untyped):
         bj.sweep(element, np.ones((2, 6)), outputs=["damage"], life={})  # pyright: ignore[reportArgumentType]
 
 
-def test_as_a_measure_it_is_the_life_of_all_cases(balls, untyped):
+def test_rating_life_measure_combines_cases(balls, untyped):
     """One number of cases, its inverse as an objective, both in hours if asked."""
     loads = (1500.0, 800.0)
     found = [balls(jnp.asarray([5e-6, f, 100.0, 0.0]))[1]["of"] for f in loads]

@@ -18,7 +18,7 @@ def point():
     return bj.linearise(ELEMENT, LOAD, speed=SPEED)
 
 
-def test_it_is_the_static_linearisation_of_the_function(point):
+def test_linearise_matches_jacobian_of_element_function(point):
     function, parameters = ELEMENT.as_function(SPEED)
     rest = np.zeros(12)
     force = function(point.motion, rest, 0.0, parameters)
@@ -35,7 +35,7 @@ def test_it_is_the_static_linearisation_of_the_function(point):
     np.testing.assert_array_equal(point.ring_stiffness, point.stiffness[6:, 6:])
 
 
-def test_what_is_free_is_condensed_and_what_is_held_stays(point):
+def test_condensed_stiffness_of_free_and_prescribed_directions(point):
     k = np.asarray(point.ring_stiffness)
     # By the definition: the compliance of all that is free, seen from what is kept.
     free = [0, 1, 2, 3, 4]
@@ -55,12 +55,12 @@ def test_what_is_free_is_condensed_and_what_is_held_stays(point):
     np.testing.assert_array_equal(four, held.ring_stiffness[:4, :4])
 
 
-def test_no_load_no_stiffness_is_said():
+def test_linearise_warns_of_missing_stiffness():
     with pytest.warns(UserWarning, match="linearise: no stiffness in .*gx"):
         bj.linearise(ELEMENT, speed=SPEED)
 
 
-def test_a_direction_that_nothing_holds_drops_out():
+def test_condensed_stiffness_drops_direction_without_stiffness():
     rollers = bj.CylindricalRollerBearing(
         7, 0.065, 0.010, 0.010, radial_internal_clearance=-4e-6
     )

@@ -76,7 +76,7 @@ def test_loads_and_displacements_mixed(tapered):
     assert np.allclose(turned, 0.5 * 0.3 * (1 - 8.2 * np.cos(np.deg2rad(11)) / 52))
 
 
-def test_everything_prescribed_is_no_solve(crowned):
+def test_solve_load_with_all_freedoms_prescribed(crowned):
     at = {"ux": 1e-5, "uy": -2e-5, "uz": 0.0, "gx": 0.0, "gy": 1e-4}
     s = bj.solve_load(crowned, None, prescribed=at, free=[])
     q = np.asarray(s.displacement)
@@ -85,7 +85,7 @@ def test_everything_prescribed_is_no_solve(crowned):
     assert int(s.stats.iterations) == 0
 
 
-def test_solution_hangs_together(tapered):
+def test_solve_load_outputs_are_consistent(tapered):
     s = bj.solve_load(
         tapered, [1000.0, 0, 6000.0, 0, 0, 0], speed=bj.Speed(inner=300.0), points=1001
     )
@@ -149,12 +149,12 @@ def test_axial_load_on_nu_and_moment_about_the_axis(crowned):
         assert bj.FREEDOMS[int(s.unrestrained)] == name
 
 
-def test_step_limit_says_so(tapered):
+def test_solve_load_reports_step_limit(tapered):
     with pytest.raises(bj.SolveError, match="Step limit reached after 2 steps"):
         bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0], max_steps=2)
 
 
-def test_round_off_of_rolling_elements_says_so(tapered):
+def test_message_reports_round_off_of_rolling_elements(tapered):
     """Rings in balance, rolling elements nearly so: more steps would not help."""
     s = bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0])
     for local, words in (
@@ -238,7 +238,7 @@ def of_solution(solution):
     ],
     ids=["balls", "rollers"],
 )
-def test_a_batch_is_its_single_solutions_stacked(bearing):
+def test_solve_load_batch_equals_single_solutions(bearing):
     element = bj.BearingElement(bearing)
     # The third is so light that what it carries is round-off beside the others.
     down = jnp.asarray([300.0, 5e3, 1e-6, 9e3])
@@ -380,7 +380,7 @@ def test_design_gradients_of_displacement_and_stiffness():
         assert np.allclose(forward[:, k], slope, rtol=1e-5), name
 
 
-def test_design_gradient_past_a_freedom_that_is_held():
+def test_solve_load_design_gradient_with_held_freedom():
     """Five rollers, none opposite another: ux is coupled to uy, and held at zero."""
 
     def sag(clearance):
@@ -488,7 +488,7 @@ def moved_inside_clearance(name):
 @pytest.mark.parametrize("speed", [0.0, 1000.0])
 @pytest.mark.parametrize("name", ["balls", "rollers"])
 @pytest.mark.slow
-def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed):
+def test_solve_load_gradient_inside_clearance(name, speed):
     """No number at zero load, at speed neither: what turns then presses the outer ring
     alone. Beyond, that of differences, however few elements hold the ring."""
 
@@ -505,7 +505,7 @@ def test_gradient_with_respect_to_a_load_that_the_clearance_takes_up(name, speed
 
 @pytest.mark.slow
 @pytest.mark.slow
-def test_derivatives_of_a_ring_that_floats_aslant_of_the_axes():
+def test_solve_load_derivatives_of_floating_ring_oblique_load():
     """One ball holds it along the load alone: by clearance its derivative is half a
     unit along, by load across infinite."""
     direction = -1.1
@@ -562,7 +562,7 @@ def test_millinewtons_on_a_wedged_roller(load):
     assert np.linalg.norm(out[:5]) < 1e-8 * np.linalg.norm(load)
 
 
-def test_rollers_that_a_crawling_bearing_throws_out():
+def test_sweep_converges_for_rollers_at_crawling_speed():
     """6e-8 N on an unloaded roller: it once crept along its crown beyond all steps."""
     element = bj.BearingElement(robust_sweep.bearing())
     load = [-4109.0207, -6304.7216, 0.0, -2.9155, 7.2852, 0.0]

@@ -100,7 +100,7 @@ def push(spring, travel):
     return max(float(spring.force) - float(spring.stiffness) * travel, 0.0)
 
 
-def test_the_row_carries_what_the_spring_pushes(sprung):
+def test_sprung_row_load_equals_spring_force(sprung):
     element, spring = sprung
     for way in (0.0, 5e-6, -2e-5, -2e-4):
         e, axial, rows = evaluate(element, STILL.at[8].set(way))
@@ -172,7 +172,7 @@ def test_load_solve_with_a_spring():
     assert float(opened.stiffness[8, 8]) == pytest.approx(8e4, rel=0.01)
 
 
-def test_what_is_left_of_a_preload(pair):
+def test_remaining_preload_of_sets(pair):
     ground = bj.preload(pair, 400.0)
     left = remaining(ground)
     assert float(left) == pytest.approx(400.0, rel=1e-9)
@@ -201,7 +201,7 @@ def remaining(element):
 
 
 @pytest.mark.slow
-def test_slope_of_what_is_left():
+def test_remaining_preload_gradient():
     """Of a pair it is the stiffness of one row, for half of the approach."""
 
     @eqx.filter_jit
@@ -220,7 +220,7 @@ def test_slope_of_what_is_left():
     assert slope == 0.0
 
 
-def test_a_spring_leaves_its_force(sprung):
+def test_remaining_preload_equals_spring_force(sprung):
     element, spring = sprung
     left = float(bj.statics.remaining_preload(element))
     q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement

@@ -87,13 +87,13 @@ def factors():
 
 
 @pytest.mark.parametrize("name", F_C)
-def test_f_c_is_that_of_the_standard(factors, name):
+def test_f_c_matches_standard(factors, name):
     table = printed(F_C[name])
     assert np.abs(factors[0][name][1 : table.size + 1] - table).max() < _LAST_DIGIT
 
 
 @pytest.mark.parametrize("name", F_0)
-def test_f_0_is_that_of_the_standard(factors, name):
+def test_f_0_matches_standard(factors, name):
     table = printed(F_0[name])
     assert np.abs(factors[1][name][: table.size] - table).max() < _LAST_DIGIT
 
@@ -233,7 +233,7 @@ def test_a_taper_whose_inside_is_known():
     assert float(bj.static_capacity(bearing)) == pytest.approx(60e3, rel=0.02)
 
 
-def test_closer_grooves_do_not_raise_it_and_opener_ones_reduce_it():
+def test_ball_capacities_by_groove_osculation():
     c, c0 = (
         [
             float(rate(balls(inner_osculation=i, outer_osculation=o)))
@@ -386,7 +386,7 @@ SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angl
         ),
     ),
 )
-def test_nonsense_is_named(call, words):
+def test_ratings_reject_invalid_arguments(call, words):
     with pytest.raises((TypeError, ValueError), match=words):
         call()
 
@@ -399,7 +399,7 @@ def test_program_is_shared_by_bearings_of_one_kind():
     assert len({jax.tree.structure(row) for row in rows}) == 1
 
 
-def test_equivalent_load_of_what_is_no_load():
+def test_equivalent_load_of_invalid_load():
     bearing = bj.DeepGrooveBallBearing(
         8, 0.045, 0.0085, outer_osculation=0.525, inner_osculation=0.515
     )

@@ -96,7 +96,7 @@ def test_speeds_of_the_catalogue():
         (dict(factors=(0.0, 1e-4)), "`f0r` is 0"),
     ],
 )
-def test_what_is_refused(wrong, wanted):
+def test_reference_speed_rejects_invalid_arguments(wrong, wanted):
     given = dict(mean_diameter=0.1, area=0.02, static_capacity=1e5, factors=(2.0, 2e-4))
     with pytest.raises(ValueError, match=wanted):
         reference_speed(**{**given, **wrong})

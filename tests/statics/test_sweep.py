@@ -135,7 +135,7 @@ def started_at(known, loads, free, pitch=0.0, prescribed=None, play=False):
     return np.asarray(near_starts.starts(known, cases, none, alike))
 
 
-def test_a_start_is_the_nearest_answer_moved_by_its_stiffness():
+def test_sweep_start_extrapolates_nearest_answer_by_stiffness():
     known, load, there, k = known_cases()
     free = [0, 1, 3, 4]
     names = [bj.FREEDOMS[i] for i in free]
@@ -163,7 +163,7 @@ def test_a_start_is_the_nearest_answer_moved_by_its_stiffness():
     np.testing.assert_allclose(start, want, rtol=1e-9, atol=1e-18)
 
 
-def test_what_has_no_sound_answer_near_starts_from_first_contact():
+def test_sweep_start_without_usable_neighbour_is_nan():
     known, load, *_ = known_cases()
     names = ["ux", "uy", "uz", "gx", "gy"]
     opposite, axial = -load[0], load[0] + [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]

@@ -51,7 +51,7 @@ def solved(element, load, speed=STILL, **choices):
     return bj.solve_load(element, load, speed=speed, **choices)
 
 
-def test_nothing_is_doubtful_about_a_usual_load(deep):
+def test_warnings_are_empty_for_usual_load(deep):
     assert bj.warnings(solved(deep, [0, -2000.0, 0, 0, 0, 0])) == []
 
 
@@ -90,7 +90,7 @@ def test_no_stiffness_whatever_the_speed(deep, speed):
     assert "ux, uy" in text and "of the inner ring" in text
 
 
-def test_elements_that_just_touch_hold_nothing():
+def test_warnings_no_stiffness_from_unloaded_touching_rollers():
     """Loaded through one roller aslant of the axes the ring comes to rest against the
     next one, which is stiff from the first newton, but not loaded."""
     at = -1.17019755
@@ -103,7 +103,7 @@ def test_elements_that_just_touch_hold_nothing():
     assert "in ux" in text
 
 
-def test_a_tenth_of_a_newton_holds(deep):
+def test_warnings_are_empty_for_tenth_of_a_newton(deep):
     assert bj.warnings(solved(deep, [0, -0.1, 0.1, 0, 0, 0])) == []
 
 
@@ -117,14 +117,14 @@ def test_a_tenth_of_a_newton_holds(deep):
         ),
     ],
 )
-def test_numbers_in_other_units(deep, numbers, named):
+def test_warnings_dimensions_in_wrong_units(deep, numbers, named):
     s = solved(changed(deep, **numbers), [0, -2000.0, 300, 0, 0, 0], throw=False)
     assert s.converged
     (text,) = (t for t in bj.warnings(s) if t.startswith("far outside"))
     assert named in text
 
 
-def test_contact_where_no_groove_is(deep):
+def test_warnings_contact_angle_beyond_groove(deep):
     """A moment that leans the ring on balls out of the load zone: they climb far."""
     loose = changed(deep, radial_internal_clearance=150e-6)
     s = solved(loose, [200.0, -2000.0, 0, 6.0, 0, 0], bj.Speed(inner=2000.0))
@@ -169,7 +169,7 @@ def test_tilts_are_those_of_ring_against_ring(deep):
         assert float(found["prescribed_tilt"]) == pytest.approx(held / usual)
 
 
-def test_a_single_bearing_that_runs_without_clearance(deep, rollers):
+def test_warnings_negative_clearance_of_single_bearing(deep, rollers):
     """Not one at rest, nor a set, whose rows press each other on purpose."""
     load, running = [0, -2000.0, 300, 0, 0, 0], bj.Speed(inner=100.0)
     for element in (deep, rollers):
@@ -208,9 +208,7 @@ def seats(shaft, housing, stress=50e6):
         ("space", 100.0, 100.0, ""),
     ],
 )
-def test_rings_that_turn_against_the_load_creep_on_loose_seats(
-    fixed_to, inner, outer, creeping, untyped
-):
+def test_seat_warnings_of_creeping_rings(fixed_to, inner, outer, creeping, untyped):
     asked = dict(speed=bj.Speed(inner, outer), load_fixed_to=fixed_to)
     told = seat_warnings(seats(-2, -3), seats(-4, -5), seats(-8, -9), **asked)
     expected = [
@@ -243,7 +241,7 @@ def test_speeds_beyond_those_of_a_catalogue():
     assert speed_warnings(1e9) == []
 
 
-def test_speeds_that_no_grease_stands(deep):
+def test_warnings_speed_factor_above_grease_limit(deep):
     fast = bj.Speed(inner=2500.0)  # 24 000 rpm of 52 mm
     (text,) = (
         t
@@ -253,7 +251,7 @@ def test_speeds_that_no_grease_stands(deep):
     assert text.startswith(f"n·dm of {52 * 2500 * 30 / np.pi:.3g} mm/min")
 
 
-def test_ribs_that_press(rollers):
+def test_warnings_rib_interference(rollers):
     ribs = {f"ribs__{name}__axial_gap": -5e-6 for name in rollers.bearing.ribs.present}
     load = [0, -4000.0, 300, 0, 0, 0]
     assert bj.warnings(bj.solve_load(rollers, load)) == []
@@ -261,7 +259,7 @@ def test_ribs_that_press(rollers):
     assert text.startswith("ribs press on the roller ends: 5 µm of interference")
 
 
-def test_ends_count_only_where_they_bear(rollers):
+def test_warnings_edge_loading_ignores_light_pressure(rollers):
     s = bj.solve_load(rollers, [0, -4000.0, 300, 0, 0, 0])
     at_ends = jnp.zeros_like(s.edge_pressure).at[2, 1, 0].set(1.0)
     light, heavy = (
@@ -273,7 +271,7 @@ def test_ends_count_only_where_they_bear(rollers):
     assert "(inner raceway: rollers 2)" in text
 
 
-def test_a_solution_that_is_none_has_no_warnings(rollers):
+def test_warnings_are_empty_for_failed_solution(rollers):
     s = bj.solve_load(rollers, [0, np.nan, 0, 0, 0, 0], throw=False)
     assert bj.warnings(s) == []
 
@@ -295,7 +293,7 @@ LOADS = np.array(
 )
 
 
-def test_a_sweep_finds_what_single_solves_find(deep):
+def test_sweep_warnings_match_single_solutions(deep):
     cases = bj.Cases(LOADS, inner_speed=0.0)
     swept = bj.sweep(deep, cases, outputs=["largest_load"])
     for k, load in enumerate(LOADS):
@@ -326,7 +324,7 @@ def test_a_sweep_finds_what_single_solves_find(deep):
     assert set(swept.warned) <= set(KINDS)
 
 
-def test_what_is_far_outside_the_bearing_is_called_so(deep):
+def test_message_for_displacement_far_outside_the_bearing(deep):
     """Not "no load path": nothing is to be turned round."""
     load = [0, -2000.0, 300, 0, 0, 0]
     for given, speed in ((1e9, STILL), (1.0, bj.Speed(inner=1e11))):
@@ -339,7 +337,7 @@ def test_what_is_far_outside_the_bearing_is_called_so(deep):
     assert bj.Result(int(off.result)) is bj.Result.NO_LOAD_PATH
 
 
-def test_a_start_far_away_is_no_start(deep):
+def test_solve_load_ignores_distant_start(deep):
     load = [0, -2000.0, 300, 0, 0, 0]
     near = solved(deep, load)
     far = solved(deep, load, start=[1.0, 0, 0, 0, 0, 0])
@@ -347,7 +345,7 @@ def test_a_start_far_away_is_no_start(deep):
     assert np.allclose(far.displacement, near.displacement, rtol=1e-9, atol=1e-15)
 
 
-def test_the_step_limit_names_no_method_that_is_taken(rollers):
+def test_step_limit_message_suggests_other_method_only(rollers):
     wide = changed(rollers, radial_internal_clearance=-1e-3)
     s = bj.solve_load(wide, [0, -4000.0, 0, 0, 0, 0], throw=False)
     if not s.converged:
@@ -359,7 +357,7 @@ def test_the_step_limit_names_no_method_that_is_taken(rollers):
 
 
 @pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])
-def test_peaks_do_not_depend_on_the_positions(name):
+def test_peak_pressure_is_independent_of_positions(name):
     """Rollers that tilt: the peak stands off the middle, at a kink or beyond one."""
     element = bj.BearingElement(bearings()[name])
     q = jnp.zeros(12).at[7].set(-25e-6).at[8].set(20e-6).at[9].set(6e-4)
