@@ -67,6 +67,8 @@ BALLS = {
     "self_aligning_ball": SelfAligningBallRow,
     "thrust_ball": ThrustBallBearing,
 }
+"""Bearings by `type` in a scene; readers, schema and messages follow from `ROLLERS` and
+`BALLS`."""
 SPHERES = "spherical_roller", "spherical_thrust_roller"
 """Rollers in an outer raceway whose radius may stand for the pitch diameter."""
 WITH_LETTERS = "cylindrical_roller", "needle_roller"

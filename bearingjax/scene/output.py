@@ -17,11 +17,9 @@ from .read import Scene
 from .set_preload import preload_as_dict
 from .solved import SolvedScene
 
+_OF_ALL = "displacement", "force", "stiffness", "roller_load"
 OF_ROLLERS = (
-    "displacement",
-    "force",
-    "stiffness",
-    "roller_load",
+    *_OF_ALL,
     "rib_load",
     "roller_motion",
     "azimuth",
@@ -32,10 +30,7 @@ OF_ROLLERS = (
 """Fields of a solution that are written, under their names."""
 
 OF_BALLS = (
-    "displacement",
-    "force",
-    "stiffness",
-    "roller_load",
+    *_OF_ALL,
     "roller_motion",
     "azimuth",
     "contact_load",

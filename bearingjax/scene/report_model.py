@@ -31,7 +31,8 @@ class Column:
     Attributes:
         name: Its heading; empty: none.
         values: Numbers in SI, or words; `None` and NaN are shown as "-".
-        unit: SI unit of the numbers, or one for each, then shown next to the number.
+        unit: SI unit of the numbers, empty for pure ones; or one for each, then shown
+            next to the number.
         format: Format of a number, after the conversion.
         shown: Factor from SI and the displayed unit; default: `display_unit`.
     """

@@ -7,6 +7,7 @@ import pytest
 
 from bearingjax import SceneError, read_scene
 from bearingjax.scene import shipped_scenes
+from bearingjax.scene.bearing_table import BALLS, ROLLERS
 
 TAPER = """
 [bearing]
@@ -19,12 +20,7 @@ roller_axis_angle = "11 deg"
 roller_half_angle = "1.7235 deg"
 """
 
-KNOWN_BEARINGS = (
-    "cylindrical_roller, needle_roller, tapered_roller, spherical_roller,"
-    " toroidal_roller, cylindrical_thrust_roller, tapered_thrust_roller,"
-    " spherical_thrust_roller, crossed_roller, deep_groove_ball,"
-    " angular_contact_ball, four_point_ball, self_aligning_ball, thrust_ball"
-)
+KNOWN_BEARINGS = ", ".join((*ROLLERS, *BALLS))
 WHOLE = "is not a whole number of at least 1"
 NO_UNIT = 'has no unit; a length with its unit is wanted, such as "5 mm"'
 RIB = '{end_radius = "300 mm", contact_height = "1.5 mm"}'
