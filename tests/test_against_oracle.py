@@ -58,6 +58,7 @@ def errors(got, want):
 
 
 @pytest.mark.parametrize("start", range(0, 200, 40))
+@pytest.mark.slow
 def test_200_random_bearings(start):
     for seed in range(start, start + 40):
         truth, q, info = case(seed)
@@ -92,6 +93,7 @@ def test_absent_parts_are_the_same_bearing(seed):
 
 
 @pytest.mark.parametrize("start", range(0, 24, 8))
+@pytest.mark.slow
 def test_contact_mapped_quadrature_against_graded_reference(start):
     """32 points per panel against 200 graded nodes on each bisected interval."""
     for seed in range(start, start + 8):

@@ -25,6 +25,7 @@ DOCUMENTED = (
 
 
 @pytest.mark.usefixtures("untyped")
+@pytest.mark.slow
 def test_python_example(capsys):
     (block,) = re.findall(r"```python\n(.*?)```", README, re.S)
     names: dict = {}

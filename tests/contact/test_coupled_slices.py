@@ -205,6 +205,7 @@ def test_coupled_slices_batch_equals_single_cases(at):
         assert np.allclose(many.load[k], one.load, rtol=0, atol=SOLVER * size)
 
 
+@pytest.mark.slow
 def test_solve_load_with_coupled_slices():
     """A load is carried, line loads and their sums agree, and the raceway balances."""
     bearing = bj.CylindricalRollerBearing(

@@ -67,6 +67,7 @@ def test_stress_on_the_end_face_is_boussinesqs(poisson):
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+@pytest.mark.slow
 def test_free_end_factor_matches_quarter_space(poisson):
     # The fit leaves 0.002, its rounding less.
     for row in quarter_space.run((poisson,), across=(0.0, 0.5, 2.0, 10.0, 30.0)):

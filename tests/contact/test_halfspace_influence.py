@@ -127,6 +127,7 @@ def test_stacks_of_fields_and_size_of_the_grid():
     assert float(slope) == pytest.approx(float(value), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_grids():
     even, graded = even_grid(0.015, 0.2e-3, 8, 10), graded_grid(0.015, 0.2e-3, 9, 10)
     for grid in (even, graded):

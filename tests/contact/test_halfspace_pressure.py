@@ -238,6 +238,7 @@ def test_with_and_without_preconditioner(taper, paper, preconditioned):
         {"approach": 8e-6, "tilt": 7e-5},
     ],
 )
+@pytest.mark.slow
 def test_derivatives(given):
     """By what is given, sizes, profile and modulus; graded cells; three raceways."""
 

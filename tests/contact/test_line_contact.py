@@ -111,6 +111,7 @@ def size_of(values):
     return np.abs(values[..., [0, 1, 1, 3, 3, 3]])
 
 
+@pytest.mark.slow
 def test_against_plain_sums(solved):
     name, _, got = solved
     value = np.asarray(got["value"])

@@ -160,6 +160,7 @@ def solved(request):
     return case, call, [np.asarray(x) for x in call(jnp.asarray(MOTIONS), change)]
 
 
+@pytest.mark.slow
 def test_every_high_spot_bears(solved):
     case, _, (value, *_) = solved
     want = np.array([plain(case, motion) for motion in MOTIONS[:APART]])

@@ -148,6 +148,7 @@ def random_load(kind, size, rng):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("turning", [False, True])
+@pytest.mark.slow
 def test_random_bearings_under_random_loads_against_brute_force(kind, turning):
     """Twelve bearings in all."""
     rng = np.random.default_rng(3 + turning)
@@ -287,6 +288,7 @@ def test_toroidal_lost_clearance_by_travel_and_tilt(travel, tilt):
         assert float(pair.free_travel(lost)) == pytest.approx(travel, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_warning_of_travel_along_the_rollers():
     """The warning states about the share of the axial force that is left out."""
     aligning, load = srb_of_the_case(), [0.0, -40000.0, 0.0, 0.0, 0.0, 0.0]
@@ -305,6 +307,7 @@ def test_warning_of_travel_along_the_rollers():
         assert not any(text in w for w in bj.warnings(exact))
 
 
+@pytest.mark.slow
 def test_rollers_go_with_a_tilted_inner_ring():
     """Its load then is that of the untilted ring under a load turned the other way."""
     aligning, free, tilt = srb_of_the_case(), ("ux", "uy", "uz"), 2.0 * DEG
@@ -446,6 +449,7 @@ def pair_with_infinite_radii(kind, profile):
 
 @pytest.mark.parametrize("kinematics", KINEMATICS)
 @pytest.mark.parametrize("kind", ["cylindrical", "tapered"])
+@pytest.mark.slow
 def test_infinite_radii_are_the_straight_roller(kind, kinematics):
     """`Finite` without tilts: of straight rollers formula (3) holds the normals that
     arcs turn with their rings, so that moments differ by load times travel."""
@@ -583,6 +587,7 @@ def srb_of_the_case():
     return bj.BearingSet.self_aligning(row)
 
 
+@pytest.mark.slow
 def test_barrel_rollers_of_exact_arcs_by_another_program():
     """Loads there are sums over the slices, here resultants: compared as sums."""
     cases = [
@@ -619,6 +624,7 @@ def test_barrel_rollers_of_exact_arcs_by_another_program():
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.slow
 def test_derivatives_by_every_number_of_the_drawing(kind):
     """Through the load solve, against central differences."""
     bearing = KINDS[kind]()

@@ -9,6 +9,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from registry import bearings, motion
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
@@ -31,6 +32,7 @@ def by_autodiff(element, q):
     return gradient, jax.jvp(lambda q: element.force(q), (q,), (q,))[1]
 
 
+@pytest.mark.slow
 def test_force_and_stiffness_are_derivatives():
     for element in (
         surrogate(7),

@@ -47,6 +47,7 @@ def turned():
 
 
 @pytest.mark.parametrize("name", ["rollers", "unlike rows"])
+@pytest.mark.slow
 def test_orbiting_force_matches_rotated_element(name):
     element = ELEMENTS[name]
     function, parameters = element.as_function(SPEED)
@@ -95,6 +96,7 @@ def test_force_repeats_with_the_pass_of_the_elements():
 
 
 @pytest.mark.parametrize("name", ["rollers", "balls"])
+@pytest.mark.slow
 def test_derivatives_with_respect_to_all_arguments(name):
     rng = np.random.default_rng(3)
     element = ELEMENTS[name]

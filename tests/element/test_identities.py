@@ -120,6 +120,7 @@ def rigid_modes():
     return modes
 
 
+@pytest.mark.slow
 def test_evaluate_matches_autodiff_at_loaded_point(case):
     element, speed = case
     q = jnp.asarray(motion())
@@ -252,6 +253,7 @@ def test_thrown_off_without_a_rib():
     assert int(e.result) == bj.Result.NO_LOAD_PATH
 
 
+@pytest.mark.slow
 def test_vmap_is_a_loop_and_jit_is_eager():
     element = mapped(taper())
     qs = jnp.asarray(np.stack([motion(seed) for seed in range(3)]))
@@ -269,6 +271,7 @@ def test_vmap_is_a_loop_and_jit_is_eager():
     assert np.allclose(eager, jitted, rtol=0, atol=SOLVER * np.abs(jitted).max())
 
 
+@pytest.mark.slow
 def test_absent_term_is_a_term_of_zero():
     """Ribs that cannot be reached, and speed zero, change nothing."""
     q = jnp.asarray(motion())
@@ -353,6 +356,7 @@ def numbers_of(element, rng):
 
 
 @pytest.mark.parametrize("name", marked(DESIGNS, QUICK_DESIGNS))
+@pytest.mark.slow
 def test_derivative_by_every_number_of_the_design(name):
     case, cage_torque = DESIGNS[name]
     element, speed = made(*case)

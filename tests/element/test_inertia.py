@@ -150,6 +150,7 @@ def test_cage_torque_is_the_derivative_through_the_azimuth():
     assert abs(k[11, 11]) > 0.0 and np.allclose(k, k.T, rtol=1e-9, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_cage_torque_of_forces_without_potential_is_their_virtual_work():
     """Gyroscopic moments act: the energy does not know all forces."""
     q = 1e-6 * jnp.asarray([3, -2, 5, 90, -60, 0, 8, -35, 25, -120, 200, 1e5])

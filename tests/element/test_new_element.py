@@ -168,6 +168,7 @@ def test_force_and_stiffness_are_derivatives():
     assert float(abs(total).max()) < SOLVER * size
 
 
+@pytest.mark.slow
 def test_load_solve_sweep_and_gradients():
     solution = bj.solve_load(ELEMENT, LOAD, free=FREE)
     np.testing.assert_allclose(solution.force[6:8], LOAD[:2], atol=1e-7)

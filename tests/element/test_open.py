@@ -76,6 +76,7 @@ def in_a_batch(one, q):
 
 
 @pytest.mark.parametrize("design", DESIGNS)
+@pytest.mark.slow
 def test_open_rollers_carry_no_load(design):
     build, told, untold = DESIGNS[design]
     element = bj.BearingElement(build(told))
@@ -121,6 +122,7 @@ def test_is_open_is_false_for_nan_motion():
     assert int(e.result) == bj.Result.NON_FINITE
 
 
+@pytest.mark.slow
 def test_derivatives_of_an_open_bearing_are_finite():
     element = bj.BearingElement(cylindrical(roller_profile=bj.CircularCrown(1.0)))
     energy, force = jax.value_and_grad(element.energy)(jnp.zeros(12))

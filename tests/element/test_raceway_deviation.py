@@ -43,6 +43,7 @@ def none_of(bearing):
     ],
     ids=["balls", "balls, finite", "rollers", "barrels, finite"],
 )
+@pytest.mark.slow
 def test_raceway_waviness_of_order_one_equals_ring_shift(element):
     bearing = element.bearing
     at = np.asarray(azimuths(bearing))
@@ -86,6 +87,7 @@ def test_raised_on_both_raceways_is_a_larger_element(bearing):
 
 
 @pytest.mark.parametrize("exact", [False, True])
+@pytest.mark.slow
 def test_raised_raceways_of_barrels_leave_less_clearance(exact):
     kinematics = bj.element.Finite() if exact else bj.element.Linearised()
     bearing = bj.ToroidalRollerBearing(
@@ -111,6 +113,7 @@ BY_EACH = {"balls": BALLS, "rollers": TAPER, "barrels": BARRELS}
 
 
 @pytest.mark.parametrize("bearing", BY_EACH.values(), ids=BY_EACH)
+@pytest.mark.slow
 def test_derivative_by_each_deviation(bearing):
     choice = {} if bearing is BALLS else {"quadrature": bj.numerics.Midpoint(20)}
     rng = np.random.default_rng(3)

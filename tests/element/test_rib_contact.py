@@ -51,6 +51,7 @@ def test_rib_contact_point_of_sphere_end(kind, name):
     assert (centre - edge) @ direction == pytest.approx(1.2e-3, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_axial_load_of_an_nup_passes_through_opposite_ribs():
     ribs = bj.Ribs.arrangement("NUP", bj.Rib(0.3, 1.5e-3), 10e-6)
     bearing = bj.CylindricalRollerBearing(

@@ -34,6 +34,7 @@ def test_rollers_all_larger_are_rollers_of_less_clearance():
     assert abs(same - want.force).max() > 0.05 * abs(want.force).max()
 
 
+@pytest.mark.slow
 def test_larger_roller_carries_more_load_than_neighbours():
     deviation = np.zeros(N)
     deviation[1] = 3e-6
@@ -92,6 +93,7 @@ def test_deviations_are_checked(change, text):
         taper(N, **change)
 
 
+@pytest.mark.slow
 def test_elements_near_by_are_solved_in_fewer_steps():
     """To the same answer; what they became goes into the next call."""
     cold = TAPER.evaluate(Q)

@@ -37,6 +37,7 @@ def tilted(angle, direction=0.3):
     return jnp.zeros(12).at[9:11].set(angle * way)
 
 
+@pytest.mark.slow
 def test_self_aligning_tilt_keeps_energy(aligning):
     """The balls go with the inner ring, over the sphere."""
     straight = evaluate(aligning, tilted(0.0))[0]
@@ -90,6 +91,7 @@ def test_force_and_stiffness_are_derivatives(aligning):
     assert np.allclose(k, k.T, rtol=0, atol=ROUNDING * np.abs(k).max())
 
 
+@pytest.mark.slow
 def test_a_turning_one_balances_and_has_the_exact_jacobian(aligning):
     speed = bj.Speed(inner=1200.0)
     q = tilted(0.02).at[7].set(-8e-6)
@@ -106,6 +108,7 @@ def test_a_turning_one_balances_and_has_the_exact_jacobian(aligning):
     assert np.abs(slope - k[:, 7]).max() < 100 * DIFFERENCE * np.abs(k[:, 7]).max()
 
 
+@pytest.mark.slow
 def test_load_solve_at_a_tilt():
     """Tilt is prescribed: nothing restrains it."""
     bearing = bj.BearingSet.self_aligning(row(10e-6))
@@ -123,6 +126,7 @@ def test_load_solve_at_a_tilt():
     assert sag[1] == pytest.approx(sag[0], rel=0.05) and sag[1] != sag[0]
 
 
+@pytest.mark.slow
 def test_finite_and_linearised_agree_to_first_order():
     """Their difference falls with the square of the motion."""
     bearing = balls(contact_angle=0.4)
@@ -151,6 +155,7 @@ def test_row_in_a_set_is_placed_exactly():
     assert np.abs(np.asarray(turned.force)).max() < angle**2 * float(straight.magnitude)
 
 
+@pytest.mark.slow
 def test_free_tilts_are_warned_of(aligning):
     load = np.zeros(6)
     s = bj.solve_load(aligning, load, free=["ux", "uy", "uz", "gx", "gy"])

@@ -226,6 +226,7 @@ def test_traction_never_drives_the_slip(name):
 
 
 @pytest.mark.parametrize("name", LAWS)
+@pytest.mark.slow
 def test_smooth_at_zero_slip(name):
     """Value, gradient and Hessian finite; odd; the slope is that of the limit."""
     law = LAWS[name]
@@ -262,6 +263,7 @@ def test_thinning_near_zero():
 
 
 @pytest.mark.parametrize("name", LAWS)
+@pytest.mark.slow
 def test_derivatives(name):
     """By every real number of law, oil and contact."""
     leaves, tree = jax.tree.flatten((LAWS[name], OIL, NUMBERS))
@@ -344,6 +346,7 @@ def test_nodes_are_enough():
 
 
 @pytest.mark.parametrize("name", ["eyring", "limiting", "dry"])
+@pytest.mark.slow
 def test_rolling_pole_anywhere(name):
     """Stress of oil that yields turns around within micrometres of the rolling pole.
     Values and slopes by the slip, with the pole from the middle to outside the ellipse,

@@ -91,6 +91,7 @@ def moved():
     return run
 
 
+@pytest.mark.slow
 def test_balls_settle_at_individual_orbit_speeds(moved):
     """From its own diameter and contact angle, as the load solve has it."""
     turning = model(speed=20.0)
@@ -130,6 +131,7 @@ def test_cage_impact_conserves_momentum(moved):
     np.testing.assert_allclose(total, 0.0, atol=1e-2 * scale)
 
 
+@pytest.mark.slow
 def test_a_stiff_cage_needs_shorter_steps():
     with_film = [
         dataclasses.replace(CAGE, contact=CageContact(film, 1e-10))
@@ -142,6 +144,7 @@ def test_a_stiff_cage_needs_shorter_steps():
     assert soft < 0.5 * stiff
 
 
+@pytest.mark.slow
 def test_a_record_of_a_cage():
     heavy = dataclasses.replace(CAGE, load=jnp.array([0.0, -5.0]))
     record = vibration(model(heavy, 1200.0), turns=1, settle=0, samples=64, steps=60)
@@ -158,6 +161,7 @@ def test_a_record_of_a_cage():
     assert np.ptp(even[-1]) > 0.0
 
 
+@pytest.mark.slow
 def test_derivatives_of_forces():
     turning = model(speed=500.0)
     rng = np.random.default_rng(5)

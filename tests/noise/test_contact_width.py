@@ -62,6 +62,7 @@ def test_contacts_leave_the_mean_of_waves(pressure, radius):
     assert np.all(Surface(*surface[:2]).bridged(jnp.asarray(order)) == 1.0)
 
 
+@pytest.mark.slow
 def test_bridged_model_attenuates_short_waves():
     """Errors that the balls meet are those of waves made smaller by hand."""
     row = balls(7)

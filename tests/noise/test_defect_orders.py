@@ -282,6 +282,7 @@ def test_ball_waviness_orders_match_squeeze_of_both_contacts():
         np.testing.assert_allclose(found, want, atol=1e-10)
 
 
+@pytest.mark.slow
 def test_derivatives_of_frequencies():
     def weighted(numbers):
         pitch, diameter, inner, outer, angle = numbers

@@ -65,6 +65,7 @@ def expected(answer, time):
     return np.real(turning[:, None] * line)
 
 
+@pytest.mark.slow
 def test_the_linear_equations_stepped_in_time(answer):
     linear = linear_model(model())
 
@@ -88,6 +89,7 @@ def test_the_linear_equations_stepped_in_time(answer):
     assert size > 1e5  # of a motion that is there
 
 
+@pytest.mark.slow
 def test_the_true_bearing_comes_near_as_the_waves_get_small(answer):
     left = []
     for height in (4e-8, 2e-8):
@@ -116,6 +118,7 @@ def test_transfer_at_low_frequency_matches_static_compliance():
     np.testing.assert_allclose(moved, [0.0, 0.0, 1.0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_peak_stands_at_a_natural_frequency():
     lightly = dataclasses.replace(model(), sensor=None, retardation=1e-8)
     modes = natural_modes(lightly)

@@ -118,6 +118,7 @@ def test_draw_scales_each_source_alone():
     np.testing.assert_array_equal(larger.phase, wave.phase)
 
 
+@pytest.mark.slow
 def test_levels_are_those_of_each_bearing_alone():
     """Four bearings in batches of three: the last batch is filled up."""
     seen = []

@@ -76,6 +76,7 @@ def test_a_four_point_bearing_has_higher_modes_than_the_paper(radial):
         assert own == pytest.approx(1.153 * paper, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_noise_model_tilting_inertia_of_ring():
     """As a ring of square section around the circle of contact, of the mass given."""
     free = dataclasses.replace(RADIAL, tilts=True)

@@ -74,6 +74,7 @@ def pair():
     return one, linear_model(one)
 
 
+@pytest.mark.slow
 def test_noise_set_stiffness_matches_element(pair):
     one, found = pair
     solution = bj.solve_load(one.element, LOAD, fixed_ring="inner", free=one.freedoms)
@@ -120,6 +121,7 @@ def test_a_set_of_one_row_is_the_row():
     np.testing.assert_allclose(*moving, rtol=0, atol=SOLVER * size)
 
 
+@pytest.mark.slow
 def test_a_self_aligning_bearing_stands_in_balance():
     row = bj.SelfAligningBallRow(
         9, 0.046, 0.0087, inner_osculation=0.53, row_offset=0.0049

@@ -78,6 +78,7 @@ def scaled(model, factor):
 
 
 @pytest.mark.parametrize("part", ["inner", "outer"])
+@pytest.mark.slow
 def test_orders_and_frequencies_of_eight_balls(part):
     """KIN-2: kZ pushes axially, kZ ± 1 radially, all others balance."""
     of_order = with_waves(EIGHT, 17, part=part)
@@ -127,6 +128,7 @@ def turned(model, time):
     return element, np.asarray(azimuths(element.bearing))
 
 
+@pytest.mark.slow
 def test_a_small_wave_pushes_as_the_slope_of_the_ring_force(uneven):
     model, (time, force), (_, moved) = uneven
     held = standing(model.element).displacement

@@ -61,6 +61,7 @@ def rms(model, **change):
     return np.asarray(in_time(model, **(SHORT | change)).acceleration).std(axis=0)
 
 
+@pytest.mark.slow
 def test_damping_follows_the_rate_of_loads_along_their_normals():
     """Contacts go round with the balls; that their forces turn is no change of them.
 
@@ -85,6 +86,7 @@ def test_damping_follows_the_rate_of_loads_along_their_normals():
     assert np.abs(found - load[:2]).max() > 1.0
 
 
+@pytest.mark.slow
 def test_in_time_without_load_path():
     """Its ring lies anywhere in its clearance, though inertia presses the balls."""
     bearing = dataclasses.replace(BALLS.bearing, radial_internal_clearance=1e-5)
@@ -100,6 +102,7 @@ def test_in_time_without_load_path():
     assert natural_modes(tight).result == bj.Result.CONVERGED
 
 
+@pytest.mark.slow
 def test_in_time_without_form_errors_stays_at_rest():
     found = in_time(AXIAL, **(SHORT | {"settle": 0}))
     # What is out of balance by 1e-9 of the load may be there.
@@ -130,6 +133,7 @@ def test_lines_of_waves_and_of_a_large_ball():
     assert np.max(quiet[:2]) < 1e-2 * np.std(np.asarray(wavy.acceleration)[:, 0])
 
 
+@pytest.mark.slow
 def test_error_of_a_step():
     """Order 4: half the step, a sixteenth of the error."""
     model = with_waves(outer=(2e-8, 0.0), inner=2e-8)

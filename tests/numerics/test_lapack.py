@@ -84,6 +84,7 @@ def matrices(*shape, seed=4):
 
 
 @pytest.mark.parametrize("name", ONES)
+@pytest.mark.slow
 def test_mapped_values_and_derivatives_are_those_of_jax(name):
     """Twice mapped; in both modes, and of the second order."""
     ours, plain = ONES[name]

@@ -242,6 +242,7 @@ print(*bj.rotor.modes(rotor, 100.0, count=2).frequency)
 """
 
 
+@pytest.mark.slow
 def test_stored_program_with_lapack_loads_in_new_process(tmp_path):
     """JAX finds LAPACK when it lowers a call of it; without, the program crashed."""
     folder = str(tmp_path / "programs")

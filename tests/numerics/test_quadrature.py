@@ -214,6 +214,7 @@ def size_of(moments):
     return np.repeat(moments[..., [0, 1, 3]], (1, 2, 3), axis=-1)
 
 
+@pytest.mark.slow
 def test_contact_mapped_moments(solved):
     """32 nodes a panel; grazing cases are conditioned by round-off of a + b ξ."""
     case, found, want, got, _ = solved

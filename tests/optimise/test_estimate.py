@@ -40,6 +40,7 @@ def inside(bearing):
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
+@pytest.mark.slow
 def test_published_bearings_are_found(name):
     kind, d, big, b, c, c0, count, size = PUBLISHED[name]
     found = bj.optimise.estimate_geometry(
@@ -168,6 +169,7 @@ def designs():
 
 
 @pytest.mark.parametrize("kind", list(designs()))
+@pytest.mark.slow
 def test_designs_are_found_from_their_own_ratings(kind):
     (d, big, b), angle, bearing = designs()[kind]
     c, c0 = float(bj.dynamic_capacity(bearing)), float(bj.static_capacity(bearing))

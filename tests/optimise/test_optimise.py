@@ -169,6 +169,7 @@ def test_smooth_maximum_of_zeros_nan_and_infinity():
     [None, "slsqp", "nelder-mead", optax.sgd(0.005)],
     ids=lambda m: m if isinstance(m, str) else type(m).__name__,
 )
+@pytest.mark.slow
 def test_optimise_recovers_clearance_from_stiffness(straight, one_case, wanted, method):
     found = search(straight, one_case, wanted, method=method, tolerance=1e-6)
     assert found.converged, found.message
@@ -192,6 +193,7 @@ def test_optimise_recovers_clearance_from_stiffness(straight, one_case, wanted, 
         assert history.gradient[-1] < history.gradient[0]
 
 
+@pytest.mark.slow
 def test_adam_backtracks_from_failed_designs(straight, one_case, wanted):
     """The second one's first step, 0.5 of the box, would be to 30 µm."""
     near = search(straight, one_case, wanted, method="adam", tolerance=1e-4)
@@ -227,6 +229,7 @@ def test_step_limit_is_said(straight, one_case, wanted):
     assert "raise `max_steps`" in found.message
 
 
+@pytest.mark.slow
 def test_constraint_is_active_at_the_optimum(straight, one_case, wanted):
     """More play, more sag: least displacement, but no stiffer than at 15 µm."""
     kept = bj.optimise.Constraint(bj.optimise.Stiffness("uy"), upper=wanted)
@@ -287,6 +290,7 @@ def test_optimum_behind_rejected_designs_is_not_called_converged(
     assert re.search(f"rejected near by, at {text}", found.message), found.message
 
 
+@pytest.mark.slow
 def test_optimise_reports_variables_without_influence(straight, one_case, wanted):
     """The density of the rollers counts only where they turn."""
     density = bj.optimise.Variable("bearing.material.density", 7e3, 8e3)
@@ -320,6 +324,7 @@ def test_optimise_raises_for_failing_starting_design(straight, one_case, wanted)
         )
 
 
+@pytest.mark.slow
 def test_many_cases_are_solved_in_chunks(straight, one_case, wanted):
     load = np.tile(one_case.load, (65, 1))
     many = bj.Cases(load, prescribed={"gx": 0.0, "gy": 0.0})
@@ -333,6 +338,7 @@ def test_many_cases_are_solved_in_chunks(straight, one_case, wanted):
     assert all_.solution.result.shape == (65,)
 
 
+@pytest.mark.slow
 def test_balls_and_numbers_in_several_places(one_case):
     """Tighter grooves press less: the osculation of both rings, as one number."""
     ball = bj.DeepGrooveBallBearing(
@@ -537,6 +543,7 @@ def test_wrong_parts(make, text):
         make()
 
 
+@pytest.mark.slow
 def test_step_limit_counts_steps_without_movement():
     """A search that stands at a bound has used its steps all the same."""
     sloped = Trial(

@@ -61,6 +61,7 @@ def elements():
 
 
 @pytest.mark.parametrize("name", elements())
+@pytest.mark.slow
 def test_element_made_anew_is_the_same(name):
     element = elements()[name]
     numbers = design_numbers(element)

@@ -30,6 +30,7 @@ def found():
     )
 
 
+@pytest.mark.slow
 def test_before_and_after(found):
     figure = plot.optimised(found, title="a name")
     assert figure.get_suptitle() == "a name"

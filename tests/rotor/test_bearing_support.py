@@ -85,6 +85,7 @@ def test_bearing_support_stiffness_and_damping():
 
 
 @pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.slow
 def test_bearing_support_ball_passage(turned):
     """Balls orbit with the shaft; after a pitch they stand as at first."""
     support = preloaded(12, turned=turned, passage=True)

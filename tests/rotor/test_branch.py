@@ -59,6 +59,7 @@ def branches():
     }
 
 
+@pytest.mark.slow
 def test_duffing(branches):
     for branch in branches.values():
         assert branch.ending == Ending.LIMIT and branch.frequency[-1] == 1.6
@@ -155,6 +156,7 @@ def test_flips_and_branch_points_of_mathieu():
     assert not branch.stable[between].any()
 
 
+@pytest.mark.slow
 def test_the_rotor_softens_and_becomes_almost_periodic():
     """36 degrees, a base that shakes: the traits of the published figures."""
     system = rotor(36, damping_ratio=0.01, base_acceleration=5.0)

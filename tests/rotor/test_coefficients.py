@@ -16,6 +16,7 @@ SPEEDS = np.array([0.0, 500.0, 1500.0])
 LOAD = np.array([0.0, -600.0, 900.0, 0.0, 0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_stiffness_table_matches_load_solve_slope():
     loads = LOAD * np.array([1.0, 0.7, 1.2])[:, None]
     table = bj.rotor.stiffness_table(ELEMENT, SPEEDS, loads, tilts="free")

@@ -25,6 +25,7 @@ TABLE = np.array(
 )
 
 
+@pytest.mark.slow
 def test_the_table_of_the_paper():
     """AF002-2: frequencies at rest and critical speeds for the five angles."""
 

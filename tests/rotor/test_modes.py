@@ -237,6 +237,7 @@ def measured(numbers):
     )
 
 
+@pytest.mark.slow
 def test_modes_gradients_match_differences():
     run = with_slopes(measured)
     slope, values = run(NUMBERS)

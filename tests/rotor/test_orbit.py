@@ -119,6 +119,7 @@ def test_order_of_the_flow(order):
 
 
 @pytest.mark.parametrize("name", METHODS)
+@pytest.mark.slow
 def test_gradients_against_differences(name):
     method, goal = METHODS[name], {"balance": 1e-6, "shooting": 1e-5}[name]
 

@@ -73,6 +73,7 @@ def test_error_of_a_linear_response():
         assert (found > 0.01) == (modes == 0)
 
 
+@pytest.mark.slow
 def test_orbit():
     """An orbit on nonlinear bearings, with a fifth of the freedoms."""
     law = grooves(26).fixed_angle()

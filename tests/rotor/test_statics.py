@@ -63,6 +63,7 @@ def test_weight_and_preload():
     np.testing.assert_allclose(matrices.stiffness, wanted.stiffness, atol=1e-12 * scale)
 
 
+@pytest.mark.slow
 def test_derivatives():
     """Of place, load and stiffness, by preload and by diameter."""
 
@@ -92,6 +93,7 @@ def test_derivatives():
     assert (best < DIFFERENCE * np.abs(slopes).max(axis=1)[:, None]).all()
 
 
+@pytest.mark.slow
 def test_static_equilibrium_over_speed():
     """Where balls feel the speed, the rotor over speeds is the one settled at each."""
     rotor, loads = opposed(inertia=True)
@@ -140,6 +142,7 @@ def test_static_equilibrium_without_load_path():
     assert any("nothing holds" in text for text in texts)
 
 
+@pytest.mark.slow
 def test_static_equilibrium_warns_of_lost_preload():
     """Two bearings that face the same way push the shaft until neither presses."""
     rotor, loads = opposed(bj.rotor.preload_offset(ELEMENT, 200.0))

@@ -118,6 +118,7 @@ def test_solve_leaves_the_cases_alone(scene):
     assert with_cases.load == without.load
 
 
+@pytest.mark.slow
 def test_command_writes_a_row_per_case(run, undrawn, scene, tmp_path):
     path = scene(GRID)
     csv, out, page = (tmp_path / f"t.{end}" for end in ("csv", "json", "html"))

@@ -116,6 +116,7 @@ def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
 
 
 @pytest.mark.parametrize("kind", NEWER)
+@pytest.mark.slow
 def test_ratings_of_the_estimated_inside_are_those_printed(kind):
     for entry in (e for e in ENTRIES if e.type == kind):
         raised = NEWER[kind] if "improved" in entry.sources["capacity"] else 1.0
@@ -199,6 +200,7 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
 
 
 @pytest.mark.parametrize("kind", sorted({e.type for e in ENTRIES}))
+@pytest.mark.slow
 def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
     for entry in ENTRIES:
         # The arrangements of ribs differ in one word.
@@ -226,6 +228,7 @@ def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
 @pytest.mark.parametrize(
     "name", ["6205", "30205", "7208B", "51108", "NU 208", "22220", "29412", "C2218K"]
 )
+@pytest.mark.slow
 def test_new_scene_with_optional_tables_reads(name, tmp_path):
     """All that may be added to it, with its # taken off, is a scene with a life."""
     scene, _, further = new_scene(bj.scene.catalogue_entry(name)).partition(
@@ -242,6 +245,7 @@ def test_new_scene_with_optional_tables_reads(name, tmp_path):
     assert table.scene.warnings == ()
 
 
+@pytest.mark.slow
 def test_a_new_scene_solves(run, tmp_path):
     made = run("new", "NA", "4905")
     assert made.status == 0
@@ -337,6 +341,7 @@ def test_ways_to_write_a_designation(written, designation):
         ("6205/C3P", 20.5, 32),
     ],
 )
+@pytest.mark.slow
 def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     """In the catalogue and, with tolerances, in a [fit]; ISO 5753, suffixes of SKF."""
     entry = bj.catalogue_entry(written)
@@ -428,6 +433,7 @@ def scene(tmp_path, text):
     return path
 
 
+@pytest.mark.slow
 def test_single_dimensions_override(tmp_path):
     text = 'designation = "6205/C3"\ncontact_angle = "10 deg"\nn_balls = 9\n'
     read = bj.read_scene(scene(tmp_path, text))
@@ -506,6 +512,7 @@ EDITED = {
 
 
 @pytest.mark.parametrize("name", EDITED)
+@pytest.mark.slow
 def test_lines_left_over_from_another_designation_are_told(name, tmp_path):
     first, then, changed, told = EDITED[name]
     entry = bj.catalogue_entry(first)
@@ -596,6 +603,7 @@ def test_solve_command_rejects_designation_as_scene(run):
     )
 
 
+@pytest.mark.slow
 def test_catalogue_command(run, tmp_path):
     out = tmp_path / "out.json"
     given = ("--bore", "35 mm:40 mm", "--min-capacity", "19 kN:37 kN", "--json", out)
@@ -653,6 +661,7 @@ def asked(kind, numbers):
 
 
 @pytest.mark.parametrize("kind", UNLISTED)
+@pytest.mark.slow
 def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
     """It is that of `estimate_geometry`, with the ratings given."""
     numbers = UNLISTED[kind]
@@ -730,6 +739,7 @@ def test_an_unlisted_bearing_beyond_the_classes_of_clearance(run):
         (("examples", "deep_grove"), "(did you mean `deep_groove`?)"),
     ],
 )
+@pytest.mark.slow
 def test_wrong_words_of_the_commands(run, given, message):
     done = run(*given)
     assert done.status == 2 and message in done.err and done.out == ""

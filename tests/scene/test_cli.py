@@ -74,6 +74,7 @@ def size_of_png(path):
     return struct.unpack(">II", head[16:24])
 
 
+@pytest.mark.slow
 def test_solve_command_writes_json_plot_and_report(run, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run("solve", "cylindrical_rig", "--json", out, "--plot", picture)
@@ -269,6 +270,7 @@ def test_scene_of_ones_own(run, tmp_path):
 
 
 @pytest.mark.parametrize("ending", ["PDF", "svg"])
+@pytest.mark.slow
 def test_pictures_of_lines(run, tmp_path, ending):
     path = tmp_path / f"out.{ending}"
     assert run(*TAPER, "--plot", path).status == 0
@@ -404,6 +406,7 @@ def test_solve_bad_scene_writes_no_file(run, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_solve_in_new_process_reuses_stored_programs(tmp_path):
     """Float64, nothing on standard error, and the program kept for another load."""
     program = "import sys; from bearingjax.cli import main; sys.exit(main())"

@@ -112,6 +112,7 @@ def test_compare_omits_negligible_numbers():
     assert list(found) == ["displacement_uy [m]", "load [N]"]
 
 
+@pytest.mark.slow
 def test_compare_warns_of_each_scene_as_solve_does(run, tmp_path, untyped):
     """The preload of a set on its seats and the life included."""
     path = tmp_path / "pair.toml"

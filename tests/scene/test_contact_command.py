@@ -202,6 +202,7 @@ def test_read_contact_without_roller_or_file(tmp_path):
         read_contact("none.toml")
 
 
+@pytest.mark.slow
 def test_contact_command_writes_json_and_plot(run, rerun, tmp_path):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     done = run(*TAPER, "--json", out, "--plot", picture)
@@ -228,6 +229,7 @@ def test_contact_command_writes_json_and_plot(run, rerun, tmp_path):
         (["numerics.half_width=0.03 mm"], "grid_misfit"),
     ],
 )
+@pytest.mark.slow
 def test_contact_command_unsolved_case(run, tmp_path, settings, label):
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     picture.write_text("of an earlier run", encoding="utf-8")
@@ -265,6 +267,7 @@ def test_contact_command_rejects_unwritable_output(run, tmp_path):
     assert done.status == 2 and "ends in .png, .pdf or .svg" in done.err
 
 
+@pytest.mark.slow
 def test_contact_command_of_bearing_scene(run, tmp_path):
     """The scene of a bearing: solved, and one of its rollers looked at."""
     out, picture = tmp_path / "out.json", tmp_path / "out.png"

@@ -186,6 +186,7 @@ def test_slices_of_a_straight_roller(paper):
     assert numbers["edge_factor"] == near(factor)
 
 
+@pytest.mark.slow
 def test_free_ends(three):
     """Softer, and with less at the ends, which the report says."""
     loads = 'operating.load=["500 N", "1 kN", "2 kN"]'

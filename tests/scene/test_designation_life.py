@@ -53,6 +53,7 @@ def test_published_ratings_count_unless_given(read):
     assert rated(life_conditions(scene)) == (15e3, *own[1:])
 
 
+@pytest.mark.slow
 def test_another_geometry_is_rated_by_the_standards(read):
     scene = read('designation = "6205"\nn_balls = 8', "[life]\n")
     assert rated(life_conditions(scene)) == (None, None, None)
@@ -256,6 +257,7 @@ def test_ratings_come_back_from_the_json(read, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["NJ 206 EC", "30205 J2", "1205 E/C3", "51108"])
+@pytest.mark.slow
 def test_echo_of_designation_overrides_no_keys(read, tmp_path, name):
     scene = read(f'designation = "{name}"', settings=["operating.load.Fz=1 N"])
     path = tmp_path / "again.json"

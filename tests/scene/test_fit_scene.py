@@ -290,6 +290,7 @@ DRIVEN = {
 """SKF, general catalogue, 2006, spherical roller bearings, solid shafts."""
 
 
+@pytest.mark.slow
 def test_drive_up_beside_the_table_of_a_maker():
     """One row of the table serves all series, and seats give way more than cylinders:
     the travel found is a tenth less on average, 20 % less to 10 % more."""
@@ -377,6 +378,7 @@ def test_fit_of_pair_changes_inner_offsets(scene):
     assert float(after.rows[0].bearing.contact_angle) < np.deg2rad(25)
 
 
+@pytest.mark.slow
 def test_command_solves_the_mounted_bearing(run, scene, tmp_path):
     out = tmp_path / "out.json"
     warm = "temperature.inner_ring=45 degC", "temperature.shaft=45 degC"
@@ -935,6 +937,7 @@ WRONG_OF_ROTORS = {
 
 
 @pytest.mark.parametrize("name", WRONG_OF_ROTORS)
+@pytest.mark.slow
 def test_wrong_fits_of_rotors(scene, name):
     path = scene(BEARING + FIT).with_name("rotor.toml")
     path.write_text(ROTOR, encoding="utf-8")

@@ -66,6 +66,7 @@ def test_dirt_of_a_grease_goes_with_a_supply_of_grease(supply, dirt, told):
     assert told is None or told in found[0]
 
 
+@pytest.mark.slow
 def test_solve_command_life_matches_rating_life(
     run, rerun, tmp_path, solution, untyped
 ):
@@ -110,6 +111,7 @@ def test_solve_command_life_matches_rating_life(
     assert told.status == 2 and "--table is for a scene with [cases]" in told.err
 
 
+@pytest.mark.slow
 def test_life_command_spectrum_sums_damage(run, rerun, undrawn, tmp_path, untyped):
     out, table = tmp_path / "out.json", tmp_path / "cases.csv"
     page, picture = tmp_path / "out.html", tmp_path / "out.png"

@@ -79,6 +79,7 @@ def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_every_file_holds_the_same_record(run, rerun, scene, tmp_path):
     names = ("a.json", "a.csv", "a.wav", "a.png")
     out, table, sound, picture = (tmp_path / name for name in names)
@@ -250,6 +251,7 @@ def test_run_noise_diverging_motion_is_non_finite(scene):
     assert set(noise_as_dict(found)) == WORDS
 
 
+@pytest.mark.slow
 def test_noise_model_warnings(scene):
     task = read_noise(scene, ["deviations.waves.0.order=60"])
     few, *high, fast = model_warnings(task.model, 64, 1)

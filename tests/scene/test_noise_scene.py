@@ -242,6 +242,7 @@ PAIR = {
 
 
 @pytest.mark.parametrize("what", PAIR)
+@pytest.mark.slow
 def test_a_wrong_scene_of_a_set_is_told_in_one_line(what):
     setting, message = PAIR[what]
     with pytest.raises(SceneError) as caught:

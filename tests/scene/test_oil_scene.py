@@ -47,6 +47,7 @@ def scene(tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_command_tells_friction_and_films(run, scene, tmp_path):
     out = tmp_path / "out.json"
     done = run("solve", scene, "--json", out, "--set", "lubricant.supply=grease")

@@ -62,6 +62,7 @@ def scene(tmp_path):
     return write
 
 
+@pytest.mark.slow
 def test_command_finds_the_clearance_of_a_stiffness(
     run, rerun, undrawn, scene, tmp_path
 ):
@@ -193,6 +194,7 @@ def test_all_ribs_and_all_rows_share_a_number():
     )
 
 
+@pytest.mark.slow
 def test_report_needs_no_unit_of_a_plain_measure(scene):
     """A function of one's own has a name, and no unit."""
     path = scene(GOOD)

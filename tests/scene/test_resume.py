@@ -71,6 +71,7 @@ def columns(path):
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet", "xlsx"])
+@pytest.mark.slow
 def test_interrupted_twice_and_taken_up(run, scene, tmp_path, struck, ending):
     path, table, out = scene(), tmp_path / f"t.{ending}", tmp_path / "t.json"
     words = ("sweep", str(path), "--table", str(table), "--json", str(out))

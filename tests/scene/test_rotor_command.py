@@ -213,6 +213,7 @@ def test_run_rotor_fast_modes_match_linear_response(response):
     assert apart.max() < 1e-6 * found.amplitude.max()
 
 
+@pytest.mark.slow
 def test_run_rotor_warns_of_coarse_reduction():
     task = read_rotor(
         "rotor_paper_12",
@@ -226,6 +227,7 @@ def test_run_rotor_warns_of_coarse_reduction():
     )
 
 
+@pytest.mark.slow
 def test_rotor_command_without_campbell_and_response(run, rerun, tmp_path):
     out = tmp_path / "a.json"
     text = _without("campbell", "response")
@@ -247,6 +249,7 @@ def test_rotor_command_without_campbell_and_response(run, rerun, tmp_path):
 IN_TIME = {"rotor.transient": "{duration='1 ms', n_times=3}"}
 
 
+@pytest.mark.slow
 def test_rotor_command_table_series(run, tmp_path):
     table = tmp_path / "a.csv"
     given = command(FEW, ON_SPRINGS, LINEAR, IN_TIME)
@@ -348,6 +351,7 @@ def test_run_rotor_linear_response_and_warnings(monkeypatch):
 
 
 @pytest.mark.parametrize("part", ["static", "response"])
+@pytest.mark.slow
 def test_rotor_command_unsolved_part(run, tmp_path, part):
     out, table = tmp_path / "a.json", tmp_path / "a.csv"
     if part == "static":

@@ -441,6 +441,7 @@ def test_round_off_of_a_bearing_without_ribs_is_no_axial_stiffness(untyped):
     assert _bearings(run).rows()[0][-3:] == ("400", "300", "0")
 
 
+@pytest.mark.slow
 def test_lives_of_the_bearings():
     """With [life] each bearing has the life under its load in the equilibrium."""
     settings = ["life.contamination=0.5", "lubricant.name=ISO VG 68"]

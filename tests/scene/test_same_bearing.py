@@ -181,6 +181,7 @@ ENTRIES = {
 
 
 @pytest.mark.parametrize("entry", ENTRIES)
+@pytest.mark.slow
 def test_every_entry_point_solves_the_same_pair(entry, written):
     table, bearing = ENTRIES[entry]
     np.testing.assert_allclose(
@@ -193,6 +194,7 @@ def test_skidding_solves_the_mounted_bearing(written):
     np.testing.assert_allclose(facts(found), facts(by_hand(False)), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_reports_show_solved_bearing(written, monkeypatch):
     """Drawing and text under [cases]: offsets of the preload included."""
     path, solved = written("cases"), by_hand()

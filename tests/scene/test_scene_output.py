@@ -90,6 +90,7 @@ def solved(request):
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.slow
 def test_fields_and_shapes(solved):
     assert tuple(solved.numbers) == NUMBERS + WORDS
     n, points = solved.scene.element.bearing.n_rollers, solved.scene.points
@@ -167,6 +168,7 @@ def test_logarithmic_rollers_are_unloaded_at_their_ends(taper):
     assert load[:, :, POINTS // 2].min() > 0.0
 
 
+@pytest.mark.slow
 def test_solve_warns_of_free_tilt(taper):
     (text,) = taper.numbers["warnings"]
     tilt = 1e3 * np.hypot(*taper["displacement"][9:11])
@@ -247,6 +249,7 @@ def test_report_and_dict_run_no_jax_operations(solved):
         assert np.allclose(turning.pitch_angle, np.pi / 4, rtol=SOLVER, atol=0.0)
 
 
+@pytest.mark.slow
 def test_spherical_roller_bearing_of_a_fan():
     """Rollers of row 0, then of row 1; no moment about the centre of the sphere."""
     fan = solve("spherical_roller", TAPER, "operating.inner_speed=0 rpm")

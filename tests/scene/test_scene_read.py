@@ -91,6 +91,7 @@ def test_shipped_scenes_list_is_complete():
 
 
 @pytest.mark.parametrize("name", sorted(SHAFTS))
+@pytest.mark.slow
 def test_shipped_shafts_read(name):
     task = read_shafts(name)
     assert task.name == name and task.warnings == ()

@@ -39,6 +39,7 @@ def faults(validator, data):
 
 
 @pytest.mark.parametrize("name", shipped_scenes())
+@pytest.mark.slow
 def test_schema_holds_for_shipped_scenes_and_their_echo(name, validator):
     path = shipped_scenes()[name]
     data = tomllib.loads(path.read_text("utf-8"))

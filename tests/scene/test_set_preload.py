@@ -74,6 +74,7 @@ def left(read, at):
     return float(bj.statics.remaining_preload(bj.Installed(ground, None, *seats).at()))
 
 
+@pytest.mark.slow
 def test_solve_command_reports_preload(run, scene, tmp_path):
     out = tmp_path / "out.json"
     done = run("solve", scene, "--json", out)

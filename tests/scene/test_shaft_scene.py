@@ -96,6 +96,7 @@ def solved(path):
     return run_shafts(read_shafts(path))
 
 
+@pytest.mark.slow
 def test_command(run, path, tmp_path, rerun):
     """Text, JSON, table, picture and page; the JSON read again gives the same."""
     out, table = tmp_path / "out.json", tmp_path / "out.csv"
@@ -139,6 +140,7 @@ def test_command(run, path, tmp_path, rerun):
     rerun("shaft", out)
 
 
+@pytest.mark.slow
 def test_lives_are_those_of_the_bearings_alone(solved):
     """Each bearing under its load alone, with its tilt held, has the same life."""
     for bearing in solved.bearings:
@@ -165,6 +167,7 @@ def test_system_life(solved):
     np.testing.assert_allclose(solved.system_hours, wanted, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_cases(path, solved, run, tmp_path):
     """Load cases side by side are those of one after the other; the spectrum adds up
     their damage."""
@@ -212,6 +215,7 @@ hours = "0 h"
     assert len(rows) == 12 and rows[4]["drive.power"] == "-20 kW"
 
 
+@pytest.mark.slow
 def test_cases_over_positions(tmp_path):
     """Positions may vary as long as the order of the parts stays."""
     scene = tmp_path / "p.toml"
@@ -332,6 +336,7 @@ def test_housing_file(path, solved, tmp_path):
         np.testing.assert_allclose(read.matrix, solved.task.system.housing.matrix)
 
 
+@pytest.mark.slow
 def test_warnings(path, run):
     """Arrangements that seldom are meant are named."""
     done = run("shaft", path, "--set", "bearings.D.floating=false")
@@ -403,6 +408,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("setting", [key for key, told in WRONG.items() if told])
+@pytest.mark.slow
 def test_wrong_scenes(path, setting):
     """Each error names the key, the fault, and what is allowed."""
     with pytest.raises(SceneError) as caught:

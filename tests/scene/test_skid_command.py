@@ -76,6 +76,7 @@ def history():
     return run_skid(read_skid("skid_axial", START))
 
 
+@pytest.mark.slow
 def test_end_state(run, rerun, end, tmp_path):
     out, table, picture = (tmp_path / f"end.{kind}" for kind in ("json", "csv", "png"))
     outputs = ("--json", out, "--table", table, "--plot", picture)
@@ -121,6 +122,7 @@ def test_end_state(run, rerun, end, tmp_path):
     rerun("skid", out, "--steady")
 
 
+@pytest.mark.slow
 def test_motion_in_time(run, history, tmp_path):
     out, table, picture = (tmp_path / f"run.{kind}" for kind in ("json", "csv", "png"))
     outputs = ("--json", out, "--table", table, "--plot", picture)

@@ -23,6 +23,7 @@ def test_study_of_a_shipped_scene(name):
 
 
 @pytest.mark.parametrize("name", shipped_scenes())
+@pytest.mark.slow
 def test_study_reads_every_shipped_scene(name):
     STUDIES[study_of(name)].read(name, [])
 
@@ -33,6 +34,7 @@ def test_run_solves_scene_with_settings(untyped):
     assert float(found.force[1]) == pytest.approx(-2000.0, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_run_solves_the_cases():
     some = '{ grid = { "operating.load.Fy" = ["-1 kN", "-2 kN"] } }'
     found = bj.run("cylindrical_rig", [f"cases={some}"])

@@ -88,6 +88,7 @@ def by_hand(bearing):
     return np.array([bearing(x[5 * n : 5 * n + 5])[0] for n in AT.values()]), x
 
 
+@pytest.mark.slow
 def test_three_bearings_by_hand():
     """AF006-2: a statically indeterminate shaft on true bearings."""
 
@@ -161,6 +162,7 @@ def test_weight_between_supports():
     np.testing.assert_allclose(own, sag, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_stiff_surroundings():
     """AF006-3: on a rigid shaft in a rigid housing a determinate system loads each
     bearing by statics alone, and each is as if alone under that load."""
@@ -181,6 +183,7 @@ def test_stiff_surroundings():
 
 
 @pytest.mark.parametrize("name", ["1206", "22206 E"])
+@pytest.mark.slow
 def test_self_aligning_bearing_is_a_hinge(name):
     """Balls, and barrel rollers by their exact kinematics."""
     element = bj.BearingElement(bj.load_bearing(name))
@@ -238,6 +241,7 @@ def test_housing_matrix():
     np.testing.assert_allclose(found.housing.reshape(-1), moved, rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_floating_bearing():
     """A floating ring carries no axial load; the other one takes it all."""
     line = ShaftLine("s", [0.3], [0.04])
@@ -253,6 +257,7 @@ def test_floating_bearing():
         np.testing.assert_allclose(axial, wanted, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_solve_system_without_axial_support():
     line = ShaftLine("s", [0.3], [0.04])
     seats = [ball(n, "s", z, floating=True) for n, z in (("A", 0.05), ("B", 0.25))]
@@ -262,6 +267,7 @@ def test_solve_system_without_axial_support():
 
 
 @pytest.mark.parametrize("axial", [-900.0, 100.0])
+@pytest.mark.slow
 def test_solve_system_tapers_in_tandem_without_load_path(axial):
     """Nothing holds them against a pull, or against what their radial loads press them
     apart with."""
@@ -273,6 +279,7 @@ def test_solve_system_tapers_in_tandem_without_load_path(axial):
         solve_system(ShaftSystem(line, seats, loads=load))
 
 
+@pytest.mark.slow
 def test_solve_system_without_load_and_weight():
     """A turning shaft in loose bearings without load and weight is in balance."""
     line = ShaftLine("s", [0.3], [0.04])
@@ -281,6 +288,7 @@ def test_solve_system_without_load_and_weight():
     assert np.abs(found.load).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_places_of_gears_and_bearings():
     """Of the gear stage the loads balance forces and moments of each shaft, and the
     solutions of the bearings have the loads of the system."""
@@ -316,6 +324,7 @@ def test_places_of_gears_and_bearings():
         assert one.speed is not None
 
 
+@pytest.mark.slow
 def test_solve_system_reversed_shaft_keeps_bearing_loads():
     """It is the same shaft, with its bearings turned. The elements stand mirrored about
     local x, and so in the same places: one of them stands at azimuth 0."""
@@ -383,6 +392,7 @@ def answers():
 
 
 @pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.slow
 def test_derivatives(answers, name):
     """AF006-6: every answer has a derivative by every number."""
     arrays, value, slope = answers

@@ -122,6 +122,7 @@ def network(**more):
     return HeatNetwork(293.15, [path, path], housing=6.0)
 
 
+@pytest.mark.slow
 def test_balance_of_heat():
     """The heat that friction makes at the warm bearings flows off by the network."""
     found = solve_heat(spindle(), network())
@@ -159,6 +160,7 @@ def test_warming_up_ends_in_the_equilibrium():
     np.testing.assert_allclose(over[-1], last, atol=0.02)
 
 
+@pytest.mark.slow
 def test_solve_heat_with_and_without_seats():
     """Without seats temperature acts through the oil alone."""
     with_seats = solve_heat(spindle(), network())

@@ -145,6 +145,7 @@ def test_optimise_rejects_inadmissible_shaft_variables(problem, variable, wanted
         optimise(problem.element, problem.cases, [variable], SystemLife())
 
 
+@pytest.mark.slow
 def test_wrong_calls(problem):
     design, cases, free = problem.element, problem.cases, FREE[:1]
     with pytest.raises(TypeError, match="it must be a ShaftCases"):

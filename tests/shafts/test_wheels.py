@@ -277,6 +277,7 @@ def test_solve_system_rejects_unbalanced_torques():
         solve_system(wrong)
 
 
+@pytest.mark.slow
 def test_torques_of_every_case_balance():
     system = published()
 

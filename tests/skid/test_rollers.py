@@ -203,6 +203,7 @@ def found():
     return ends, jax.tree.map(lambda a: a[len(names) :], all_of)
 
 
+@pytest.mark.slow
 def test_slip_falls_with_load_and_rises_with_speed(found):
     ends, _ = found
     for name, end in ends.items():

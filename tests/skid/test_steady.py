@@ -88,6 +88,7 @@ def row(result, k):
     return jax.tree.map(lambda a: np.asarray(a)[k], result)
 
 
+@pytest.mark.slow
 def test_steady_axial_loads_match_published_slip_and_pitch(axial):
     """AF001-11, AF001-12 and AF001-14."""
     assert np.all(axial.result == Result.CONVERGED)
@@ -102,6 +103,7 @@ def test_steady_axial_loads_match_published_slip_and_pitch(axial):
             np.testing.assert_allclose(got, angle, atol=0.3)
 
 
+@pytest.mark.slow
 def test_the_row_is_solved_in_one_place_of_the_program(monkeypatch):
     """Its equilibrium is most of what is traced and compiled."""
     traced = []
@@ -150,6 +152,7 @@ def test_end_state_at_520_newton(axial):
     assert np.all(end.sliding_speed < 6e-3)
 
 
+@pytest.mark.slow
 def test_power_of_the_drive_is_heat(axial, combined):
     for result, within in ((axial, 1e-9), (combined, 1e-7)):
         p = result.power
@@ -230,6 +233,7 @@ def test_derivative_along_the_orbit(count):
             np.testing.assert_allclose(got, n * slope(n * phi), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_standstill_and_both_rings():
     """At rest nothing moves; the sense of rotation and the frame do not matter."""
     load = jnp.array([0.0, 0.0, 120.0, 0.0, 0.0, 0.0])
@@ -276,6 +280,7 @@ def stiff():
     return one
 
 
+@pytest.mark.slow
 def test_stiff_oil_does_not_hide_slip(stiff):
     """The power of the drive turns balls against 54 kW of drag, which takes 8 N m at
     the least; with oil at -20 °C the balance holds too."""

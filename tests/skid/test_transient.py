@@ -87,6 +87,7 @@ def prepared():
     ],
     ids=["axial", "both loads", "from rest", "horizontal axis", "no clearance"],
 )
+@pytest.mark.slow
 def test_power_balance(given):
     """Work of the drive: heat, drag, and what is stored."""
     found = run(**given)
@@ -137,6 +138,7 @@ def test_simulate_error_is_within_tolerance():
     assert np.max(np.abs(fine - exact)) < 5e-7
 
 
+@pytest.mark.slow
 def test_simulate_reaches_steady_state():
     """Balls free in wide pockets; the cage starts with their final speed."""
     end = steady(LIGHT)
@@ -195,6 +197,7 @@ def varying():
     return swing, run(Varying(NOTHING, swing), tolerance=1e-6)
 
 
+@pytest.mark.slow
 def test_simulate_varying_load_matches_static_solutions(varying):
     """Solved alone, with the balls where they are at that time."""
     swing, found = varying
@@ -349,6 +352,7 @@ def test_simulate_non_finite_start(prepared):
     assert np.all(np.isnan(found.slip[1:]))
 
 
+@pytest.mark.slow
 def test_simulate_reports_non_finite_for_newtonian_glass():
     """At 0 °C and above 1 GPa spins settle within 1e-15 s: no step is small enough."""
     heavy = np.array([400.0, 0.0, 600.0, 0.0, 0.0, 0.0])

@@ -45,6 +45,7 @@ def test_thrust_solution_in_closed_form(angular):
     assert np.all(np.asarray(s.n_contacts) == 2)
 
 
+@pytest.mark.slow
 def test_balance_of_a_turning_bearing(angular):
     s = bj.solve_load(angular, [300.0, 0, 800.0, 0, 0, 0], speed=SPEED)
     force = np.asarray(s.force)
@@ -103,6 +104,7 @@ def test_balls_lift_off_at_high_speed(deep):
     assert any("lifted off the inner raceway" in line for line in warnings(s))
 
 
+@pytest.mark.slow
 def test_states_of_a_four_point_bearing():
     """Pure thrust: two points. A large ball under a radial load: more."""
     element = ball_elements()["four-point, unlike balls, load share"][0]
@@ -140,6 +142,7 @@ def test_truncated_ellipse_is_warned_of(angular):
     assert np.all(np.isinf(np.asarray(none.shoulder_margin)))
 
 
+@pytest.mark.slow
 def test_preloaded_pair(angular):
     """Under no load each row presses the other; in the linear part both are felt."""
     pair = bj.BearingElement(bj.BearingSet.back_to_back(angular.bearing, 0.02, 16e-6))
@@ -199,6 +202,7 @@ def test_work_on_a_closed_path_is_zero():
     assert abs(work) < SOLVER * size
 
 
+@pytest.mark.slow
 def test_tandem_shares_the_thrust(angular):
     element = bj.BearingElement(bj.BearingSet.tandem(angular.bearing, 0.02, 3))
     s = bj.solve_load(element, [0, 0, 3000.0, 0, 0, 0])
@@ -317,6 +321,7 @@ def test_beyond_the_end_of_a_groove_the_raceway_goes_straight_on(deep):
     assert lost == pytest.approx(-reach, rel=SOLVER) and not normal.any()
 
 
+@pytest.mark.slow
 def test_a_lifting_ball_has_one_state_only():
     """Solved anew at the same ring motion it is found again, touching or hanging free,
     at large contact angles too."""

@@ -318,6 +318,7 @@ def solved():
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_lives_of_every_type(solved, name):
     """P and its life by hand; the reference life is near that of P."""
     solution, (load, _) = solved[name], CASES[name]

@@ -135,6 +135,7 @@ def pair():
     return oil, *solve(element, load, SPEED)
 
 
+@pytest.mark.slow
 def test_rows_of_a_pair(pair):
     oil, solution, friction, *_ = pair
     assert bool(solution.converged)

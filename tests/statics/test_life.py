@@ -192,6 +192,7 @@ def test_ball_lives_attributed_to_another_program(
         (20e3, 1.0e-3, 615.1985, 649.0586),
     ],
 )
+@pytest.mark.slow
 def test_roller_lives_of_another_program(
     rollers, radial, tilt, millions, without_edges
 ):
@@ -728,6 +729,7 @@ def held(bearing, axial):
     )
 
 
+@pytest.mark.slow
 def test_moments_are_counted_about_the_pressure_centre():
     """There the forces of the contacts meet: of an angular contact bearing whose rings
     are parallel hardly a moment is left, whichever way it faces; of a deep groove
@@ -764,6 +766,7 @@ def test_moments_are_counted_about_the_pressure_centre():
     assert np.isfinite(slope).all()
 
 
+@pytest.mark.slow
 def test_a_moment_alone_is_told_of_a_life():
     """20 N m on a 6305: L10 has no end, the reference life has."""
     element = ball_element([0.0])
@@ -1011,6 +1014,7 @@ def doubted():
 
 
 @pytest.mark.parametrize("kind", LIFE_KINDS)
+@pytest.mark.slow
 def test_sweep_warns_of_lives_without_life_outputs(kind, doubted):
     k, swept = doubted[kind]
     assert not set(LIFE_OUTPUTS) & set(swept.outputs)

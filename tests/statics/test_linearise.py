@@ -75,6 +75,7 @@ def test_condensed_stiffness_drops_direction_without_stiffness():
     np.testing.assert_allclose(kept, expected, atol=SOLVER * abs(k).max())
 
 
+@pytest.mark.slow
 def test_under_jit_and_grad():
     """d(condensed stiffness)/d(load), through the solve and the condensation."""
 

@@ -38,6 +38,7 @@ def loads_of(s, ring):
     return np.asarray(s.force)[6:] if ring == "inner" else np.asarray(s.force)[:6]
 
 
+@pytest.mark.slow
 def test_either_ring_may_be_fixed(crowned):
     inner = bj.solve_load(crowned, RADIAL)
     outer = bj.solve_load(crowned, [-x for x in RADIAL], fixed_ring="inner")
@@ -170,6 +171,7 @@ def test_message_reports_round_off_of_rolling_elements(tapered):
         assert "of solve_load" not in message(late, "inner")
 
 
+@pytest.mark.slow
 def test_a_failed_solve_has_no_derivative(tapered):
     """Of any size it would pass for one."""
 
@@ -238,6 +240,7 @@ def of_solution(solution):
     ],
     ids=["balls", "rollers"],
 )
+@pytest.mark.slow
 def test_solve_load_batch_equals_single_solutions(bearing):
     element = bj.BearingElement(bearing)
     # The third is so light that what it carries is round-off beside the others.
@@ -304,6 +307,7 @@ def test_gradient_of_a_batch_past_masked_cases(tapered, way):
         assert float(slopes[k]) == pytest.approx(difference, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_many_devices_and_a_batch_of_open_size(tapered):
     """The recipes of `bearingjax.statics` for a program of one's own."""
 
@@ -380,6 +384,7 @@ def test_design_gradients_of_displacement_and_stiffness():
         assert np.allclose(forward[:, k], slope, rtol=1e-5), name
 
 
+@pytest.mark.slow
 def test_solve_load_design_gradient_with_held_freedom():
     """Five rollers, none opposite another: ux is coupled to uy, and held at zero."""
 
@@ -397,6 +402,7 @@ def test_solve_load_design_gradient_with_held_freedom():
     assert abs(slope(at)[1] - difference) < DIFFERENCE * abs(difference)
 
 
+@pytest.mark.slow
 def test_gradient_with_respect_to_a_prescribed_turn(crowned):
     """gz moves the rollers: the answer follows, though force and stiffness hold it."""
 
@@ -419,6 +425,7 @@ def test_gradient_with_respect_to_a_prescribed_turn(crowned):
         (dict(free=["ux", "uy", "gy"]), "not among `free`"),
     ],
 )
+@pytest.mark.slow
 def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
     load = [0.0, -4000.0, 0.0, 20.0, 0.0, 0.0]
     with pytest.raises(ValueError, match=f"has Mx = 20 N m, but gx is {why}"):
@@ -458,6 +465,7 @@ def test_tolerance_and_step_limit_do_not_compile_anew(crowned, monkeypatch):
     assert len(traces) == 1
 
 
+@pytest.mark.slow
 def test_gradient_with_respect_to_load_is_the_compliance(tapered):
     load = jnp.asarray([1000.0, 300.0, 5000.0, 2.0, -1.0, 0.0])
     of = jax.jit(lambda f: bj.solve_load(tapered, f).displacement[6:11])
@@ -528,6 +536,7 @@ def test_solve_load_derivatives_of_floating_ring_oblique_load():
     np.testing.assert_allclose(slopes[:, 2], 0.5 * along, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_second_derivative_of_the_displacement():
     """The curvature of sag against load, by the implicit rule and by differences."""
     element = bj.BearingElement(taper(5), quadrature=bj.numerics.Midpoint(8))
@@ -562,6 +571,7 @@ def test_millinewtons_on_a_wedged_roller(load):
     assert np.linalg.norm(out[:5]) < 1e-8 * np.linalg.norm(load)
 
 
+@pytest.mark.slow
 def test_sweep_converges_for_rollers_at_crawling_speed():
     """6e-8 N on an unloaded roller: it once crept along its crown beyond all steps."""
     element = bj.BearingElement(robust_sweep.bearing())
@@ -581,6 +591,7 @@ def test_small_robustness_run():
 
 
 @pytest.mark.parametrize("speed", [0.05, 0.45, 3.7])
+@pytest.mark.slow
 def test_slow_taper(speed):
     """Idle rollers of a slow bearing, seated by next to nothing, do not fail the solve;
     it is that of the bearing at rest, but for inertia: at 3.7 rad/s some 2e-5 of the

@@ -46,6 +46,7 @@ def test_each_side_carries_the_preload(pair):
         )
 
 
+@pytest.mark.slow
 def test_preload_of_unlike_sides():
     """Two rows against one: together they carry what the other one carries."""
     one, other = balls(), balls(8, contact_angle=0.3)
@@ -64,6 +65,7 @@ def test_preload_of_unlike_sides():
     assert float(axial[1]) > float(axial[0])
 
 
+@pytest.mark.slow
 def test_offset_follows_force_and_design(pair):
     """Closed form: rows of n balls pressed axially; its slope, by differences."""
 
@@ -172,6 +174,7 @@ def test_load_solve_with_a_spring():
     assert float(opened.stiffness[8, 8]) == pytest.approx(8e4, rel=0.01)
 
 
+@pytest.mark.slow
 def test_remaining_preload_of_sets(pair):
     ground = bj.preload(pair, 400.0)
     left = remaining(ground)

@@ -239,6 +239,7 @@ CONTROLS = {"right": 1.0, "none": 0.0, "wrong": -1.0}
 
 @pytest.mark.parametrize("variant", CONTROLS)
 @pytest.mark.parametrize("name", HIGH_SPEED)
+@pytest.mark.slow
 def test_high_speed(name, variant):
     (n, pitch, ball, outer, inner, angle, axial, rpm), materials, numbers = HIGH_SPEED[
         name
@@ -439,6 +440,7 @@ def test_sjovall_double_row():
         assert np.allclose(mine, [j_r, j_a], rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_stribeck_number():
     """4.37 W/z: exactly 1/J_r(0.5) for many balls, 4.373 for fourteen (AF003-6)."""
     many = bj.DeepGrooveBallBearing(

@@ -26,6 +26,7 @@ def tapered():
 
 
 @pytest.mark.parametrize("raceway", ["inner", "outer"])
+@pytest.mark.slow
 def test_coupled_slices_agree(tapered, raceway):
     element, solution = tapered
     ring = bj.element.RINGS.index(raceway)
@@ -67,6 +68,7 @@ def test_the_contact_has_the_bearings_geometry(tapered):
         assert np.sign(contact.raceway_radius) == (-1, 1)[ring]
 
 
+@pytest.mark.slow
 def test_positions_are_those_of_the_bearing():
     """Tilted tapers, position by position: the same end bears, in `solve` and here.
 
@@ -96,6 +98,7 @@ def test_positions_are_those_of_the_bearing():
         assert high > low
 
 
+@pytest.mark.slow
 def test_a_one_sided_profile():
     """Dropped at s < 0, which is the large end of the roller, on one axis."""
     s = np.linspace(-6e-3, 6e-3, 13)
@@ -120,6 +123,7 @@ def test_independent_slices_miss_the_end():
     assert 1 < softer.edge_factor < 0.7 * got.edge_factor
 
 
+@pytest.mark.slow
 def test_bad_input(tapered):
     element, solution = tapered
     with pytest.raises(ValueError, match="`raceway` is 'rib'; it must be"):

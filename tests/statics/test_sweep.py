@@ -55,6 +55,7 @@ def from_contact():
     return bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8, near=False)
 
 
+@pytest.mark.slow
 def test_each_case_is_the_single_solve(swept):
     single = jax.jit(partial(bj.solve_load, ELEMENT, throw=False))
     for k, load in enumerate(loads()):
@@ -210,6 +211,7 @@ def grooved(clearance):
     "made, axial, speed",
     [(ribbed, 0.08, None), (grooved, 0.5, np.linspace(0.0, 3000.0, 48))],
 )
+@pytest.mark.slow
 def test_play_lifted_balls_and_designs_end_where_first_contact_ends(made, axial, speed):
     """A start must not choose among equilibria: between ribs any uz is one."""
     element = bj.stack_designs([made(c) for c in (5e-6, 10e-6, 30e-6)])
@@ -227,6 +229,7 @@ def test_play_lifted_balls_and_designs_end_where_first_contact_ends(made, axial,
     assert near.iterations.mean() < 0.9 * contact.iterations.mean()
 
 
+@pytest.mark.slow
 def test_cases_in_a_queue_are_solved_as_together(from_contact, monkeypatch):
     """Fewer slots than cases: each bad one leaves its slot to the next."""
     used, honest = [], lanes._queued
@@ -255,6 +258,7 @@ def test_blocks_follow_each_other(swept, monkeypatch):
     )
 
 
+@pytest.mark.slow
 def test_designs_speeds_and_displacements_vary():
     def made(clearance):
         bearing = bj.CylindricalRollerBearing(
@@ -292,6 +296,7 @@ def test_designs_speeds_and_displacements_vary():
             )
 
 
+@pytest.mark.slow
 def test_all_fields_or_a_function_of_the_solution():
     whole = bj.sweep(ELEMENT, loads()[:3], points=5)
     assert whole.contact_pressure.shape == (3, 6, 2, 5)
@@ -333,6 +338,7 @@ def started(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", ["first", "second"])
+@pytest.mark.slow
 def test_devices_and_processes_share_the_cases(started, swept, name):
     found = started[name]
     assert found["devices"] == 4
@@ -445,6 +451,7 @@ def test_bad_designs(swept):
         sweep_table.write(swept, "table.xls")
 
 
+@pytest.mark.slow
 def test_coupled_slices_on_two_devices_come_to_an_end():
     """A batch of their matrices is no LAPACK call whose parts wait for each other."""
     threads = {k: v for k, v in os.environ.items() if k != "PJRT_NPROC"}

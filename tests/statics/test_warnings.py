@@ -169,6 +169,7 @@ def test_tilts_are_those_of_ring_against_ring(deep):
         assert float(found["prescribed_tilt"]) == pytest.approx(held / usual)
 
 
+@pytest.mark.slow
 def test_warnings_negative_clearance_of_single_bearing(deep, rollers):
     """Not one at rest, nor a set, whose rows press each other on purpose."""
     load, running = [0, -2000.0, 300, 0, 0, 0], bj.Speed(inner=100.0)
@@ -357,6 +358,7 @@ def test_step_limit_message_suggests_other_method_only(rollers):
 
 
 @pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])
+@pytest.mark.slow
 def test_peak_pressure_is_independent_of_positions(name):
     """Rollers that tilt: the peak stands off the middle, at a kink or beyond one."""
     element = bj.BearingElement(bearings()[name])
