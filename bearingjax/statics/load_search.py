@@ -298,11 +298,14 @@ def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
 def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar:
     """About the approach of one raceway contact under a load of that size [m].
 
-    Between the powers 2/3 of points and 9/10 of lines; at most a tenth of the radius.
+    Between the powers 2/3 of points and 9/10 of lines; at most a tenth of the radius,
+    and zero where the elements do not tell their loads.
     """
     known = 1e-3 * radius
-    approach = known * (size / _load_for(model, known)) ** 0.8
-    return jnp.minimum(approach, 0.1 * radius)
+    load = _load_for(model, known)
+    told = load > 0
+    approach = known * (size / jnp.where(told, load, 1.0)) ** 0.8
+    return jnp.where(told, jnp.minimum(approach, 0.1 * radius), 0.0)
 
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:

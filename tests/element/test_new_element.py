@@ -196,6 +196,13 @@ def test_load_solve_sweep_and_gradients():
     assert slope == pytest.approx(ends / (2 * step), rel=DIFFERENCE)
 
 
+def test_load_solve_without_load_and_hints():
+    """A ring that is pushed across finds its place, though no load says how far."""
+    solution = bj.solve_load(ELEMENT, [0.0] * 6, prescribed={"uy": 3e-5}, free=("ux",))
+    assert abs(float(solution.force[6])) < 1e-9 * float(solution.force[7])
+    assert abs(float(solution.displacement[6])) > 1e-7
+
+
 class FixedAngleBall(AbstractRollingElement):
     """Two contacts in series along the free contact angle: nothing is left to solve."""
 
