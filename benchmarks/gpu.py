@@ -3,10 +3,11 @@
 A cylindrical roller bearing (NU), 14 crowned rollers, 32 nodes per raceway contact, in
 float64: force and stiffness at random ring motions; displacement under random radial
 loads with moments, from first contact; the sag under such a load and its gradient by
-clearance, roller length and crown radius. The processor runs chunks of 64 cases, the
-GPU all cases at once, or as many as `bearingjax.numerics.lanes.WIDER` lets in at a
-time where iterations differ. Times are those of hot calls, medians of three, results
-left on the device. Errors are relative to the largest result of the processor.
+clearance, roller length and crown radius. The processor runs chunks of 64 cases in one
+call, which uses few of its cores; the GPU runs all cases at once, and where the steps
+that they need differ, `bearingjax.numerics.lanes.WIDER` times as many at a time as the
+processor. Times are those of hot calls, medians of three, results left on the device.
+Errors are relative to the largest result of the processor.
 
 Run: python benchmarks/gpu.py [--device cpu|gpu] [--smoke] [--seconds S]
 

@@ -135,7 +135,7 @@ def test_results_state_their_units(kind, names):
 
 def test_unit_of_a_named_tuple():
     class Example(NamedTuple):
-        """What was found.
+        """Results of an example.
 
         Attributes:
             force, moment: Loads (case,) [N, N m].
