@@ -73,6 +73,13 @@ def test_ball_out_of_the_groove_of_a_washer():
     assert "leaves its raceway" in bj.statics.message(s, "inner")
     held = bj.solve_load(element, [50.0, 0, 5000.0, 0, 0, 0], speed=speed, throw=False)
     assert bool(held.converged)
+    # A ball that the other washer has left is at rest just where its groove ends.
+    for thrust in (0.6, 0.9, 1.2, 2.0, 4.0):
+        load = np.asarray([-0.06, -0.27, thrust, 5.5e-4, 6.2e-4, 0.0])
+        s = bj.solve_load(element, load, speed=bj.Speed(514.0), throw=False)
+        force = element.force(s.displacement, bj.Speed(514.0))[6:]
+        off = np.abs(np.asarray(force) - load).max()
+        assert int(s.result) == bj.Result.NO_LOAD_PATH or off < 1e-9 * thrust
 
 
 def test_one_sided_bearing_pulled_the_other_way(angular):
