@@ -122,8 +122,7 @@ class RotorLoads(eqx.Module):
         Args:
             rotor: The rotor.
         """
-        cosine = jnp.zeros_like(accelerated(rotor, self.gravity))
-        sine = cosine
+        cosine = sine = jnp.zeros_like(rotor.motions()[:, 0])
         for one in self.unbalances:
             x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
             at = rotor.at(one.station).start

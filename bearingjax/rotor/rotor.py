@@ -255,29 +255,49 @@ class Rotor(eqx.Module):
 
 @program(quick=True)
 def _linearised(rotor, speed, motion):
+    return matrices_about(rotor, speed, motion)
+
+
+def matrices_about(
+    rotor: Rotor,
+    speed: Scalar,
+    motion: Float[Array, " motion"] | None,
+    *,
+    supported: bool = True,
+) -> RotorMatrices:
+    """Return the rotor as matrices; compiled by the caller.
+
+    Args:
+        rotor, speed, motion: As in `Rotor.linearised`.
+        supported: Whether its supports count. Modal damping takes them along anyway.
+    """
     own, basis, shaft = rotor.unsupported(), rotor.motions(), rotor.shaft
     every = jnp.eye(basis.shape[0], dtype=basis.dtype)
     if motion is None:
         motion = jnp.zeros_like(every[0])
-    damping, stiffness = own.damping, own.stiffness
-    if rotor.supports:
+    length = shaft.stations[-1] - shaft.stations[0]
+
+    def matrices(damping, stiffness):
+        whole = own.mass, damping, own.gyroscopic, stiffness, every
+        found = RotorMatrices(*whole, speed, length, shaft.n_nodes)
+        return found.projected(basis) if rotor.rigid else found
+
+    free = held = matrices(own.damping, own.stiffness)
+    if rotor.supports and (supported or rotor.damping is not None):
         rows = rotor.at_supports()
         k, c = of_each(
             lambda support, moved: support.linearised(moved, speed),
             rotor.supports,
             rows @ motion,
         )
-        stiffness = stiffness + jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
-        damping = damping + jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
-    length = shaft.stations[-1] - shaft.stations[0]
-    whole = own.mass, damping, own.gyroscopic, stiffness, every
-    matrices = RotorMatrices(*whole, speed, length, shaft.n_nodes)
+        more = [jnp.einsum("sim,sij,sjn->mn", rows, part, rows) for part in (c, k)]
+        held = matrices(own.damping + more[0], own.stiffness + more[1])
+    found = held if supported else free
+    if rotor.damping is None:
+        return found
     of_shaft = own.shaft_mass, own.shaft_stiffness
     if rotor.rigid:
-        matrices = matrices.projected(basis)
         mass, stiffness = (basis.T @ part @ basis for part in of_shaft)
         of_shaft = mass, stiffness
-    if rotor.damping is None:
-        return matrices
-    more = rotor.damping.matrix(of_shaft, (matrices.mass, matrices.stiffness))
-    return eqx.tree_at(lambda m: m.damping, matrices, matrices.damping + more)
+    more = rotor.damping.matrix(of_shaft, (held.mass, held.stiffness))
+    return eqx.tree_at(lambda m: m.damping, found, found.damping + more)

@@ -13,7 +13,7 @@ from tolerances import ROUNDING
 
 from bearingjax.numerics import attach, attach_roots
 from bearingjax.numerics.expansion import by_autodiff
-from bearingjax.numerics.implicit import stop, unless_failed
+from bearingjax.numerics.implicit import stop, through_jacobian, unless_failed
 
 STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
 
@@ -223,3 +223,35 @@ def test_expansion_with_an_argument_of_each_function():
     rows = [[2 * a * y, 2 * a * x], [2 * a * x, zero]]
     bends = jnp.stack([jnp.stack(row, axis=-1) for row in rows], axis=-2)
     np.testing.assert_allclose(found.hessian, bends, rtol=1e-12)
+
+
+def _bent(given, x, angle):
+    """Three values of three numbers, by a pytree with a part that is no array."""
+    matrix, power = given
+    return jnp.sin(matrix @ x) * jnp.cos(angle) ** power
+
+
+def test_through_jacobian_has_the_derivatives_of_its_function():
+    """First and second, forward and reverse, by inputs and by what is given."""
+    spread = jnp.asarray(np.random.default_rng(6).normal(size=(3, 8)))
+
+    def of(function):
+        def value(matrix, q, angle):
+            return jnp.sum(function((matrix, 2), spread @ q, angle) ** 2)
+
+        return value
+
+    args = STIFFNESS, jnp.linspace(0.1, 0.8, 8), jnp.asarray(0.4)
+    plain = of(_bent)
+    ours = of(lambda given, *x: through_jacobian(given, *x, function=_bent))
+    which = (0, 1, 2)
+    for way in (
+        lambda f: jax.grad(f, which),
+        lambda f: jax.jacfwd(f, which),
+        lambda f: jax.hessian(f, which),
+        lambda f: jax.jacfwd(f, 1),
+    ):
+        pairs = zip(*(jax.tree.leaves(way(f)(*args)) for f in (ours, plain)))
+        for one, other in pairs:
+            np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+    assert float(ours(*args)) == float(plain(*args))

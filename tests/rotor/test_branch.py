@@ -83,7 +83,7 @@ def test_duffing(branches):
 
 def test_hundreds_of_pairs_of_multipliers():
     """Their product, of 820 factors near 0.05, is no number above zero."""
-    blank: Any = 7 * [None]
+    blank: Any = len(Place._fields) * [None]
     for last, sign in ((0.99, 1.0), (1.01, -1.0)):
         turned = last * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
         matrix = np.diag([*np.linspace(0.95, 0.98, 39), 0.0, 0.0])

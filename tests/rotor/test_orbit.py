@@ -21,7 +21,8 @@ from bearingjax.rotor.nonlinear import (
     hill_multipliers,
     solve_orbit,
 )
-from bearingjax.rotor.nonlinear.flow import transition
+from bearingjax.rotor.nonlinear.flow import transition, transition_phases
+from bearingjax.rotor.nonlinear.harmonic_balance import interpolation
 
 BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
 METHODS = {"balance": BALANCE, "shooting": SHOOTING}
@@ -93,8 +94,8 @@ def test_mathieu():
         # y'' + (a - 2 q cos 2τ) y = 0 with φ = 2τ: frequency² 4/a.
         ratio = 2.0 / jnp.sqrt(stiffness)
         none = jnp.zeros(2)
-        _, jacobian = SHOOTING.linearised(system, none, ratio)
-        return jnp.trace(SHOOTING.monodromy(system, none, ratio, jacobian))
+        _, jacobian, _ = SHOOTING.linearised(system, none, ratio)
+        return jnp.trace(SHOOTING.monodromy(system, ratio, jacobian, ()))
 
     for q in (0.5, 2.0):
         for order, goal in ((0, 2.0), (1, -2.0), (2, 2.0)):
@@ -149,7 +150,7 @@ def test_gradients_against_differences(name):
 def test_harmonic_balance_jacobian():
     system, z = rotor(36, base_acceleration=5.0), 0.3 * jnp.sin(jnp.arange(25.0))
     balance, ratio = HarmonicBalance(2, 12), jnp.asarray(0.9)
-    left, jacobian = eqx.filter_jit(balance.linearised)(system, z, ratio)
+    left, jacobian, _ = eqx.filter_jit(balance.linearised)(system, z, ratio)
 
     @jax.jit
     def change(step):
@@ -179,7 +180,7 @@ def test_a_fast_mode_does_not_spoil_the_multipliers():
 
     @partial(jax.jit, static_argnums=(0, 1))
     def over_a_period(matrix_at, steps):
-        return transition(matrix_at, jnp.eye(2), steps)
+        return transition(jax.vmap(jax.vmap(matrix_at))(transition_phases(steps)))
 
     fast = 50.25
     turn = jnp.asarray(np.array([[0.0, fast], [-fast, 0.0]]))
@@ -196,3 +197,14 @@ def test_a_fast_mode_does_not_spoil_the_multipliers():
     coarse, fine, finest = (np.asarray(over_a_period(varying, n)) for n in (12, 24, 96))
     before, after = (np.abs(one - finest).max() for one in (coarse, fine))
     assert 40.0 < before / after < 90.0
+
+
+@pytest.mark.parametrize("samples", [9, 12])
+def test_interpolation_of_a_short_series(samples):
+    def series(phase):
+        return 0.3 + np.cos(phase) - 2.0 * np.sin(3.0 * phase) + np.cos(4.0 * phase)
+
+    phase = transition_phases(7)
+    even = series(2.0 * np.pi * np.arange(samples) / samples)
+    found = interpolation(phase, samples) @ even
+    assert np.allclose(found, series(phase), atol=ROUNDING)

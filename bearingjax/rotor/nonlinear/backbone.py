@@ -186,7 +186,7 @@ def _at_rest(system):
         return out_of_balance(_free(system, none), none, one, u, still, still)
 
     def linearised(u):
-        return left(u, stop(system)), jax.jacfwd(left)(u, stop(system))
+        return left(u, stop(system)), jax.jacfwd(left)(u, stop(system)), ()
 
     def correction(of_u, u, change, _):
         # What nothing holds stays where it is.
@@ -238,7 +238,7 @@ def _followed(system, peaks, freedom, method, mode):
             return value, value
 
         jacobian, value = jax.jacfwd(both, has_aux=True)(x)
-        return value, jacobian
+        return value, jacobian, ()
 
     def one(carry, wanted):
         def attempt(state):

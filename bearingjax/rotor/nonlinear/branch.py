@@ -23,7 +23,7 @@ from .continuation import (
     trace,
 )
 from .method import AbstractMethod
-from .orbit import STABLE, amplitudes, beginning
+from .orbit import STABLE, beginning
 from .system import AbstractVibratingSystem
 
 _LOCATED = 1e-7
@@ -138,9 +138,7 @@ def follow(
     stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
     return Branch(
         frequency=np.asarray(at.x[:, -1]) * unit,
-        amplitude=np.stack([_amplitude(system, u) for u in at.motion])
-        if count
-        else np.zeros((0, len(scale))),
+        amplitude=np.asarray(at.amplitude) * scale,
         displacement=np.asarray(at.motion) * scale,
         multipliers=multipliers,
         stable=stable,
@@ -251,22 +249,13 @@ def _located(system, method, every, k, kind, test):
     event = Event(
         kind,
         float(point.x[-1]) * float(system.reference_frequency),
-        _amplitude(system, point.motion),
+        np.asarray(point.amplitude) * np.asarray(system.scale),
         np.asarray(point.motion) * np.asarray(system.scale),
         np.linalg.eigvals(point.monodromy),
         k,
         solved,
     )
     return k + float(here.tangent @ (point.x - here.x)) / span, event
-
-
-@jax.jit
-def _half_range(u):
-    return amplitudes(u)
-
-
-def _amplitude(system, u):
-    return np.asarray(_half_range(u)) * np.asarray(system.scale)
 
 
 def _beyond(point: Place) -> int:

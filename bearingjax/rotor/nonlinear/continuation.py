@@ -26,7 +26,7 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from .method import AbstractMethod
-from .orbit import along_frequency, correct
+from .orbit import along_frequency, amplitudes, correct
 from .system import AbstractVibratingSystem
 
 
@@ -114,6 +114,7 @@ class Traced(NamedTuple):
         tangent: Unit vectors along the branch (point, m + 1).
         monodromy: (point, 2n, 2n) [1].
         motion: Freedoms over `scale` at even phases (point, sample, n) [1].
+        amplitude: Half of peak to peak of the freedoms over `scale` (point, n) [1].
         residual: Largest, of the method's equations (point,) [1].
         side: Sign of the determinant of the bordered system (point,).
         newton: Newton steps (point,).
@@ -126,6 +127,7 @@ class Traced(NamedTuple):
     tangent: Float[Array, "point x"]
     monodromy: Float[Array, "point state state"]
     motion: Float[Array, "point sample n"]
+    amplitude: Float[Array, "point n"]
     residual: Float[Array, " point"]
     side: Float[Array, " point"]
     newton: Int[Array, " point"]
@@ -141,6 +143,7 @@ class Place(NamedTuple):
     tangent: Float[Array, " x"]
     monodromy: Float[Array, "state state"]
     motion: Float[Array, "sample n"]
+    amplitude: Float[Array, " n"]
     residual: Scalar
     side: Scalar
     newton: Int[Array, ""]
@@ -191,10 +194,18 @@ def place(
     whole = jnp.concatenate([found.jacobian, tangent[None]])
     side = determinant_sign(whole)
     z, ratio = found.x[:-1], found.x[-1]
-    monodromy = method.monodromy(system, z, ratio, found.jacobian)
+    monodromy = method.monodromy(system, ratio, found.jacobian, found.slopes)
     motion, _ = method.motion(system, z, ratio)
-    residual = jnp.max(jnp.abs(found.left))
-    point = Place(found.x, tangent, monodromy, motion, residual, side, found.steps)
+    point = Place(
+        x=found.x,
+        tangent=tangent,
+        monodromy=monodromy,
+        motion=motion,
+        amplitude=amplitudes(motion),
+        residual=jnp.max(jnp.abs(found.left)),
+        side=side,
+        newton=found.steps,
+    )
     return point, found.result
 
 

@@ -253,11 +253,13 @@ def flow_slopes(
     return jnp.concatenate([u, rate]), jnp.concatenate([du, drate])
 
 
-def transition(
-    matrix_at: Callable[[Scalar], Float[Array, "m m"]],
-    unit: Float[Array, "m m"],
-    steps: int,
-) -> Float[Array, "m m"]:
+def transition_phases(steps: int) -> np.ndarray:
+    """Return the phases at which `transition` needs the matrix (step, 3) [rad]."""
+    nodes = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])
+    return 2.0 * np.pi / steps * (np.arange(steps)[:, None] + nodes)
+
+
+def transition(matrices: Float[Array, "step 3 m m"]) -> Float[Array, "m m"]:
     """Return the monodromy matrix of y' = A(φ) y, by Magnus series of order 6.
 
     A step is the exponential of a mean of A: one that is constant is met exactly,
@@ -265,17 +267,17 @@ def transition(
     steps are independent of each other: all are taken at once.
 
     Args:
-        matrix_at: φ [rad] -> A.
-        unit: Unit matrix.
-        steps: Even steps. Static.
+        matrices: A at `transition_phases` of even steps.
 
     Source: Blanes, Casas & Ros, BIT 40 (2000) 434, Gauss-Legendre points.
     """
-    size = 2.0 * np.pi / steps
-    points = jnp.asarray(0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0]), unit.dtype)
+    size, unit = (
+        2.0 * np.pi / len(matrices),
+        jnp.eye(matrices.shape[-1], dtype=matrices.dtype),
+    )
 
-    def step(begin):
-        first, middle, last = size * jax.vmap(matrix_at)(begin + size * points)
+    def step(three):
+        first, middle, last = size * three
         slope = np.sqrt(15.0) / 3.0 * (last - first)
         bend = 10.0 / 3.0 * (last - 2.0 * middle + first)
         turned = _bracket(middle, slope)
@@ -283,7 +285,7 @@ def transition(
         mean = _bracket(-20.0 * middle - bend + turned, more) / 240.0
         return middle + bend / 12.0 + mean
 
-    each = expm(jax.vmap(step)(_begins(steps, unit.dtype)))
+    each = expm(jax.vmap(step)(matrices))
     whole, _ = lax.scan(lambda y, one: (one @ y, None), unit, each)
     return whole
 

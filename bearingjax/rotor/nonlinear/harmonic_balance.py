@@ -19,9 +19,9 @@ from jaxtyping import Array, Complex, Float
 
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.types import Scalar, as_count
-from .flow import transition
+from .flow import transition, transition_phases
 from .method import AbstractMethod
-from .system import AbstractVibratingSystem, out_of_balance, rates
+from .system import AbstractVibratingSystem, inertia, out_of_balance
 
 
 class Basis(NamedTuple):
@@ -56,6 +56,24 @@ def basis(harmonics: int, samples: int) -> Basis:
     weight[0] = 1.0 / samples
     analysis = weight[:, None] * value.T
     return Basis(phase, value, value @ turn, value @ turn @ turn, analysis, turn)
+
+
+def interpolation(phase: np.ndarray, samples: int) -> np.ndarray:
+    """Weights of even samples in their trigonometric interpolant at phases.
+
+    Args:
+        phase: [rad].
+        samples: Number of them.
+
+    Returns:
+        (..., sample).
+    """
+    order = np.arange(1, (samples + 1) // 2)
+    # The highest order of an even number of samples counts as a cosine.
+    last = np.array([samples / 2]) if samples % 2 == 0 else np.zeros(0)
+    off = phase[..., None] - 2.0 * np.pi * np.arange(samples) / samples
+    waves = 2.0 * np.cos(off[..., None] * order).sum(-1)
+    return (1.0 + waves + np.cos(off[..., None] * last).sum(-1)) / samples
 
 
 class HarmonicBalance(AbstractMethod):
@@ -142,27 +160,24 @@ class HarmonicBalance(AbstractMethod):
         left, (*slopes, speed) = self.slopes(system, z, ratio)
         columns = self.projected(slopes, (at.value, at.rate, at.second))
         both = (at.analysis @ jnp.stack([left, speed])).reshape(2, -1)
-        return both[0], jnp.concatenate([columns, both[1][:, None]], axis=1)
+        jacobian = jnp.concatenate([columns, both[1][:, None]], axis=1)
+        return both[0], jacobian, jnp.stack(slopes[:2])
 
     def motion(self, system, z, ratio):
         return self._motion(z)[:2]
 
-    def monodromy(self, system, z, ratio, jacobian):
-        series = self._series(z)
-        order = jnp.arange(1, self.harmonics + 1, dtype=z.dtype)
-        turn = jnp.asarray(basis(self.harmonics, 1).turn, z.dtype)
-        rate = rates(system, ratio)
-
-        def matrix_at(phase):
-            angle = order * phase
-            here = jnp.concatenate(
-                [jnp.ones_like(order[:1]), jnp.cos(angle), jnp.sin(angle)]
-            )
-            y = jnp.concatenate([here @ series, here @ turn @ series])
-            return jax.jacfwd(lambda y: rate(phase, y))(y)
-
-        unit = jnp.eye(2 * series.shape[1], dtype=z.dtype)
-        return transition(matrix_at, unit, self.steps)
+    def monodromy(self, system, ratio, jacobian, slopes):
+        # Between the samples the slopes are those of the trigonometric interpolant,
+        # so that no force is evaluated anew.
+        between = interpolation(transition_phases(self.steps), self.samples)
+        slopes = jnp.tensordot(jnp.asarray(between, slopes.dtype), slopes, ([2], [1]))
+        unit = jnp.eye(slopes.shape[-1], dtype=slopes.dtype)
+        inverse = solve_any(inertia(system, ratio), unit)
+        pushed = -inverse @ slopes
+        pushed = jnp.concatenate([pushed[:, :, 0], pushed[:, :, 1]], axis=-1)
+        moved = jnp.concatenate([jnp.zeros_like(unit), unit], axis=-1)
+        moved = jnp.broadcast_to(moved, pushed.shape)
+        return transition(jnp.concatenate([moved, pushed], axis=-2))
 
 
 def hill_multipliers(

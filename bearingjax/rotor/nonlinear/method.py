@@ -6,6 +6,7 @@ this interface.
 """
 
 import abc
+from typing import Any
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -46,8 +47,8 @@ class AbstractMethod(eqx.Module):
     @abc.abstractmethod
     def linearised(
         self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> tuple[Float[Array, " m"], Float[Array, "m x"]]:
-        """`residual`, and its Jacobian in (z, ν)."""
+    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
+        """`residual`, its Jacobian in (z, ν), and what `monodromy` makes use of."""
 
     @abc.abstractmethod
     def motion(
@@ -59,15 +60,14 @@ class AbstractMethod(eqx.Module):
     def monodromy(
         self,
         system: AbstractVibratingSystem,
-        z: Float[Array, " m"],
         ratio: Scalar,
         jacobian: Float[Array, "m x"],
+        slopes: Any,
     ) -> Float[Array, "state state"]:
         """Return the derivative of the state after a period by the initial state [1].
 
         Args:
             system: The system.
-            z: Unknowns of the orbit [1].
             ratio: ν [1].
-            jacobian: From `linearised` there.
+            jacobian, slopes: From `linearised` at the orbit.
         """

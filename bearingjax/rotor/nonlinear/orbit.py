@@ -65,6 +65,7 @@ class Corrected(NamedTuple):
         x: Unknowns, the frequency ratio last [1].
         left: Residual of the equations [1].
         jacobian: Of them, in x [1].
+        slopes: What else the equations tell there.
         steps: Newton steps.
         result: `Result` code.
     """
@@ -72,6 +73,7 @@ class Corrected(NamedTuple):
     x: Float[Array, " x"]
     left: Float[Array, " m"]
     jacobian: Float[Array, "m x"]
+    slopes: Any
     steps: Int[Array, ""]
     result: Int[Array, ""]
 
@@ -103,25 +105,26 @@ def correct(
     """
 
     def evaluated(x):
-        left, jacobian = method.linearised(system, x[:-1], x[-1])
+        left, jacobian, slopes = method.linearised(system, x[:-1], x[-1])
         # Every step stays in the plane.
         within = jnp.zeros_like(left[:1])
         whole = jnp.concatenate([jacobian, direction[None]])
-        return jnp.concatenate([left, within]), whole
+        return jnp.concatenate([left, within]), whole, slopes
 
     found = newton(evaluated, x, limit)
     return found._replace(left=found.left[:-1], jacobian=found.jacobian[:-1])
 
 
 def newton(
-    linearised: Callable[[Any], tuple[Any, Any]],
+    linearised: Callable[[Any], tuple[Any, Any, Any]],
     x: Float[Array, " x"],
     limit: int | Int[Array, ""],
 ) -> Corrected:
     """Run Newton's method, with steps halved where the residual more than doubles.
 
     Args:
-        linearised: x -> equations, as many as unknowns, and their Jacobian [1].
+        linearised: x -> equations, as many as unknowns, their Jacobian [1], and what
+            else is wanted of the last evaluation.
         x: Unknowns to begin with [1].
         limit: Most steps.
 
@@ -133,15 +136,17 @@ def newton(
     tolerance = TOLERANCE[str(x.dtype)]
     round_off = _ROUND_OFF * jnp.finfo(x.dtype).eps
 
+    linearised = jax.jit(linearised)  # traced once, for the shapes and in the loop
+
     def evaluated(x):
-        left, jacobian = linearised(x)
+        left, jacobian, slopes = linearised(x)
         step = -solve_any(jacobian, left)
-        return x, left, jacobian, jnp.max(jnp.abs(left)), step
+        return x, left, jacobian, jnp.max(jnp.abs(left)), step, slopes
 
     def solved(here):
         # Of a stiff shaft the forces that cancel leave more than the tolerance in
         # round-off; how far that is from the orbit the step tells.
-        x, _, jacobian, size, step = here
+        x, _, jacobian, size, step, _ = here
         cancels = round_off * jnp.max(jnp.abs(jacobian) @ jnp.abs(x))
         near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
         return (size <= tolerance) | near
@@ -161,13 +166,15 @@ def newton(
 
     # The first evaluation is a turn of the loop: compiled once, not twice.
     none = jnp.zeros_like(x)
-    blank = x, none, jnp.zeros((x.size, x.size), x.dtype), none[0], none
+    shapes = jax.eval_shape(linearised, x)
+    slopes = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes[2])
+    blank = x, none, jnp.zeros((x.size, x.size), x.dtype), none[0], none, slopes
     here, _, steps = lax.while_loop(going, step, (blank, none, jnp.int32(-1)))
-    x, left, jacobian, size, _ = here
+    x, left, jacobian, size, _, slopes = here
     codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
     result = jnp.where(solved(here), *codes)
     result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
-    return Corrected(x, left, jacobian, steps, result.astype(jnp.int32))
+    return Corrected(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
 
 
 def along_frequency(size: int, dtype) -> Float[Array, " x"]:
@@ -244,7 +251,7 @@ def _solved(system, frequency, method, motion, max_steps):
         return method.residual(given[0], z, given[1])
 
     def correction(of_z, z, change, given):
-        _, jacobian = method.linearised(given[0], z, given[1])
+        _, jacobian, _ = method.linearised(given[0], z, given[1])
         return -solve_any(jacobian[:, :-1], change)
 
     def orbit(system, ratio):
@@ -274,8 +281,8 @@ def reported(
     """
     z, ratio = x[:-1], x[-1]
     frequency = frequency_of(system, ratio)
-    _, jacobian = method.linearised(system, z, ratio)
-    multipliers = eigvals(method.monodromy(system, z, ratio, jacobian))
+    _, jacobian, slopes = method.linearised(system, z, ratio)
+    multipliers = eigvals(method.monodromy(system, ratio, jacobian, slopes))
     u, rate = method.motion(system, z, ratio)
     solved = result == int(Result.CONVERGED)
     return PeriodicOrbit(

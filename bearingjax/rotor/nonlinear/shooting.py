@@ -36,15 +36,15 @@ class Shooting(AbstractMethod):
 
     def linearised(self, system, z, ratio):
         end, jacobian = flow_slopes(system, z, ratio, self.steps)
-        return end - z, jacobian - jnp.eye(*jacobian.shape, dtype=z.dtype)
+        return end - z, jacobian - jnp.eye(*jacobian.shape, dtype=z.dtype), ()
 
     def motion(self, system, z, ratio):
         _, states = integrate(system, z, ratio, self.steps)
         u, rate = jnp.split(states, 2, axis=1)
         return u, rate
 
-    def monodromy(self, system, z, ratio, jacobian):
-        return jacobian[:, :-1] + jnp.eye(z.shape[0], dtype=z.dtype)
+    def monodromy(self, system, ratio, jacobian, slopes):
+        return jacobian[:, :-1] + jnp.eye(jacobian.shape[0], dtype=jacobian.dtype)
 
     def flow_error(self, system, z, ratio):
         """Return the error of the state after a period, from twice the steps [1]."""

@@ -11,6 +11,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
 from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
@@ -19,7 +20,7 @@ from ..held import of_each
 from ..loads import RotorLoads
 from ..parts import AbstractSupport
 from ..reduction import craig_bampton, held_motions
-from ..rotor import N_HOUSING, Rotor
+from ..rotor import N_HOUSING, Rotor, matrices_about
 from .system import AbstractVibratingSystem, HarmonicLoad
 
 
@@ -66,7 +67,9 @@ class VibratingRotor(AbstractVibratingSystem):
             return force
         angle = self.rotation * phase
         each = of_each(
-            lambda support, moved, rate: support.force(moved, rate, speed, angle),
+            lambda support, moved, rate: through_jacobian(
+                support, moved, rate, speed, angle, function=_supported
+            ),
             self.supports,
             self.rows @ q,
             self.rows @ velocity,
@@ -125,7 +128,15 @@ def vibrating_rotor(
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
     turning = None if speed is None else as_real(speed)
-    own, rows, sizes, every = _assembled(rotor, as_real(scale), turning, modes, about)
+    steady = loads if isinstance(loads, RotorLoads) else None
+    if steady is not None:
+        steady.check(rotor)
+    own, rows, sizes, load = _assembled(
+        rotor, as_real(scale), turning, modes, about, steady
+    )
+    if steady is None:
+        # A function of all motions, or of the freedoms of a rigid shaft.
+        load = loads if modes is None else _Reduced(loads, own.motions)
     return VibratingRotor(
         mass=own.mass,
         scale=sizes,
@@ -136,38 +147,27 @@ def vibrating_rotor(
         supports=rotor.supports,
         rows=rows,
         motions=own.motions,
-        load=_load(rotor, loads, every, own.motions),
+        load=load,
         speed=turning,
         rotation=as_real(1.0 if rotation is None else rotation),
     )
 
 
 @program(quick=True)
-def _assembled(rotor, scale, speed, modes, about):
-    """Return matrices without supports, support rows, scales, unreduced motions."""
-    matrices = rotor.linearised(0.0 if speed is None else speed, about)
-    rows = rotor.at_supports() @ matrices.motions
-    stiffness, damping = matrices.stiffness, matrices.damping
-    if rotor.supports:
-        there = jnp.zeros_like(matrices.motions[:, 0]) if about is None else about
-        k, c = of_each(
-            lambda support, moved: support.linearised(moved, matrices.speed),
-            rotor.supports,
-            rotor.at_supports() @ there,
-        )
-        stiffness = stiffness - jnp.einsum("sim,sij,sjn->mn", rows, k, rows)
-        damping = damping - jnp.einsum("sim,sij,sjn->mn", rows, c, rows)
-    own = eqx.tree_at(
-        lambda m: (m.stiffness, m.damping), matrices, (stiffness, damping)
-    )
-    sizes = _sizes(rotor, matrices, scale)
+def _assembled(rotor, scale, speed, modes, about, loads):
+    """Return matrices without supports, support rows, scales, and the load if known."""
+    speed = jnp.zeros_like(scale) if speed is None else speed
+    own = matrices_about(rotor, speed, about, supported=False)
+    rows = rotor.at_supports() @ own.motions
+    sizes = _sizes(rotor, own, scale)
     if modes is not None:
         basis = craig_bampton(rotor, modes)
         kept, _ = held_motions(rotor)
         own, rows = own.projected(basis), rows @ basis
         more = jnp.broadcast_to(scale, (basis.shape[1] - len(kept),))
         sizes = jnp.concatenate([sizes[kept], more])
-    return own, rows, sizes, matrices.motions
+    load = None if loads is None else _harmonic(rotor, loads, own.motions.T)
+    return own, rows, sizes, load
 
 
 def _sizes(rotor, matrices, size):
@@ -177,6 +177,10 @@ def _sizes(rotor, matrices, size):
     bodies = 1 if rotor.rigid else matrices.n_nodes
     housings = (matrices.mass.shape[0] - 5 * bodies) // N_HOUSING
     return jnp.concatenate([body] * bodies + [body[:N_HOUSING]] * housings)
+
+
+def _supported(support, motion, velocity, speed, angle):
+    return support.force(motion, velocity, speed, angle)
 
 
 def _as_loads(loads):
@@ -217,21 +221,8 @@ class _Reduced(eqx.Module):
         return self.basis.T @ self.load(phase, frequency, acceleration)
 
 
-def _load(rotor, loads, every, motions):
-    """Return the load on the freedoms as a function of phase, frequency and its rate.
-
-    Args:
-        rotor: The rotor.
-        loads: `RotorLoads`, or a function.
-        every: Motions per freedom before the reduction (motion, freedom).
-        motions: The same after it (motion, n).
-    """
-    if not isinstance(loads, RotorLoads):
-        if motions.shape == every.shape:
-            return loads
-        return _Reduced(loads, motions)
-    loads.check(rotor)
-    turned = motions.T
+def _harmonic(rotor, loads, turned):
+    """Return the load on the freedoms, to which `turned` takes that on all motions."""
     cosine, sine = loads.unbalanced(rotor)
     return HarmonicLoad(
         constant=turned @ loads.constant(rotor),
