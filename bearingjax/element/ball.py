@@ -276,8 +276,8 @@ class BallSearchHints(SearchHints):
         away = super().is_ejected(rings, x)
         if not self.element.grooves.washers:
             return away
-        # A washer's groove does not reach up to its centre: a ball that the other washer
-        # has left slides to there, where the normal has no axial part but round-off.
+        # A washer's groove does not reach up to its centre: there a ball comes to rest
+        # that the other washer has left, and the normal's axial part is round-off.
         c = self.element.contacts(rings, x)
         flat = jnp.abs(c.normal[:, 0]) < jnp.sqrt(jnp.finfo(x.dtype).eps)
         return away | jnp.any((c.approach > 0.0) & flat)

@@ -251,7 +251,7 @@ def test_through_jacobian_has_the_derivatives_of_its_function():
         lambda f: jax.hessian(f, which),
         lambda f: jax.jacfwd(f, 1),
     ):
-        pairs = zip(*(jax.tree.leaves(way(f)(*args)) for f in (ours, plain)))
-        for one, other in pairs:
+        found, wanted = (jax.tree.leaves(way(f)(*args)) for f in (ours, plain))
+        for one, other in zip(found, wanted, strict=True):
             np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
     assert float(ours(*args)) == float(plain(*args))

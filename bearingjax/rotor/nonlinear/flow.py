@@ -13,7 +13,6 @@ Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5
 """
 
 import functools
-from collections.abc import Callable
 from typing import NamedTuple
 
 import jax

@@ -128,13 +128,12 @@ def vibrating_rotor(
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
     turning = None if speed is None else as_real(speed)
-    steady = loads if isinstance(loads, RotorLoads) else None
-    if steady is not None:
-        steady.check(rotor)
-    own, rows, sizes, load = _assembled(
-        rotor, as_real(scale), turning, modes, about, steady
-    )
-    if steady is None:
+    given = rotor, as_real(scale), turning, modes, about
+    if isinstance(loads, RotorLoads):
+        loads.check(rotor)
+        own, rows, sizes, load = _assembled(*given, loads)
+    else:
+        own, rows, sizes, _ = _assembled(*given, None)
         # A function of all motions, or of the freedoms of a rigid shaft.
         load = loads if modes is None else _Reduced(loads, own.motions)
     return VibratingRotor(
