@@ -153,7 +153,7 @@ def vibrating_rotor(
 
 
 @program(quick=True)
-def _assembled(rotor, scale, speed, modes, about, loads):
+def _assembled(rotor, scale, speed, modes, about, loads) -> tuple[Any, ...]:
     """Return matrices without supports, support rows, scales, and the load if known."""
     speed = jnp.zeros_like(scale) if speed is None else speed
     own = matrices_about(rotor, speed, about, supported=False)
