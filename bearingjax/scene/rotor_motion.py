@@ -290,7 +290,7 @@ def _system(task, rotor, settled, modes, scale, speed, reduction) -> VibratingRo
         reference_frequency=slowest if np.isfinite(slowest) else 2.0 * np.pi,
         speed=speed,
         modes=reduction,
-        about=settled.motion,
+        about=settled,
     )
 
 

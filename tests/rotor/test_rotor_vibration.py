@@ -77,6 +77,13 @@ def test_vibrating_rotor_modal_damping_with_speed_supports():
         wanted = whole.linearised(speed or 0.0).damping
         largest = float(np.abs(wanted).max())
         assert np.allclose(system.damping, wanted, rtol=0, atol=ROUNDING * largest)
+    # About an equilibrium at speed: the stiffness of the supports there.
+    settled = bj.rotor.static_equilibrium(whole, None, 800.0)
+    system = vibrating_rotor(
+        whole, unbalance, scale=1e-5, reference_frequency=1e3, about=settled
+    )
+    assert np.allclose(system.damping, wanted, rtol=0, atol=ROUNDING * largest)
+    assert system.supports is whole.supports
 
 
 def test_rigid_rotor_matches_paper_rotor():

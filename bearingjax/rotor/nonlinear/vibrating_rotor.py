@@ -21,6 +21,7 @@ from ..loads import RotorLoads
 from ..parts import AbstractSupport
 from ..reduction import craig_bampton, held_motions
 from ..rotor import N_HOUSING, Rotor, matrices_about
+from ..statics import StaticEquilibrium
 from .system import AbstractVibratingSystem, HarmonicLoad
 
 
@@ -99,7 +100,7 @@ def vibrating_rotor(
     speed: Scalar | float | None = None,
     rotation: Scalar | float | None = None,
     modes: int | None = None,
-    about: Float[Array, " motion"] | None = None,
+    about: Float[Array, " motion"] | StaticEquilibrium | None = None,
 ) -> VibratingRotor:
     """Create the system of a rotor for `solve_orbit`, `follow` and `simulate`.
 
@@ -117,9 +118,9 @@ def vibrating_rotor(
             in `BearingElement.as_function`; there is no unbalance then.
         modes: Hold the rotor to `craig_bampton` motions with so many modes; `None`:
             all freedoms stay.
-        about: Motions about which supports are linearised for modal damping, such as
-            `StaticEquilibrium.motion` (motion,) [m, rad]; `None`: zero. Supports are
-            taken at `speed`; without one, at rest.
+        about: What modal damping takes as the stiffness of the supports: that of a
+            `StaticEquilibrium` of the rotor, at its speed; or that about motions
+            (motion,) [m, rad], at `speed`, without one at rest; `None`: about zero.
 
     Raises:
         ValueError: As `craig_bampton`; for unbalance with a `rotation` of its own, with
@@ -128,7 +129,10 @@ def vibrating_rotor(
     loads = _as_loads(loads)
     _check_rotation(rotor, loads, speed, rotation)
     turning = None if speed is None else as_real(speed)
-    given = rotor, as_real(scale), turning, modes, about
+    # A rotor on springs holds its matrices without the programs of bearings.
+    settled = isinstance(about, StaticEquilibrium)
+    linear, there = (about.rotor, None) if settled else (rotor, about)
+    given = linear, as_real(scale), turning, modes, there
     if isinstance(loads, RotorLoads):
         loads.check(rotor)
         own, rows, sizes, load = _assembled(*given, loads)
