@@ -113,11 +113,11 @@ def warn_of(rotor: Any, found: Any) -> None:
         rotor: The rotor.
         found: Result of `static_equilibrium`.
     """
-    loads = np.asarray(found.support_load)
+    loads, slopes = np.asarray(found.support_load), np.asarray(found.stiffness)
     idle = [
         str(support.station)
-        for support, load in zip(rotor.supports, loads, strict=True)
-        if not load.any() and not isinstance(support, LinearSupport)
+        for support, load, slope in zip(rotor.supports, loads, slopes, strict=True)
+        if not (load.any() or slope.any() or isinstance(support, LinearSupport))
     ]
     if idle:
         warnings.warn(
