@@ -244,7 +244,7 @@ def _of_cage(model) -> Scalar:
     return jnp.max(jnp.stack(rates))
 
 
-@program
+@program(quick=True, level=1)
 def _vibration(model, turns, settle, samples, steps) -> Vibration:
     system = model.system()
     start, result = standing(model, system)
