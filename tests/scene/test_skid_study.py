@@ -523,10 +523,7 @@ def test_report(end):
     assert f"warning: balls wander {1e6 * float(end.found.wander):.4g} µm" in text
 
 
-def test_bad_input(run, tmp_path):
-    table = ("--table", tmp_path / "end.txt")
-    done = run(*SMALL, "--steady", *table)
-    assert done.status == 2 and "a table ends in .csv, .parquet, .xlsx" in done.err
+def test_bad_input(run):
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
     assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
     done = run("skid", "deep_groove", "--steady")
