@@ -1,4 +1,4 @@
-"""Scenes of noise: what they say, and one line for what is wrong."""
+"""Scenes of noise, and what `bearingjax noise` makes of them."""
 
 import dataclasses
 import json

@@ -1,4 +1,4 @@
-"""Scenes of rotors: what they say, and one line for what is wrong."""
+"""Scenes of rotors, and what `bearingjax rotor` makes of them."""
 
 import csv
 import dataclasses

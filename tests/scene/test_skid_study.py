@@ -1,4 +1,4 @@
-"""Scenes of balls that skid: what they say, and one line for what is wrong."""
+"""Scenes of balls and rollers that skid, and what `bearingjax skid` makes of them."""
 
 import dataclasses
 import json

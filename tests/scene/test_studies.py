@@ -66,8 +66,8 @@ SCENES = {
     "noise": "noise_four_point",
 }
 STATUS = {
-    "sweep": "0 all solved, 2 bad input, 3 some not solved (the table holds a result for"
-    " each case), 130 interrupted (what is solved is kept).",
+    "sweep": "0 all solved, 2 bad input, 3 some not solved (the table holds"
+    " a result for each case), 130 interrupted (what is solved is kept).",
     "compare": "0 all solved, 2 bad input, 3 some not solved.",
     "optimise": "0 optimised, 2 bad input, 3 not solved or not converged.",
     "rotor": "0 solved, 2 bad input, 3 not solved, or only in part.",
