@@ -44,7 +44,7 @@ LONGEST = (
     "test_steady.py",
     "test_rollers.py",
     "test_skidding_bearing.py",
-    "test_skid_command.py",
+    "test_skid_study.py",
     "test_load.py",
 )
 """Begun first: at the end one of them would keep one worker at work alone."""

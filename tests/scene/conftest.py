@@ -1,5 +1,8 @@
 """The command line in this process, without touching JAX's settings."""
 
+import contextlib
+import functools
+import io
 import json
 import sys
 from collections.abc import Callable
@@ -8,6 +11,7 @@ from typing import NamedTuple
 
 import pytest
 from pages import missing_on_page
+from studies import Study, Written, place, words
 
 from bearingjax import cli
 from bearingjax.cli import jax_settings
@@ -19,6 +23,60 @@ class Run(NamedTuple):
     status: int
     out: str
     err: str
+
+
+class Named(NamedTuple):
+    """A run of a study by its name in `STUDIES`."""
+
+    name: str
+    run: Study
+
+
+def pytest_generate_tests(metafunc):
+    """Each shared test of `studies` runs for the `STUDIES` of the file."""
+    studies = getattr(metafunc.module, "STUDIES", {})
+    slow = pytest.mark.slow
+    if "study" in metafunc.fixturenames:
+        again = "rerun" in metafunc.fixturenames
+        some = [
+            pytest.param(
+                Named(name, study), id=name, marks=slow if study.slow[0] else ()
+            )
+            for name, study in studies.items()
+            if study.again is not None or not again
+        ]
+        metafunc.parametrize("study", some)
+    if "unsolved" in metafunc.fixturenames:
+        some = [
+            pytest.param((study, case), id=why, marks=slow if study.slow[1] else ())
+            for study in studies.values()
+            for why, case in study.unsolved.items()
+        ]
+        metafunc.parametrize("unsolved", some)
+
+
+@pytest.fixture(scope="module")
+def written(request, tmp_path_factory) -> Callable[[str], Written]:
+    """What the run of `STUDIES` of this name wrote; it is solved once."""
+
+    @functools.cache
+    def call(name):
+        study = request.module.STUDIES[name]
+        paths = place(study, tmp_path_factory.mktemp("study"))
+        out, err = io.StringIO(), io.StringIO()
+        given = [str(word) for word in words(study, paths)]
+        with (
+            pytest.MonkeyPatch.context() as patch,
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+        ):
+            patch.setattr(jax_settings, "configure", lambda options: None)
+            status = cli.main(given)
+        done = Run(status, out.getvalue(), err.getvalue())
+        assert status == 0, done.err
+        return Written(done, json.loads(paths["--json"].read_text("utf-8")), paths)
+
+    return call
 
 
 @pytest.fixture(autouse=True)

@@ -316,11 +316,8 @@ def test_cases_against_the_scene(scene, change, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--report", "x.pdf"], "x.pdf: a report ends in .html"),
-        (["--table", "x.xls"], "a table ends in .csv, .parquet, .xlsx"),
         (["--devices", "0"], "must be at least 1"),
         (["--devices", "1000000"], "the cores that there are"),
-        (["--table", "nowhere/x.csv"], "its folder does not exist"),
     ],
 )
 def test_sweep_command_rejects_invalid_arguments(run, scene, arguments, message):

@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+import studies
 from pages import missing_on_page
 from tolerances import SOLVER
 
@@ -23,7 +24,8 @@ POINTS = 21
 TAPER = ("solve", "tapered", "--set", f"output.points={POINTS}")
 PULLED = (*TAPER, "--set", "operating.load.Fz=-6 kN")
 
-FIELDS = {
+WORDS = studies.WORDS | studies.SEARCH
+FIELDS = WORDS | {
     "displacement",
     "force",
     "stiffness",
@@ -34,22 +36,6 @@ FIELDS = {
     "position",
     "line_load",
     "contact_pressure",
-    "result",
-    "message",
-    "residual",
-    "iterations",
-    "warnings",
-    "inputs",
-    "version",
-}
-WORDS = {
-    "result",
-    "message",
-    "residual",
-    "iterations",
-    "warnings",
-    "inputs",
-    "version",
 }
 
 
@@ -181,19 +167,10 @@ def test_solve_without_solution_removes_old_report(run, tmp_path):
 
 
 @pytest.mark.usefixtures("no_solve")
-def test_solve_rejects_unwritable_report(run, tmp_path, monkeypatch):
-    done = run("solve", "tapered", "--report", "out.pdf")
-    assert done == (2, "", "bearingjax: out.pdf: a report ends in .html\n")
-    path = tmp_path / "none" / "out.html"
-    done = run("solve", "tapered", "--report", path)
-    assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
+def test_solve_rejects_file_named_twice(run, tmp_path):
     same = tmp_path / "out.html"
     done = run("solve", "tapered", "--report", same, "--json", same)
     assert done.status == 2 and "by --json and by --report; name two" in done.err
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    done = run("solve", "tapered", "--report", same)
-    problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
-    assert done == (2, "", f"bearingjax: {problem}\n")
 
 
 def test_numbers_of_the_taper(run, tmp_path):
@@ -304,43 +281,6 @@ def test_wrong_usage(capsys, arguments):
     assert shown.out == "" and shown.err.startswith("usage: bearingjax")
 
 
-def test_unknown_option_prints_usage_of_command(capsys):
-    with pytest.raises(SystemExit) as stop:
-        cli.main(["life", "life_spectrum", "--plto", "out.png"])
-    assert stop.value.code == 2
-    err = capsys.readouterr().err
-    assert "[--plot OUT]" in err
-    assert "bearingjax life: error: unrecognized arguments: --plto out.png" in err
-
-
-def test_help_tells_the_exit_status(capsys):
-    with pytest.raises(SystemExit) as stop:
-        cli.main(["solve", "--help"])
-    assert stop.value.code == 0
-    assert (
-        "Exit status: 0 solved, 2 bad input, 3 not solved." in capsys.readouterr().out
-    )
-
-
-@pytest.mark.usefixtures("no_solve")
-@pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_solve_rejects_output_in_missing_folder(run, tmp_path, option):
-    path = tmp_path / "none" / "out.png"
-    done = run("solve", "tapered", option, path)
-    assert done == (2, "", f"bearingjax: {path}: its folder does not exist\n")
-    assert not path.parent.exists()
-
-
-@pytest.mark.usefixtures("no_solve")
-@pytest.mark.parametrize("option", ["--json", "--plot"])
-def test_solve_rejects_folder_as_output(run, tmp_path, option):
-    path = tmp_path / "out.png"
-    path.mkdir()
-    done = run("solve", "tapered", option, path)
-    assert done.status == 2 and done.out == ""
-    assert str(path) in done.err and done.err.count("\n") == 1
-
-
 def test_main_with_closed_pipe(monkeypatch):
     """As in `bearingjax solve tapered | true`."""
     monkeypatch.setattr(jax_settings, "configure", lambda options: None)
@@ -377,33 +317,11 @@ def test_full_disk(run, monkeypatch, capsys, what):
     assert capsys.readouterr().err == f"bearingjax: {problem}\n"
 
 
-@pytest.mark.usefixtures("no_solve")
-@pytest.mark.parametrize("option", ["--plot", "--drawing"])
-@pytest.mark.parametrize("name", ["out.gif", "out", "out.png.txt"])
-def test_unknown_picture(run, tmp_path, option, name):
-    path = tmp_path / name
-    done = run("solve", "tapered", option, path)
-    ending = "a picture ends in .png, .pdf or .svg"
-    assert done == (2, "", f"bearingjax: {path}: {ending}\n")
-
-
-@pytest.mark.usefixtures("no_solve")
-@pytest.mark.parametrize(
-    "words", [("solve", "tapered", "--plot"), ("catalogue", "6205", "--drawing")]
-)
-def test_picture_without_matplotlib(run, tmp_path, monkeypatch, words):
+def test_drawing_of_catalogue_without_matplotlib(run, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    done = run(*words, tmp_path / "out.png")
+    done = run("catalogue", "6205", "--drawing", tmp_path / "out.png")
     assert done.status == 2 and done.out == ""
     assert 'pip install "bearingjax[plot]"' in done.err and done.err.count("\n") == 1
-
-
-@pytest.mark.usefixtures("no_solve")
-def test_solve_bad_scene_writes_no_file(run, tmp_path):
-    out = tmp_path / "out.json"
-    bad = ("--set", "bearing.n_rollers=0")
-    assert run("solve", "tapered", *bad, "--json", out).status == 2
-    assert not out.exists()
 
 
 @pytest.mark.slow

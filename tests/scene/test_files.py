@@ -47,15 +47,6 @@ def fails(code):
     return write
 
 
-@pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
-def test_output_rejects_path_of_read_scene(run, own, command):
-    before = own.read_bytes()
-    done = run(command, "self.toml", "--json", own)
-    problem = "is read as self.toml here; --json would overwrite it; name another file"
-    assert done == (2, "", f"bearingjax: {own}: {problem}\n")
-    assert own.read_bytes() == before
-
-
 def test_output_rejects_link_to_read_scene(run, own, tmp_path):
     (tmp_path / "deep").mkdir()
     os.link(own, tmp_path / "hard.toml")
@@ -189,12 +180,3 @@ def test_output_rejects_dash(run, own, tmp_path):
     done = run("solve", "self.toml", "--json", "-")
     problem = "--json -: name a file; /dev/stdout is the screen"
     assert done == (2, "", f"bearingjax: {problem}\n")
-
-
-@pytest.mark.parametrize("command", ["solve", "sweep", "optimise", "contact"])
-def test_command_interrupted_exit_status(run, own, monkeypatch, command):
-    def stop(*_, **__):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(bj.scene, "scene_files", stop)
-    assert run(command, "self.toml") == (130, "", "bearingjax: interrupted\n")

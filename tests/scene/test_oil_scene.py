@@ -5,9 +5,6 @@ import json
 import numpy as np
 import pytest
 
-import bearingjax as bj
-from bearingjax import SceneError
-
 ROLLERS = """
 [bearing]
 type = "cylindrical_roller"
@@ -117,24 +114,6 @@ def test_series_of_designations():
     angular = ("other", "72B", "73AC")
     names = {"7208 BE": "72B", "7308 ACCBM": "73AC", "7208 C": None, "QJ": None}
     assert {name: series_of(name, angular) for name in names} == names
-
-
-WRONG = {
-    "lubricant.supply=bath": "`lubricant.supply`: 'bath' is not known",
-    "lubricant.roughness=3 mm": "`lubricant.roughness`: 0.003 m is not allowed; above",
-    "lubricant.roughness=0 um": "`lubricant.roughness`: 0 m is not allowed; above 0",
-    "lubricant.roughness=0.3": "`lubricant.roughness`: 0.3 has no unit",
-    "lubricant.rougness=1 um": "`lubricant.rougness`: unknown key (did you mean",
-    "lubricant.temperature=900 degC": "`lubricant.temperature`: 900 °C is not allowed",
-    "lubricant.law=walther": "`lubricant.law`: 'walther' is not known",
-}
-
-
-@pytest.mark.parametrize("setting", WRONG)
-def test_wrong_oils(scene, setting):
-    with pytest.raises(SceneError) as caught:
-        bj.read_scene(scene, [setting])
-    assert str(caught.value).startswith(f"oil.toml: {WRONG[setting]}")
 
 
 def test_read_skid_with_supply_and_roughness():

@@ -350,11 +350,6 @@ def test_scene_without_the_table(run):
     assert "cylindrical_rig.toml: `optimise` is missing" in done.err
 
 
-def test_optimise_command_rejects_unwritable_plot(run, tmp_path):
-    done = run("optimise", "fujiwara_kawase", "--plot", tmp_path / "no" / "x.png")
-    assert done.status == 2 and "its folder does not exist" in done.err
-
-
 def test_read_optimisation_variable_units():
     ask = "optimise.objective=peak_pressure", "optimise.exponent=32"
     shoulder = "bearing.outer_shoulder"

@@ -11,9 +11,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from studies import SEARCH, WORDS, Runs, Study
 from tolerances import PUBLISHED, QUADRATURE_FORCE, ROUNDING, SOLVER
 
 import bearingjax as bj
+from bearingjax import SceneError
 from bearingjax.contact.halfspace import RollerContact
 from bearingjax.contact.slices import slices
 from bearingjax.scene import (
@@ -344,3 +346,102 @@ def test_report_says_the_same(three):
     assert float(rows[1][6]) == pytest.approx(1e6 * numbers["end_cell_length"], 1e-3)
     assert float(rows[1][8]) == pytest.approx(numbers["edge_factor"][1], rel=PUBLISHED)
     assert max(map(len, lines[3:])) <= 100
+
+
+# Of the command.
+
+TAPER = ("contact", "taper_contact", *(w for s in SMALL for w in ("--set", s)))
+ONE = (*TAPER, "--set", "operating.load=3 kN")
+STUDIES = {
+    "five loads": Study(
+        TAPER,
+        SHARED | STATUS | NUMBERS,
+        WORDS | SEARCH,
+        {"--json": "a.json", "--plot": "a.png"},
+        ["converged"] * 5,
+        unsolved={
+            label: (("--set", "operating.load=3 kN", "--set", setting), label, "")
+            for label, setting in (
+                ("step_limit", "numerics.max_steps=1"),
+                ("no_load_path", "operating={load='3 kN', moment='30 N m'}"),
+                ("grid_misfit", "numerics.half_width=0.03 mm"),
+            )
+        },
+        slow=(True, True),
+    )
+}
+
+
+class TestRuns(Runs):
+    """Of the command."""
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_read_contact_without_roller_or_file(tmp_path):
+    path = tmp_path / "empty.toml"
+    path.write_text("[operating]\nload = '1 kN'\n", encoding="utf-8")
+    with pytest.raises(SceneError, match=r"^empty\.toml: `roller`: is missing"):
+        read_contact(path)
+    with pytest.raises(SceneError, match=r"^none\.toml: no such file"):
+        read_contact("none.toml")
+
+
+@pytest.mark.slow
+def test_contact_command_of_five_loads(written):
+    done, numbers, paths = written("five loads")
+    assert len(numbers["approach"]) == 5
+    assert done.out.startswith("taper_contact: roller 10 to 12 x 15 mm")
+    assert "\nconverged in " in done.out
+    numeric, ends = numbers["warnings"]
+    assert "make 3.814 deg" in numeric and "end cell" in ends
+    assert paths["--plot"].stat().st_size > 50_000
+
+
+def test_one_load_of_two_not_solved(run, tmp_path):
+    """A moment that 3 kN balance, and 100 N do not."""
+    out = tmp_path / "out.json"
+    both = "operating={load=['100 N', '3 kN'], moment='3 N m'}"
+    done = run(*TAPER, "--set", both, "--json", out)
+    assert done.status == 3
+    numbers = read(out)
+    assert numbers["result"] == ["no_load_path", "converged"]
+    assert numbers["peak_pressure"][0] is None and numbers["peak_pressure"][1] > 1e9
+    assert numbers["line_load"][0] is None
+    assert "\n3000 " in done.out and "\n100 " not in done.out
+    assert "bearingjax: no_load_path: 100 N: No pressure carries this" in done.err
+
+
+@pytest.mark.slow
+def test_contact_command_of_bearing_scene(run, tmp_path):
+    """The scene of a bearing: solved, and one of its rollers looked at."""
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    done = run(
+        "contact",
+        "cylindrical_rig",
+        "--raceway",
+        "outer",
+        "--free-ends",
+        "--json",
+        out,
+        "--plot",
+        picture,
+    )
+    assert done.status == 0
+    assert done.out.startswith("cylindrical_rig, roller 0, outer raceway: roller")
+    assert "; free end faces" in done.out
+    numbers = read(out)
+    solved = bj.scene.run_scene(bj.read_scene("cylindrical_rig"))
+    assert numbers["load"] == pytest.approx(float(solved.roller_load[0, 0]), rel=1e-9)
+    assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    done = run("contact", "cylindrical_rig", "--roller", "5")
+    assert done.status == 2
+    assert "roller 5 bears no load on the inner raceway" in done.err
+    done = run("contact", "deep_groove")
+    assert done.status == 2 and "the bearing has balls" in done.err
+    done = run(*ONE, "--roller", "2")
+    assert done.status == 2 and "are for the scene of a bearing" in done.err
+    done = run(*ONE, "--free-ends")
+    assert done.status == 2 and "has `free_ends` in its [roller]" in done.err

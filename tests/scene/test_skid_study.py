@@ -1,6 +1,5 @@
-"""`bearingjax skid`: exit status, files, and that they hold what the library says."""
+"""Scenes of balls and rollers that skid, and what `bearingjax skid` makes of them."""
 
-import csv
 import dataclasses
 import json
 import re
@@ -11,11 +10,29 @@ import jax
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from han_chu import MODEL, SPEED
 from scipy.integrate import simpson
+from studies import SEARCH, WORDS, Runs, Study
 from tolerances import ROUNDING
 
-from bearingjax import plot
-from bearingjax.lubrication import Newtonian, Regime
+import bearingjax as bj
+from bearingjax import SceneError, plot
+from bearingjax.lubrication import (
+    Barus,
+    Density,
+    DryFriction,
+    Exponential,
+    Eyring,
+    LimitingStress,
+    Lubricant,
+    Newtonian,
+    Regime,
+    Roelands,
+    SlipCurve,
+    Walther,
+    free_volume_23699,
+    iso_vg,
+)
 from bearingjax.numerics import Result
 from bearingjax.scene import (
     read_skid,
@@ -25,7 +42,211 @@ from bearingjax.scene import (
     skid_message,
     skid_report,
 )
-from bearingjax.skid import skid_warnings, sliding_ellipse, sliding_spectrum, zones
+from bearingjax.skid import (
+    Cage,
+    Drag,
+    LoadHistory,
+    SinusoidalLoad,
+    SkidModel,
+    SpeedTable,
+    ramp,
+    skid_warnings,
+    sliding_ellipse,
+    sliding_spectrum,
+    zones,
+)
+
+FREE_VOLUME = (
+    'lubricant={law="free_volume", temperature="30 °C", B=2.30134, R0=0.728634,'
+    ' reference_viscosity="37.639 mPas", epsilon="-1.02448e-3 1/K", K0_prime=11.0,'
+    ' a_V="7.1e-4 1/°C", K00="9 GPa", beta_K="6.5e-3 1/K",'
+    ' reference_temperature="303.15 K", density="964 kg/m^3"}'
+)
+ROELANDS = 'lubricant={law="roelands", temperature="50 °C", coefficient="20 1/GPa"'
+WALTHER = ', cold="40 °C", cold_viscosity="46 cSt", hot="100 °C", hot_viscosity="7 cSt"'
+THIN = ', reference_viscosity="40 mPa s"'
+
+
+def same(found, wanted):
+    """Two modules of one structure, and their numbers."""
+    leaves, structure = jax.tree.flatten(found)
+    others, other = jax.tree.flatten(wanted)
+    assert structure == other
+    for leaf, value in zip(leaves, others, strict=True):
+        np.testing.assert_allclose(leaf, value, rtol=ROUNDING, atol=0)
+    return True
+
+
+def oil(*settings):
+    model = read_skid("skid_axial", settings, steady=True).model
+    return model.lubricant
+
+
+def test_loads_over_time():
+    """What is not named stays as it is."""
+    times = "load={time=['0 s', '20 ms'], Fy=['0 N', '0.3 kN'], Mx=['0 Nm', '1 Nm']}"
+    task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {times} }}"])
+    rows = [[0.0, 0.0, 600.0, 0.0, 0.0, 0.0], [0.0, 300.0, 600.0, 1.0, 0.0, 0.0]]
+    assert same(task.loads, LoadHistory([0.0, 0.02], rows))
+    assert task.balanced is None
+    wave = "load={amplitude={Fy='80 N'}, speed='30 rpm', phase='90 deg'}"
+    task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {wave} }}"])
+    wanted = SinusoidalLoad(task.scene.load, [0, 80.0, 0, 0, 0, 0], np.pi, 0.5 * np.pi)
+    assert same(task.loads, wanted)
+    task = read_skid("skid_combined", ["dynamics={duration='1 s', balanced=true}"])
+    assert task.loads is None and task.balanced is True
+
+
+def test_rollers_and_places_of_the_end_state():
+    with pytest.raises(SceneError, match="`lubricant`: is missing; it must be a table"):
+        read_skid("deep_groove", ["operating.inner_speed=1 rpm"])
+    with pytest.raises(SceneError, match="is for balls; rollers have the constant loa"):
+        read_skid("skid_roller", ["dynamics.load={time=['0 s'], Fx=['1 N']}"])
+    with pytest.raises(SceneError, match="`dynamics.balanced`: is for balls; rollers"):
+        read_skid("skid_roller", ["dynamics.balanced=true"])
+    with pytest.raises(SceneError, match="'tapered_roller' does not skid; balls, cyl"):
+        read_skid("tapered", steady=True)
+    for kind in ("spherical", "crossed"):
+        with pytest.raises(SceneError, match=f"'{kind}_roller' does not skid; balls,"):
+            read_skid(f"{kind}_roller", steady=True)
+    with pytest.raises(SceneError, match="`bearing`: is of several rows; balls or rol"):
+        read_skid("self_aligning", steady=True)
+    with pytest.raises(
+        SceneError, match="1 or a multiple of the number .* rollers, 12"
+    ):
+        read_skid("skid_axial", ["dynamics.places=100"], steady=True)
+    assert read_skid("skid_axial", ["dynamics.places=100"]).places == 100
+
+
+def test_shipped_scenes_are_those_of_the_paper():
+    task = read_skid("skid_axial")
+    assert same(task.model, MODEL)
+    np.testing.assert_allclose(task.speed.inner, SPEED.inner, rtol=1e-7)
+    assert task.scene.load == (0.0, 0.0, 80.0, 0.0, 0.0, 0.0)
+    assert (task.oil, task.duration, task.axis) == ("MIL-L-23699", 0.4, "vertical")
+    assert (task.start, task.n_times, task.places) == ("rolling", 501, None)
+    assert same(task.speeds, ramp(0.1, task.speed))
+    combined = read_skid("skid_combined")
+    assert isinstance(combined.model.traction, LimitingStress)
+    film = dataclasses.replace(MODEL, traction=combined.model.traction)
+    assert same(combined.model, film)
+    assert combined.speeds is None
+    assert combined.scene.load == (0.0, 400.0, 600.0, 0.0, 0.0, 0.0)
+    end = read_skid("skid_axial", ["dynamics={}"], steady=True)
+    assert end.steady and end.duration is None
+    assert same(end.model, MODEL)  # the defaults are the same numbers
+
+
+def test_shipped_roller_scene():
+    task = read_skid("skid_roller", steady=True)
+    assert task.model.bearing.n_rollers == 36 and task.places == 108
+    assert same(task.model.traction, LimitingStress())
+    assert same(task.model.drag, Drag(2.0, 0.02))
+    assert task.scene.free == ("ux", "uy")
+
+
+def test_read_skid_cage_and_dynamics_tables():
+    task = read_skid(
+        "skid_axial",
+        [
+            "cage={pocket_clearance='0.1 mm', stiffness='2 N/um', inertia='3 kg mm^2'}",
+            "dynamics={duration='250 ms', fill=0.05, drag_coefficient=1.5,"
+            " least_film='20 nm', axis='horizontal', start='rest', n_times=11,"
+            " inlet_heating=true,"
+            " tolerance=1e-5, max_steps=99, places=24,"
+            " speed={time=['0 s', '1 s', '2 s'], outer=['0 rpm', '60 rpm', '30 rpm']}}",
+        ],
+    )
+    assert same(task.model.cage, Cage(1e-4, 2e6, 3e-6))
+    assert same(task.model.drag, Drag(1.5, 0.05))
+    assert float(task.model.least_film) == 20e-9 and task.model.inlet_heating
+    assert (task.duration, task.axis, task.start) == (0.25, "horizontal", "rest")
+    assert (task.n_times, task.tolerance, task.max_steps) == (11, 1e-5, 99)
+    assert task.places == 24
+    assert same(
+        task.speeds, SpeedTable([0.0, 1.0, 2.0], [0.0] * 3, [0.0, 2 * np.pi, np.pi])
+    )
+
+
+def test_oils():
+    law = free_volume_23699()
+    constant = Density(964.0)
+    assert same(oil(FREE_VOLUME), Lubricant(law, law, constant))
+    assert same(oil("lubricant.name=ISO VG 46"), iso_vg(46.0))
+    assert same(
+        oil("lubricant.name=ISO VG 46", "lubricant.viscosity_index=120"),
+        iso_vg(46.0, 120.0),
+    )
+    two_points = Walther(313.15, 46e-6, 373.15, 7e-6)
+    assert same(
+        oil(ROELANDS + WALTHER + ", film_coefficient='18 1/GPa'}"),
+        Lubricant(two_points, Roelands(20e-9), Density(900.0), 18e-9),
+    )
+    dense = (
+        ", grade=32, density='0.87 g/cm^3', density_slope='0.6 kg/(m^3 K)',"
+        " density_temperature='20 °C'}"
+    )
+    assert same(
+        oil(ROELANDS.replace("roelands", "barus") + dense),
+        Lubricant(Walther.from_grade(32.0), Barus(20e-9), Density(870.0, 0.6, 293.15)),
+    )
+    factors = ", first='3600 K', second='7e5 K^2', reference_temperature='40 °C'}"
+    assert same(
+        oil(ROELANDS + THIN + factors).ambient, Exponential(0.04, 313.15, 3600.0, 7e5)
+    )
+    alone = oil(ROELANDS + THIN + "}")
+    np.testing.assert_allclose(alone.viscosity(0.0, 323.15), 0.04, rtol=ROUNDING)
+
+
+def test_read_skid_warns_of_assumed_oil_density():
+    task = read_skid("skid_axial", [ROELANDS + THIN + "}"])
+    assert task.oil == "roelands"
+    assert task.warnings == (
+        "the oil's density is not given: 900 kg/m³ is taken at 15 °C",
+    )
+
+
+def test_read_skid_warns_of_supply_without_effect():
+    (told,) = read_skid("skid_axial", ["lubricant.supply=grease"]).warnings
+    assert told.startswith("`lubricant.supply` 'grease' counts for the friction torque")
+
+
+@pytest.mark.parametrize(
+    "written, law",
+    [
+        ("newtonian", Newtonian()),
+        ("eyring", Eyring()),
+        ("{type='eyring', stress_scale='3 MPa'}", Eyring(3e6)),
+        (
+            "{type='limiting', slope=0.07, ambient='1 bar'}",
+            LimitingStress(0.07, 1e5),
+        ),
+        (
+            "{type='slip_curve', far=0.03, rise='50 s/m', decay='20 s/m'}",
+            SlipCurve(0.03, 50.0, 20.0),
+        ),
+        ("{type='dry', friction=0.2, creep='2 mm/s'}", DryFriction(0.2, 2e-3)),
+    ],
+)
+def test_tractions(written, law):
+    task = read_skid("skid_axial", [f"lubricant.traction={written}"])
+    assert same(task.model.traction, law)
+
+
+def test_temperatures():
+    for text in ("303.15 K", "30 degC", "86 degF"):
+        model = read_skid("skid_axial", [f"lubricant.temperature={text}"]).model
+        assert isinstance(model, SkidModel)
+        np.testing.assert_allclose(model.temperature, 303.15, rtol=ROUNDING)
+
+
+def test_other_commands_pass_the_tables_over():
+    settings = ["cage.stiffness=soft", "dynamics.duration=long"]
+    scene = bj.read_scene("skid_axial", settings)
+    assert scene.load[2] == 80.0
+
+
+# Of the command.
 
 # Six balls under axial and radial load, at twelve places.
 GIVEN = (
@@ -51,9 +272,27 @@ START = (
 )
 RUN_UP = ("skid", "skid_axial", *(w for s in START for w in ("--set", s)))
 PICTURE = 1e-3  # 25 rings of points, the outermost where the pressure ends as a root
-WORDS = {
-    *("result", "message", "residual", "iterations", "warnings", "inputs", "version"),
+STUDIES = {
+    "end state": Study(
+        (*SMALL, "--steady"),
+        None,
+        WORDS | SEARCH,
+        again=("--steady",),
+        unsolved={
+            "pulled": (
+                ("--set", "operating.load.Fz=-150 N"),
+                "no_load_path",
+                "No load path in uz of the inner",
+            )
+        },
+    ),
+    "motion": Study(RUN_UP, None, again=None),
+    "rollers": Study((*FEW, "--steady"), None, again=None),
 }
+
+
+class TestRuns(Runs):
+    """Of the command."""
 
 
 @pytest.fixture(autouse=True)
@@ -77,13 +316,10 @@ def history():
 
 
 @pytest.mark.slow
-def test_end_state(run, rerun, end, tmp_path):
-    out, table, picture = (tmp_path / f"end.{kind}" for kind in ("json", "csv", "png"))
-    outputs = ("--json", out, "--table", table, "--plot", picture)
-    done = run(*SMALL, "--steady", *outputs)
-    assert done.status == 0 and done.err == ""
+def test_end_state(written, end):
+    done, numbers, _ = written("end state")
     assert done.out == f"{skid_report(end)}\n"
-    numbers, found = json.loads(out.read_text()), end.found
+    found = end.found
     assert numbers == skid_as_dict(end)
     # Of the twelve places every other one has a ball.
     for name in (
@@ -108,29 +344,22 @@ def test_end_state(run, rerun, end, tmp_path):
     drive, *rest = numbers["power"].values()
     np.testing.assert_allclose(sum(rest), drive, rtol=1e-8)
     assert numbers["result"] == numbers["message"] == "converged"
-    with table.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
     for header, value in (
         ("azimuth [rad]", found.azimuth),
         ("slip", found.slip),
         ("spin_z [rad/s]", found.spin[:, 2]),
         ("sliding_speed_inner [m/s]", found.sliding_speed[:, 1]),
     ):
-        column = [float(row[header]) for row in rows]
+        column = written("end state").column(header)
         np.testing.assert_allclose(column, value, rtol=ROUNDING)
-    assert picture.stat().st_size > 20_000
-    rerun("skid", out, "--steady")
 
 
 @pytest.mark.slow
-def test_motion_in_time(run, history, tmp_path):
-    out, table, picture = (tmp_path / f"run.{kind}" for kind in ("json", "csv", "png"))
-    outputs = ("--json", out, "--table", table, "--plot", picture)
-    done = run(*RUN_UP, *outputs)
-    assert done.status == 0 and done.err == ""
+def test_motion_in_time(written, history):
+    done, numbers, _ = written("motion")
     assert done.out == f"{skid_report(history)}\n"
     assert "ring at the end, within the first orbit of the cage" in done.out
-    numbers, found = json.loads(out.read_text()), history.found
+    found = history.found
     assert numbers == skid_as_dict(history)
     np.testing.assert_allclose(
         numbers["time"], np.linspace(0.0, 2e-3, 9), rtol=ROUNDING
@@ -157,8 +386,6 @@ def test_motion_in_time(run, history, tmp_path):
     assert numbers["cage_speed"][0] == 0.0 < numbers["cage_speed"][-1]
     # Of what the drive does all but round-off is found again.
     assert numbers["residual"] < 1e-6
-    with table.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
     for header, value in (
         ("time [s]", found.time),
         ("cage_speed [rad/s]", found.cage_speed),
@@ -168,20 +395,16 @@ def test_motion_in_time(run, history, tmp_path):
         ("film_3_inner [m]", found.film[:, 3, 1]),
         ("cage_force_1 [N]", found.cage_force[:, 1]),
     ):
-        column = [float(row[header]) for row in rows]
+        column = written("motion").column(header)
         np.testing.assert_allclose(column, value, rtol=ROUNDING)
-    assert picture.stat().st_size > 20_000
 
 
 @pytest.mark.slow
-def test_rollers(run, tmp_path):
-    out, table, picture = (tmp_path / f"end.{kind}" for kind in ("json", "csv", "png"))
-    outputs = ("--json", out, "--table", table, "--plot", picture)
-    done = run(*FEW, "--steady", *outputs)
-    assert done.status == 0 and done.err == ""
+def test_rollers(written):
+    done, numbers, _ = written("rollers")
     end = run_skid(read_skid("skid_roller", ROLLERS, steady=True))
     assert done.out == f"{skid_report(end)}\n"
-    numbers, found = json.loads(out.read_text()), end.found
+    found = end.found
     assert numbers == skid_as_dict(end)
     for name in ("orbit_speed", "slip", "film", "sliding_speed", "cage_force", "heat"):
         assert numbers[name] == getattr(found, name)[::2].tolist()
@@ -189,11 +412,8 @@ def test_rollers(run, tmp_path):
     assert spin.shape == (7, 3) and not spin[:, :2].any()
     np.testing.assert_array_equal(spin[:, 2], found.spin[::2])
     assert "\ncage on a roller  pushes with up to" in done.out
-    with table.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    column = [float(row["cage_force [N]"]) for row in rows]
+    column = written("rollers").column("cage_force [N]")
     np.testing.assert_allclose(column, found.cage_force, rtol=ROUNDING)
-    assert picture.stat().st_size > 20_000
     shown = {
         plot.cage_force_over_orbit: (0, found.cage_force),
         plot.heat_over_orbit: (1, found.heat[:, 1]),
@@ -303,22 +523,7 @@ def test_report(end):
     assert f"warning: balls wander {1e6 * float(end.found.wander):.4g} µm" in text
 
 
-def test_no_solution_leaves_no_numbers(run, tmp_path):
-    out, table = tmp_path / "lost.json", tmp_path / "lost.csv"
-    table.write_text("of an earlier run")
-    outputs = ("--json", out, "--table", table)
-    pulled = ("--set", "operating.load.Fz=-150 N")
-    done = run(*SMALL, "--steady", *pulled, *outputs)
-    assert done.status == 3 and done.out == ""
-    assert "bearingjax: no_load_path: No load path in uz of the inner" in done.err
-    assert set(json.loads(out.read_text())) == WORDS
-    assert not table.exists()
-
-
-def test_bad_input(run, tmp_path):
-    table = ("--table", tmp_path / "end.txt")
-    done = run(*SMALL, "--steady", *table)
-    assert done.status == 2 and "a table ends in .csv, .parquet, .xlsx" in done.err
+def test_bad_input(run):
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
     assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
     done = run("skid", "deep_groove", "--steady")
