@@ -57,10 +57,8 @@ force and stiffness equal those of the C loop to 8e-15; ROSS 2.3; AMD EPYC, 2 co
 one core used
 """
 
-import argparse
 import ctypes
 import importlib
-import json
 import subprocess
 import sys
 import tempfile
@@ -68,16 +66,14 @@ import time
 import types
 from pathlib import Path
 
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+import single_call
+from bench import benchmark
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-import single_call  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 SOURCE = Path(__file__).with_name("c_ball.c")
 GOAL = {"hot": 5.0, "batch": 1.0 / 0.9}
@@ -227,46 +223,33 @@ def beside_ross(rounds, block):
     return {"us": times, "stiffness": {ROSS: kyy, "ours": ours}}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="two loads, few repeats")
-    args = parser.parse_args()
-    rounds, block = (1, 2) if args.smoke else (40, 200)
+def show(report):
+    for name, result in report["cases"].items():
+        single_call.show(name, result)
+    print(f"\ngoal: hot ≤ {GOAL['hot']:g}, in a batch ≤ {GOAL['batch']:.2f}")
+    formula = report["ross"]
+    if formula is None:
+        print("\nROSS is not installed: its formula is not timed.")
+        return
+    print("\nradial stiffness of a deep groove bearing, 1 kN, no clearance")
+    for name, t in formula["us"].items():
+        print(f"{name:28}{t:10.1f} us")
+    off = formula["stiffness"][ROSS] / formula["stiffness"]["ours"] - 1.0
+    print(f"stiffness of the formula against ours: {100 * off:+.1f} %")
+
+
+@benchmark("two loads, few repeats", show, wrong=single_call.disagree)
+def main(smoke):
+    rounds, block = (1, 2) if smoke else (40, 200)
     el = element()
     with tempfile.TemporaryDirectory() as folder:
-        library = compile_c(folder)
-        if library is None:
-            print("ball_speed: no C compiler (cc, gcc, clang).", file=sys.stderr)
-            return 0
+        library = single_call.needed(compile_c(folder))
         results, calls, batch = {}, {}, single_call.batch_call(el)
-        for name, (load, tilt) in list(LOADS.items())[: 2 if args.smoke else None]:
+        for name, (load, tilt) in list(LOADS.items())[: 2 if smoke else None]:
             q = bj.solve_load(el, load, prescribed=tilt).displacement
-            calls = calls or calls_of(el, q, args.smoke)
+            calls = calls or calls_of(el, q, smoke)
             c = CBall(library, el)
             results[name] = single_call.study(c, el, q, rounds, block, calls, batch)
-    formula = beside_ross(rounds, block)
     agrees = single_call.agrees(results)
-    if args.json:
-        report = {"goal": GOAL, "agrees": agrees, "cases": results, "ross": formula}
-        print(json.dumps(report))
-    else:
-        for name, result in results.items():
-            single_call.show(name, result)
-        print(f"\ngoal: hot ≤ {GOAL['hot']:g}, in a batch ≤ {GOAL['batch']:.2f}")
-        if formula is None:
-            print("\nROSS is not installed: its formula is not timed.")
-        else:
-            print("\nradial stiffness of a deep groove bearing, 1 kN, no clearance")
-            for name, t in formula["us"].items():
-                print(f"{name:28}{t:10.1f} us")
-            off = formula["stiffness"][ROSS] / formula["stiffness"]["ours"] - 1.0
-            print(f"stiffness of the formula against ours: {100 * off:+.1f} %")
-    if not agrees:
-        print("ball_speed: C and JAX disagree.", file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    formula = beside_ross(rounds, block)
+    return {"goal": GOAL, "agrees": agrees, "cases": results, "ross": formula}

@@ -50,23 +50,15 @@ AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 lines above name, have 2e-6 in the approach by luck of signs.
 """
 
-import argparse
 import functools
-import json
-import sys
-from pathlib import Path
 
-import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, compiled, machine, shuffled, subplots, verdict
+from scipy.interpolate import CubicSpline
+from strips_halfspace import HALF_WIDTH, LENGTH, LOAD, MODULUS, taper
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.interpolate import CubicSpline  # noqa: E402
-from strips_halfspace import HALF_WIDTH, LENGTH, LOAD, MODULUS, taper  # noqa: E402
-from timing import compiled, machine, shuffled, verdict  # noqa: E402
-
-from bearingjax.contact.halfspace import (  # noqa: E402
+from bearingjax.contact.halfspace import (
     graded_grid,
     influence,
     solve_pressure,
@@ -232,14 +224,9 @@ def show(rows, want, doubt):
     )
 
 
-def plot(rows, target):
+def plot(rows, *_):
     """Error against time, one panel for each quantity."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(1, 3, figsize=(11, 4), sharex=True, sharey=True)
+    figure, axes = subplots(1, 3, figsize=(11, 4), sharex=True, sharey=True)
     for axis, asked, name in zip(axes, ASKED, NAMES, strict=True):
         for kind in dict.fromkeys(r["kind"] for r in rows):
             mine = [r for r in rows if r["kind"] == kind]
@@ -265,34 +252,14 @@ def plot(rows, target):
                 )
         axis.set_title(name[0].upper() + name[1:], loc="left")
         axis.set_xlabel("time of a solve, ms")
-        axis.grid(alpha=0.3)
-        axis.spines[["top", "right"]].set_visible(False)
     spent = [r["ms"] for r in rows]
     axes[0].set_xlim(0.2 * min(spent), 5 * max(spent))
     axes[0].set_ylabel("relative error")
     axes[0].legend(frameon=False)
-    figure.tight_layout()
-    figure.savefig(target, dpi=150)
+    return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line per result")
-    parser.add_argument("--smoke", action="store_true", help="few cells")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
-    args = parser.parse_args()
-    want, doubt = reference(COARSE if args.smoke else REFERENCE)
-    sizes, rounds = (SMOKE, 2) if args.smoke else (FULL, 9)
-    rows = study(sizes, want, rounds)
-    if args.json:
-        for r in rows:
-            print(json.dumps(r))
-    else:
-        show(rows, want, doubt)
-    if args.plot:
-        plot(rows, args.plot)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("few cells", show, plot)
+def main(smoke):
+    want, doubt = reference(COARSE if smoke else REFERENCE)
+    return study(*((SMOKE, want, 2) if smoke else (FULL, want, 9))), want, doubt

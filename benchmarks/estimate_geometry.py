@@ -85,17 +85,10 @@ shorter by the rounded ends.
 Run: python benchmarks/estimate_geometry.py [--json] [--smoke]
 """
 
-import argparse
-import json
-from typing import Any
+import numpy as np
+from bench import benchmark, table
 
-import jax
-
-jax.config.update("jax_enable_x64", True)
-
-import numpy as np  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 NSK = "NSK E1102"
 GROOVES = dict(outer_osculation=0.53, inner_osculation=0.52)
@@ -479,67 +472,53 @@ def of_catalogue(every):
         )
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--smoke", action="store_true")
-    parser.add_argument("--json", action="store_true")
-    given = parser.parse_args()
-    rows: list[dict[str, Any]] = list(
-        published(PUBLISHED[:1] if given.smoke else PUBLISHED)
-    )
-    if given.json:
-        for row in rows:
-            print(json.dumps(row))
-    else:
-        print(
-            "bearing      Z  found   D_w mm   found    off      misfit (next)   C, C0"
+def hidden(smoke):
+    """Figures of the question without what is known, by their names."""
+    balls, rollers, raised, inch = blind(30 if smoke else 1)
+    near = {
+        f"{name} balls within 0.5 % of a 64th of an inch": float(
+            np.mean(np.abs(off_inch(np.array(sizes))) < 0.005)
         )
-    for r in rows if not given.json else []:
-        print(
-            f"{r['bearing']:11s} {r['count']:3d} {r['found_count']:5d}"
-            f"  {r['diameter']:8.3f} {r['found_diameter']:7.3f}"
-            f" {100 * r['diameter_error']:+5.1f} %"
-            f"  {r['misfit']:5.1f} ({r['rival'][0]:2d}: {r['rival'][1]:4.1f})"
-            f"  {100 * r['dynamic_from_geometry']:+5.1f} %"
-            f" {100 * r['static_from_geometry']:+5.1f} %"
-            f"  {'' if r['accepted'] else 'MISSED '}{r['geometry']}; {r['ratings']}"
-        )
-    balls, rollers, raised, inch = blind(30 if given.smoke else 1)
-    line = {
+        for name, sizes in inch.items()
+    }
+    return {
         "deep groove bearings": balls.size,
         "D_w/D_pw, root mean square": float(np.sqrt(np.mean(balls**2))),
         "D_w/D_pw, worst": float(np.abs(balls).max()),
         "D_w/D_pw within 5 %": float(np.mean(np.abs(balls) < 0.05)),
         "C raised by 3 %: balls within one": raised[1.03],
         "C raised by 6 %: balls within one": raised[1.06],
-        **{
-            f"{name} balls within 0.5 % of a 64th of an inch": float(
-                np.mean(np.abs(off_inch(np.array(sizes))) < 0.005)
-            )
-            for name, sizes in inch.items()
-        },
+        **near,
         "cylindrical bearings": len(rollers),
-        "roller diameter, root mean square": float(
-            np.sqrt(np.mean(rollers[:, 0] ** 2))
-        ),
+        "roller diameter, root mean square": float(np.sqrt(np.mean(rollers.T[0] ** 2))),
         "roller diameter, worst": float(np.abs(rollers[:, 0]).max()),
         "roller diameter within 5 %": float(np.mean(np.abs(rollers[:, 0]) < 0.05)),
         "pitch diameter of rollers, worst": float(np.abs(rollers[:, 1]).max()),
     }
-    types = list(of_catalogue(60 if given.smoke else 1))
-    if given.json:
-        for row in (line, *types):
-            print(json.dumps(row))
-        return
-    for name, value in line.items():
-        print(f"{name}: {value:.3g}" if value >= 2 else f"{name}: {100 * value:.1f} %")
-    for r in types:
-        print(
-            f"{r['kind']:26}{r['inside']:10} {r['ratings']:11}{r['bearings']:3}"
-            f"{r['exact']:4}  {r['fewest']:+d} to {r['most']:+d}"
-            f"  {100 * r['smallest']:+5.1f} to {100 * r['largest']:+5.1f} %"
-        )
 
 
-if __name__ == "__main__":
-    main()
+def show(rows):
+    parts = {key: [r for r in rows if key in r] for key in ("found_count", "exact")}
+    for r in parts["found_count"]:
+        r["missed"] = "" if r["accepted"] else "MISSED"
+        r["next"] = "{0[0]}: {0[1]:.1f}".format(r["rival"])
+    table(parts["found_count"], {
+        "bearing": "{bearing}", "Z": "{count:d}", "found": "{found_count:d}",
+        "D_w mm": "{diameter:.3f}", "found mm": "{found_diameter:.3f}",
+        "off": "{diameter_error:+.1%}", "misfit": "{misfit:.1f}", "next": "{next}",
+        "C": "{dynamic_from_geometry:+.1%}", "C0": "{static_from_geometry:+.1%}",
+        "": "{missed}", "sources": "{geometry}; {ratings}",
+    })  # fmt: skip
+    for name, value in next(r for r in rows if "deep groove bearings" in r).items():
+        print(f"{name}: {value:.3g}" if value >= 2 else f"{name}: {value:.1%}")
+    table(parts["exact"], {
+        "type": "{kind}", "inside": "{inside}", "ratings": "{ratings}",
+        "bearings": "{bearings:d}", "exact": "{exact:d}", "fewest": "{fewest:+d}",
+        "most": "{most:+d}", "least": "{smallest:+.1%}", "largest": "{largest:+.1%}",
+    })  # fmt: skip
+
+
+@benchmark("one published bearing, few others", show)
+def main(smoke):
+    rows = list(published(PUBLISHED[:1] if smoke else PUBLISHED))
+    return [*rows, hidden(smoke), *of_catalogue(60 if smoke else 1)]

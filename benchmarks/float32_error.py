@@ -27,24 +27,18 @@ taper, half angle zero        contact     8e-07   7e-08   9e-07   6e-08   0   0 
 worst of up to 20 motions; AMD EPYC
 """
 
-import argparse
 import collections
-import json
-import sys
-from pathlib import Path
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark
+from registry import bearings as listed
+from registry import motion
+from registry import quadratures as rules
+from test_against_oracle import errors
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-import registry  # noqa: E402
-from test_against_oracle import errors  # noqa: E402
-from timing import processor  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 MOTIONS = 20
 SMOKE = ("cylindrical, crowned ends",)
@@ -99,7 +93,7 @@ def one(element, q):
 
 def study(element, motions):
     """Worst of several motions."""
-    found = [one(element, registry.motion(seed)) for seed in range(motions)]
+    found = [one(element, motion(seed)) for seed in range(motions)]
     found = [x for x in found if x is not None]
     single = np.array([x["single"] for x in found])
     rounded = np.array([x["rounded"] for x in found])
@@ -134,7 +128,7 @@ def show(rows):
             f"{r['steps']:4d}{r['steps_float64']:4d}"
             f"{converged:4d}/{r['motions']}"
         )
-    print(f"\nworst of up to {MOTIONS} motions; {processor()}")
+    print(f"\nworst of up to {MOTIONS} motions")
 
 
 def measure(bearings, quadratures, motions):
@@ -148,23 +142,10 @@ def measure(bearings, quadratures, motions):
     return rows
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line per result")
-    parser.add_argument("--smoke", action="store_true", help="one bearing, 3 motions")
-    args = parser.parse_args()
-    bearings, quadratures = registry.bearings(), registry.quadratures()
-    if args.smoke:
+@benchmark("one bearing, 3 motions", show)
+def main(smoke):
+    bearings, quadratures = listed(), rules()
+    if smoke:
         bearings = {name: bearings[name] for name in SMOKE}
         quadratures = {"midpoint": quadratures["midpoint"]}
-    rows = measure(bearings, quadratures, 3 if args.smoke else MOTIONS)
-    if args.json:
-        for r in rows:
-            print(json.dumps(r))
-    else:
-        show(rows)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return measure(bearings, quadratures, 3 if smoke else MOTIONS)

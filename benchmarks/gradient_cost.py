@@ -54,21 +54,13 @@ barrels, exact, times the cylinders (time, compile):     3.51    4.23    1.72   
 goal of --sets: 1.2 times the cylinders: MISSED
 """
 
-import argparse
-import json
-import sys
-from pathlib import Path
-
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, compiled, shuffled, subplots, verdict
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import compiled, machine, shuffled, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 LOAD = (0.0, -4000.0, 0.0, 10.0, 0.0, 0.0)
 GOALS = {"ratio": 1.3, "displacement": 1e-8, "peak pressure": 1e-8, "stiffness": 1e-6}
@@ -217,7 +209,8 @@ def roughness(values):
     return float(np.max(np.abs(np.diff(values))) / np.median(np.abs(values)))
 
 
-def show(rows, teeth):
+def show(found, teeth):
+    rows = found["rows"]
     print(
         f"{'':15}{'time, µs':^18}{'':7}{'compile, s':^16}{'least':>8}\n"
         f"{'of':15}{'value':>9}{'gradient':>9}{'ratio':>7}{'value':>8}{'gradient':>8}"
@@ -246,17 +239,12 @@ def show(rows, teeth):
         print(verdict(f"gradient over value, {name}", r["ratio"], GOALS["ratio"]))
         goal = GOALS.get(name, GOALS["displacement"])
         print(verdict(f"least error, {name}", r["least_error"], goal))
-    print(f"\n{machine()}")
 
 
-def plot(rows, teeth, target):
+def plot(found, teeth):
     """Error against step, and the comb."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 4))
+    rows = found["rows"]
+    figure, (left, right) = subplots(1, 2, figsize=(10, 4))
     for r in rows:
         left.loglog(STEPS, r["errors"], "o-", markersize=4, label=r["quantity"])
     left.set_title("Gradient against differences", loc="left")
@@ -273,31 +261,13 @@ def plot(rows, teeth, target):
         right.set_ylim(0.0, 2.5 * np.max(smooth))
     for axis in (left, right):
         axis.legend(frameon=False)
-        axis.grid(alpha=0.3)
-        axis.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(target, dpi=150)
+    return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="displacement alone")
-    parser.add_argument("--sets", action="store_true", help="barrels beside cylinders")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
-    args = parser.parse_args()
-    sizes = SMOKE if args.smoke else FULL
-    rows = [study(name, sizes) for name in (SETS if args.sets else sizes["quantities"])]
-    teeth = comb(0 if args.sets else sizes["radii"])
-    if args.json:
-        told = {name: roughness(teeth[name]) for name in COMB if teeth}
-        print(json.dumps({"goals": GOALS, "rows": rows, "roughness": told}))
-    else:
-        show(rows, teeth)
-    if args.plot:
-        plot(rows, teeth, args.plot)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("displacement alone", show, plot, sets="barrels beside cylinders")
+def main(smoke, sets=False):
+    sizes = SMOKE if smoke else FULL
+    rows = [study(name, sizes) for name in (SETS if sets else sizes["quantities"])]
+    teeth = comb(0 if sets else sizes["radii"])
+    told = {name: roughness(teeth[name]) for name in COMB if teeth}
+    return {"goals": GOALS, "rows": rows, "roughness": told}, teeth

@@ -21,18 +21,15 @@ Two cores of an AMD EPYC (virtual; beside other jobs), jax 0.10.1, float64:
 Run: python benchmarks/hertz.py [--count 100000] [--smoke]
 """
 
-import argparse
 import math
 import time
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-
-from bearingjax.contact import ellipse  # noqa: E402
+from bearingjax.contact import ellipse
 
 MODULUS = 1.13e11
 RANGES = ((1.0, 1.2), (1.2, 5.0), (5.0, 30.0), (30.0, 100.0))
@@ -98,12 +95,9 @@ def seconds(function, x, y, repeat=20):
     return best
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=100_000)
-    parser.add_argument("--smoke", action="store_true")
-    args = parser.parse_args()
-    count = 1000 if args.smoke else args.count
+@benchmark("a thousand contacts")
+def main(smoke, count=100_000):
+    count = 1000 if smoke else count
     print("Ry/Rx          fit     axes  constant  pressure   (largest relative error)")
     for low, high in RANGES:
         for name, row in errors(low, high, 1000).items():
@@ -116,7 +110,3 @@ def main():
     for name, t in times.items():
         ns = 1e9 * t / count
         print(f"{name}: {ns:.0f} ns a contact, exact over it {times['exact'] / t:.1f}")
-
-
-if __name__ == "__main__":
-    main()

@@ -29,21 +29,15 @@ slope along the clearance within 1.9e-06 of differences
 AMD EPYC, 2 cores, load average 7.1; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
-
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, compiled, shuffled
+from scipy.optimize import root
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.optimize import root  # noqa: E402
-from timing import compiled, machine, shuffled  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.statics import solve_case  # noqa: E402
+import bearingjax as bj
+from bearingjax.statics import solve_case
 
 CAPACITY = 23400.0
 FULL = {"cases": 10_000, "batch": 500, "loop": 100, "rounds": 3, "gradient": True}
@@ -250,18 +244,6 @@ def show(found):
         print(f"slope along the clearance within {found['gradient_error']:.1e}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", action="store_true")
-    parser.add_argument("--smoke", action="store_true")
-    options = parser.parse_args()
-    found = study(SMOKE if options.smoke else FULL)
-    if options.json:
-        print(json.dumps(found))
-        return
-    show(found)
-    print(f"\n{machine()}")
-
-
-if __name__ == "__main__":
-    main()
+@benchmark("few cases", show)
+def main(smoke):
+    return study(SMOKE if smoke else FULL)

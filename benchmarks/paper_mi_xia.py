@@ -46,24 +46,17 @@ not met: 0 (goal 0)
 AMD EPYC, 2 cores, load average 11.9; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
-import sys
 import warnings
-from pathlib import Path
 from typing import Any
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, verdict
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.contact.halfspace import RollerContact  # noqa: E402
-from bearingjax.contact.slices import slices  # noqa: E402
+import bearingjax as bj
+from bearingjax.contact.halfspace import RollerContact
+from bearingjax.contact.slices import slices
 
 CELLS, GRADED = 35, 64
 HALF_WIDTH = 0.1764e-3  # at 3000 N
@@ -189,7 +182,7 @@ def missed(figures):
     return int(off) + int(worst > AGREED) + int(min(figures["end_ratios"]) <= 1.0)
 
 
-def show(figures):
+def show(figures, _):
     head = ("F, N", "approach, µm", "middle, MPa", "small end", "large end")
     print("AF004-5 and 9: 35 x 35 cells, end cells 0.43 mm long\n")
     print(f"{head[0]:>6}" + "".join(f"{h:>14}" for h in head[1:]) + "  small/large")
@@ -207,7 +200,7 @@ def show(figures):
         found, known = fact["found"], fact["known"]
         error = f"{abs(found / known - 1):10.1e}{fact['allowed']:10.0e}"
         print(f"{fact['fact']:42}{found:10.5g}{known:10.5g}{error}")
-    print(f"\nnot met: {missed(figures)} (goal 0)\n\n{machine()}")
+    print(f"\nnot met: {missed(figures)} (goal 0)")
 
 
 def draw(path, solutions):
@@ -227,21 +220,6 @@ def draw(path, solutions):
         figure.savefig(target, dpi=150)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="3000 and 5000 N only")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write both figures")
-    args = parser.parse_args()
-    figures, solutions = run((3000.0, 5000.0) if args.smoke else LOADS)
-    if args.json:
-        print(json.dumps(figures))
-    else:
-        show(figures)
-    if args.plot is not None:
-        draw(args.plot, solutions)
-    return 1 if missed(figures) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("3000 and 5000 N only", show, draw, wrong=lambda found, _: missed(found))
+def main(smoke):
+    return run((3000.0, 5000.0) if smoke else LOADS)

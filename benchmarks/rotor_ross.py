@@ -49,23 +49,15 @@ The last table was run by itself. In these bearings 10 g mm bend the resonance u
 by 0.6 %, half of its width, and what is linear is up to 37 % off on both sides of it.
 """
 
-import argparse
 import importlib
-import sys
 import warnings
-from pathlib import Path
 
-import jax
+import numpy as np
+from bench import benchmark, verdict
+from rotor.machines import STEEL, friswell
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import numpy as np  # noqa: E402
-from rotor.machines import STEEL, friswell  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.nonlinear import (  # noqa: E402
+import bearingjax as bj
+from bearingjax.rotor.nonlinear import (
     HarmonicBalance,
     Steps,
     follow,
@@ -302,20 +294,12 @@ def linear_against_true(smoke):
         )
 
 
-def main():
-    """Print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--smoke", action="store_true")
-    smoke = parser.parse_args().smoke
+@benchmark("few speeds and points")
+def main(smoke):
     worst = beside_ross(smoke)
     if worst is not None:
         print(verdict("largest difference from ROSS", worst, GOAL))
     print()
     over_speed(smoke)
     linear_against_true(smoke)
-    print(machine())
-    return 0 if worst is None or worst <= GOAL else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return worst is None or worst <= GOAL

@@ -80,23 +80,16 @@ time of the iteration as printed over ours, all cells, 1e-6: 112 (at least 10): 
 AMD EPYC, 2 cores, load average 1.7; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
 import functools
-import json
-import sys
 import warnings
 from typing import Any
 
-import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, compiled, relative, shuffled, table, verdict
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import compiled, machine, relative, shuffled, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.contact.halfspace import (  # noqa: E402
+import bearingjax as bj
+from bearingjax.contact.halfspace import (
     ConjugateGradients,
     RollerContact,
     Strips,
@@ -260,17 +253,11 @@ def show(result):
             f"{r['band'] or 'full':>5}{r['sweeps']:8d}{r['error']:9.1e}"
             + ("" if r["settled"] else "  does not settle")
         )
-    print(
-        f"\n{'cells':>9}  {'solver':20}{'kept':5}{'ms':>8}{'steps':>7}{'residual':>10}"
-        f"{'error':>9}"
-    )
-    for r in result["times"]:
-        cells = f"{r['n']} x {r['n']}"
-        error = "-" if r["error"] is None else f"{r['error']:.0e}"
-        print(
-            f"{cells:>9}  {r['solver']:20}{r['cells']:5}{r['ms']:8.1f}{r['steps']:7d}"
-            f"{r['residual']:10.0e}{error:>9}"
-        )
+    print()
+    table(result["times"], {
+        "cells": "{n} x {n}", "solver": "{solver}", "kept": "{cells}", "ms": "{ms:.1f}",
+        "steps": "{steps:d}", "residual": "{residual:.0e}", "error": "{error:.0e}",
+    })  # fmt: skip
     print(
         f"\n{'width over Hertz':18}{'cells':>10}{'large end, MPa':>16}{'change':>10}"
         f"{'approach, µm':>14}"
@@ -286,34 +273,22 @@ def show(result):
                 f"{r['large_end'] / usual - 1:10.0e}{1e6 * r['approach']:14.5f}"
                 + ("  reaches the sides" if r["truncated"] else "")
             )
-    found = figures(result["times"], result["n"])
+    found = result["figures"]
     print()
     what = "time of the iteration as printed over ours, all cells, 1e-6"
     print(verdict(what, found["ratio"], GOALS["ratio"], most=False))
     print(verdict("279 x 279 cells, 1e-10, s", found["seconds"], GOALS["seconds"]))
-    print(f"\n{result['machine']}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="few cells, one band")
-    args = parser.parse_args()
-    n, fine = (15, 15) if args.smoke else (35, 279)
-    lengths, asked = ((n,), WIDTHS[1:2]) if args.smoke else ((n, 4 * n - 1), WIDTHS)
-    result = {
+@benchmark("few cells, one band", show)
+def main(smoke):
+    n, fine = (15, 15) if smoke else (35, 279)
+    lengths, asked = ((n,), WIDTHS[1:2]) if smoke else ((n, 4 * n - 1), WIDTHS)
+    found = times(n, fine, 2 if smoke else 9)
+    return {
         "n": n,
-        "sweeps": sweeps(n, BANDS[:1] if args.smoke else BANDS),
-        "times": times(n, fine, 2 if args.smoke else 9),
+        "sweeps": sweeps(n, BANDS[:1] if smoke else BANDS),
+        "times": found,
         "widths": [r for along in lengths for r in widths(n, along, asked)],
-        "machine": machine(),
+        "figures": figures(found, n),
     }
-    if args.json:
-        print(json.dumps(result | {"figures": figures(result["times"], n)}))
-    else:
-        show(result)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -14,7 +14,7 @@ import pytest
 import robust_rollers
 
 FOLDER = Path(__file__).parent.parent.parent / "benchmarks"
-HELPERS = {"timing.py", "peers.py"}
+HELPERS = {"bench.py", "peers.py"}
 SCRIPTS = sorted({p.name for p in FOLDER.glob("*.py")} - HELPERS)
 
 
