@@ -1,4 +1,4 @@
-"""How far is a ball bearing (force and stiffness) from a C loop, and from a formula?
+"""How far is one call of a ball bearing from a C loop, and from a formula?
 
 An angular contact bearing with 16 balls under axial, combined and radial load with a
 tilt. `c_ball.c` is the same algorithm, compiled on demand; its result is checked
@@ -8,7 +8,8 @@ same table: a call of ROSS's `BallBearingElement`, a closed formula for the radi
 stiffness of a deep groove bearing, beside ours for the bearing that the formula is
 about; its "error" is its stiffness against ours. ROSS is timed if it can be imported.
 
-Run: python benchmarks/ball_speed.py [--json] [--smoke]
+README: 16 balls: 14 to 39 times the C loop hot, 2.8 to 7 in a batch; ROSS's formula
+takes 8 times ours, 5 % off | 5 times hot, 1.1 in a batch | **missed** 2.5- to 8-fold
 
 Last run:
 

@@ -1,4 +1,4 @@
-"""How many bearings a second: force and stiffness of many cases at given ring motions?
+"""How many bearings a second (force and stiffness)?
 
 A cylindrical roller bearing (NU: no ribs), 14 crowned rollers, 32 nodes per raceway
 contact, inner ring pushed and tilted at random. Ours is `jax.lax.map` over chunks;
@@ -14,7 +14,9 @@ Each part runs in a process of its own: the first pinned to one core, so that no
 of XLA helps. Errors are relative to the largest entry; those of the batches against the
 C loop, those of the peers against ours.
 
-Run: python benchmarks/batch_throughput.py [--json] [--smoke] [--device cpu|gpu]
+README: one core: 10 to 13 µs a case, slices 8 to 9; 3000 times jax.scipy's BFGS, 6.5
+times NumPy; 1e6 cases 8.1 s, 1.8 GiB | C's speed; 1.8 times on two cores; 50 times
+BFGS; 2 GiB | **missed**: 0.25 to 0.41 of C, 1.67 times; rest yes
 
 Last run:
 

@@ -8,6 +8,7 @@ import inspect
 import json
 import os
 import random
+import re
 import resource
 import string
 import sys
@@ -273,3 +274,30 @@ def verdict(what: str, figure: float, goal: float, most: bool = True) -> str:
     met = figure <= goal if most else figure >= goal
     sign = "at most" if most else "at least"
     return f"{what}: {figure:.3g} ({sign} {goal:g}): {'met' if met else 'MISSED'}"
+
+
+def readme(text: str) -> str:
+    """The README, each row of a script as the script's docstring has it.
+
+    Its question is the first sentence. Figure, goal and whether it is met stand behind
+    "README:", a bar between them; of a second row an option of the script stands before
+    the colon, and its question behind.
+    """
+
+    def row(found):
+        script, option = found.groups()
+        words = Path(__file__).with_name(script).read_text()
+        told = re.search(rf'^README{option}: (.*?)\n(\n|""")', words, re.M | re.S)
+        cells = " ".join(told[1].split()).split(" | ") if told else []
+        if not option:
+            cells.insert(0, words[3:].split("?")[0] + "?")
+        cells = [cell.strip(" |") for cell in (*cells, "", "")[:4]]
+        cells.insert(1, f"[`{script}`]({script}){option}")
+        return "| " + " | ".join(cells) + " |"
+
+    return re.sub(r"^\|.*\[`(\w+\.py)`\]\(\1\)(.*?) \|.*$", row, text, flags=re.M)
+
+
+if __name__ == "__main__":
+    README = Path(__file__).with_name("README.md")
+    README.write_text(readme(README.read_text()))

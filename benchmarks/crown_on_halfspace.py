@@ -28,7 +28,9 @@ by much. Evaluations
 (value and gradient, of all cases) and time: of the median search; times of one
 evaluation: shortest of nine.
 
-Run: python benchmarks/crown_on_halfspace.py [--json] [--smoke] [--plot OUT.png]
+README: 5000 N: 1516 MPa, ISO logarithmic 1671; tilted by 0.5 mrad 1723 and 1795;
+gradient 1.2 to 1.4 solves, error below 6e-7 | finer cells within 1 %; gradient 1e-5 |
+yes
 
 Last run:
 

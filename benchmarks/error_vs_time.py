@@ -1,4 +1,4 @@
-"""What does an error cost? Force, stiffness and peak pressure against time per call.
+"""What does an error in force and stiffness cost in time?
 
 Cylindrical bearings of three rollers, crowned, logarithmic, and flat and arc, between a
 straight and a crowned raceway; the rings hold them so that a roller touches along its
@@ -11,7 +11,8 @@ Reference: the test oracle's Gauss-Legendre nodes graded to the ends of every lo
 interval; of the pressure, 96 mapped nodes. Time: one call of a compiled program, jitted
 with the element closed over, shortest of the repeats, mean of the cases.
 
-Run: python benchmarks/error_vs_time.py [--json] [--smoke] [--plot OUT.png]
+README: stiffness within 1e-4: 6 to 62 times cheaper than slices; 1e-8 in 248 µs a call,
+which 100 000 slices do not reach | 20 times cheaper at 1e-4; 1e-8 reached | yes
 
 Last run:
 

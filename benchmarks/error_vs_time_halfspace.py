@@ -11,7 +11,8 @@ Reference: graded cells, exponent 2.5, with how much coarser ones
 differ. Length: of the cell at the end, and of that in the middle. Time: a compiled
 solve to 1e-10, kernel made before, shortest of the repeats.
 
-Run: python benchmarks/error_vs_time_halfspace.py [--json] [--smoke] [--plot OUT.png]
+README: sharp-ended taper: 35 x 64 graded cells are better than even 256 x 512 and take
+a 119th of the time | a tenth of the time | yes
 
 Last run:
 

@@ -9,7 +9,8 @@ that they need differ, `bearingjax.numerics.lanes.WIDER` times as many at a time
 processor. Times are those of hot calls, medians of three, results left on the device.
 Errors are relative to the largest result of the processor.
 
-Run: python benchmarks/gpu.py [--device cpu|gpu] [--smoke] [--seconds S]
+README: H200: force and stiffness 0.30 µs a case, load solves 3.8, with gradient 5.4;
+one call on its host's processor 23, 454, 567 |  |
 
 `--seconds` leaves out the larger batches once so much time is spent.
 

@@ -1,4 +1,4 @@
-"""What do the approximations of Hertz contact cost in error, and save in time?
+"""What do the fits of Hertz contact cost in error, and save in time?
 
 Exact ellipses (`bearingjax.contact.ellipse`, elliptic integrals and a root) against the
 fits of Brewe and Hamrock (1977), k = 1.0339 (Ry/Rx)^0.636 with linear E and logarithmic
@@ -18,7 +18,8 @@ Two cores of an AMD EPYC (virtual; beside other jobs), jax 0.10.1, float64:
        30 to  100  1983   3.2e-02   6.5e-02   1.0e-02
     exact: 225 ns a contact; 7.4 times the fit of 1977, 7.7 times that of 1983
 
-Run: python benchmarks/hertz.py [--count 100000] [--smoke]
+README: constant off by up to 9 % (1977) and 7 % (1983); the exact ellipse takes 7 times
+as long, 0.2 µs |  |
 """
 
 import math

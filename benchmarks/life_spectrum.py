@@ -1,4 +1,4 @@
-"""How many cases of a load spectrum become a life in a second, with its gradient too?
+"""How many cases of a load spectrum become a life in a second?
 
 A 6305 deep groove ball bearing under 10 000 random cases: radial load of 0.5 to 4 kN in
 any direction, axial load of -1 to 1 kN, tilts up to 0.5 mrad, each with its hours. Each
@@ -13,7 +13,8 @@ a NumPy bearing of the same equations (balls in series contact, L10r in NumPy), 
 at a radial displacement. It runs a part of the cases; its cases a second are those of
 that part, and its time for all of them is extrapolated.
 
-Run: python benchmarks/life_spectrum.py [--json] [--smoke]
+README: 6305, 10 000 cases in a call: 2700 a second, 1300 with the gradient; SciPy's
+root on NumPy 1000 |  |
 
 Last run:
 

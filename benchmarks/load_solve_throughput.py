@@ -1,4 +1,4 @@
-"""How many load solves a second: displacement and stiffness under many loads?
+"""How many load solves a second?
 
 A cylindrical roller bearing (NU), 14 crowned rollers, 32 nodes per raceway contact;
 outer ring fixed; ux, uy, gx and gy of the inner ring free. Random loads, 1e2 to 1e5 N,
@@ -17,7 +17,9 @@ Then ours alone, with errors against the answers from first contact: radial load
 directions, loads with moments, 300 N to 20 kN, and a ball bearing under radial and
 axial loads.
 
-Run: python benchmarks/load_solve_throughput.py [--json] [--smoke]
+README: one core, µs a case: rollers 72 (radial loads), 112 (moments), balls 90; from
+first contact 1.6 to 2.7 times as long; none fails | 80 µs; twice C's time; 100 times
+SciPy's root | **missed**: 3.9 times C from first contact, 58 times SciPy; 80 µs yes
 
 Last run:
 

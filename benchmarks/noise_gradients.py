@@ -9,7 +9,8 @@ where it begins. Beside them differences of fourth order with steps from 1e-3 to
 the number: the least of the errors over the steps, which form a V. Errors are relative
 to the derivative by the logarithm of the number, or to 0.01 dB where that is more.
 
-Run: python benchmarks/noise_gradients.py [--smoke]
+README: level of a band after two turns: within 8e-7 of differences, forward within
+2e-11 of reverse | 1e-5 | yes
 
 Last run:
 

@@ -1,4 +1,4 @@
-"""What do others take for the pressure between half-spaces, on the same cells?
+"""What do others take for the pressure between half-spaces?
 
 The tapered roller of method 004 at 3000 N (15 mm long, 10 and 12 mm thick, on a plane;
 cells fill its rectangle of 15 x 0.3528 mm) and a sphere (10 mm, 100 N), on even cells.
@@ -18,7 +18,8 @@ Ours on all cells, as theirs, and on the half that symmetry leaves; many loads (
 core. Steps of peers take two products with the influence matrix (NuMPI's one); ours up
 to two, and two with its approximate inverse.
 
-Run: python benchmarks/peers_halfspace.py [--json] [--smoke]
+README: 256 x 256 cells to 1e-6: 355 ms, others 5.7 to 6.5 times; 64 loads at once 137
+ms each, others 4.2 to 5.4 times | fastest peer's time; 3 times faster for 64 | yes
 
 Last run:
 

@@ -6,7 +6,7 @@ element of y <- (1 + f(y))/4 in a compiled loop, so that no call is timed: short
 the repeats, variants in shuffled order; the row "none" is the loop with f(y) = y.
 Error: largest relative one over [1e-12, 1] against NumPy's longdouble power.
 
-Run: python benchmarks/power.py [--json] [--smoke]
+README: 2.1 ns in place of 10.3 ns for `x ** (1/9)`, error 3e-15 |  |
 
 Last run:
 

@@ -1,4 +1,4 @@
-"""What does a node buy? Error of force and stiffness against nodes.
+"""What does a quadrature node buy? Error of force and stiffness against nodes.
 
 Random bearings of the test oracle, cylindrical and tapered, reduced to three rollers:
 crowned, logarithmic, and flat and arc (its kinks make three panels); rings tilted, and
@@ -10,7 +10,8 @@ the stiffness entries K_ij relative to sqrt(K_ii K_jj). Time: one jitted call of
 `evaluate`, minimum of repeats, mean over the kinds of bearing. Nodes count per panel.
 A full run takes five minutes: it compiles 78 programs.
 
-Run: python benchmarks/quadrature.py [--json] [--smoke] [--plot OUT]
+README: 32 contact-mapped nodes: 2e-9 in force, 3e-9 in stiffness, worst case; 20 000
+slices: 3e-7 and 6e-5 | 1e-6; 1e-5 | yes
 
 Last run:
 

@@ -8,7 +8,8 @@ once more with half the steps' length: levels that differ by more than 1 dB are 
 of runs in which balls strike and of others. None may be finite with steps that are too
 long for it and not say so.
 
-Run: python benchmarks/robust_noise.py [--count N] [--seed S] [--smoke] [--json]
+README: 300 bearings: 257 end, 43 say why not; half the step moves levels by 2e-4 dB
+(median), 2.7 dB at most | none without a word | yes
 
 Last run:
 

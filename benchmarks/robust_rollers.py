@@ -5,7 +5,7 @@ the rollers pulled apart instead: loose), tilts of the rings against each other 
 10 mrad, axial shifts up to 0.1 mm, four designs. Counted: result codes, and rollers
 whose residual, evaluated afresh, is above the tolerance that the solver claims.
 
-Run: python benchmarks/robust_rollers.py [--count 1000000] [--solver newton|bfgs|plain]
+README: 1 000 000 rollers: 0 unconverged, 0 wrong, at most 91 steps | 0 | yes
 
 Last run, 1 000 000 rollers, `--solver newton`: 0 unconverged, 0 wrong, at most 91
 steps (goal 0 and 0).

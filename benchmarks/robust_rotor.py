@@ -15,7 +15,8 @@ not found, or lies further off, the branch is followed between them once more wi
 of a sixteenth of their distance, and if that fails of a 64th: it must arrive at the
 second one. Else it was a jump.
 
-Run: python benchmarks/robust_rotor.py [--count N] [--seed S] [--smoke] [--json]
+README: 50 random rotors: 45 branches end at their limit, 5 say that 800 points were too
+few; residuals at most 4e-10; no jump | 1e-8; no jump | yes
 
 Last run:
 

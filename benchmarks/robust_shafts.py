@@ -1,4 +1,4 @@
-"""Does every system of shafts end in an equilibrium, or say why not, and is it one?
+"""Does every system of shafts end in an equilibrium, or say why not?
 
 Random systems of five structures, each compiled once: a bevel gear and a belt on a
 shaft in two tapers that face each other, adjusted by preload or with play; a helical
@@ -13,7 +13,9 @@ and bearings against the largest load (1e-6), torque about each axis, power that
 leaves and is lost, and the force of each bearing against its own solution. A system
 that nothing holds must be called so.
 
-Run: python benchmarks/robust_shafts.py [--count 20] [--seed S] [--smoke] [--json]
+README: 200 systems: 146 solved, 53 held by nothing, 1 at the step limit, none wrong;
+balance 3e-10 of the largest load | none silent; none wrong | **missed**: 1 silent; none
+wrong yes
 
 Last run, seed 0:
 

@@ -1,4 +1,4 @@
-"""Does every run end, or say why not? Random bearings, oils, speeds and loads.
+"""Does every run of skidding end, or say why not?
 
 300 runs of `skid.simulate`: five balls with a cage, designs, oil temperatures of -40 to
 200 °C, drag up to an immersed bearing, pockets without clearance, from still stand or
@@ -10,7 +10,8 @@ power balance is out by more than the tolerance, 1e-4 of the work or of the kine
 energy of balls that roll at the fastest speed, or if numbers follow on a time that was
 not reached.
 
-Run: python benchmarks/robust_skid.py [--smoke] [--first K] [--runs N]
+README: 300 runs: 260 end, 34 need more than 5000 steps, 6 say that no step is small
+enough; none wrong | none wrong | yes
 
 Last run:
 

@@ -1,4 +1,4 @@
-"""Does a bad case spoil a sweep? A million loads and speeds, one in a hundred bad.
+"""Does a bad case spoil a sweep of 1e6?
 
 A cylindrical roller bearing (NU) under random loads, 1e2 to 1e5 N, at random speeds, on
 two host devices. The bad cases: a load that is not a number, or infinite; an axial
@@ -9,7 +9,8 @@ sample is solved again, one by one, and compared), all bad ones must say so.
 Then what bad cases cost the good ones in their chunks: time of a smaller sweep without
 any, and with one in a hundred of each kind, in shuffled order.
 
-Run: python benchmarks/robust_sweep.py [--count 1000000] [--json] [--smoke]
+README: 1 % bad of six kinds: all 990 000 good ones solved, all bad ones flagged; 0.88
+of the time without; 1.06 GiB | none wrong or unsaid; 1.1 times the time; 2 GiB | yes
 
 Last run:
 

@@ -8,7 +8,7 @@ by harmonic balance and pseudo-arclength: the compiled loop of one rotor, and th
 loop mapped over all. Checked: every branch of the batch against its own single run,
 and the residual of every point.
 
-Run: python benchmarks/rotor_batch.py [--smoke] [--json]
+README: 4456 points of 64 branches: 3.9 s, 0.9 ms a point, no faster than 64 calls |  |
 
 Last run:
 

@@ -9,7 +9,8 @@ Beside it the rigid shaft of five freedoms. Time is that of Newton's method unti
 residual is 1e-10, compiled; error is that of the largest amplitude of any station
 against the full rotor of as many elements.
 
-Run: python benchmarks/rotor_reduction.py [--smoke] [--json]
+README: 40 elements, 8 Craig-Bampton modes: 2.6 times the rigid rotor, error 1e-4;
+without reduction 366 times | 10 times; 1e-3 | yes
 
 Last run:
 

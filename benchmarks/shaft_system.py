@@ -16,7 +16,8 @@ the rollers, chosen by Adam on the gradient of the logarithm of the life of all 
 under three torques, with a penalty where the flanks of the teeth stand more than 60
 µrad askew; projected on bounds.
 
-Run: python benchmarks/shaft_system.py [--design] [--smoke] [--json]
+README: four bearings, 1000 cases: 44 s, SciPy's root 13 times as long; life by 40
+gradients 38 400 to 49 400 h | 1e-6; bound kept | yes
 
 Last run:
 

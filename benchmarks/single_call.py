@@ -1,4 +1,4 @@
-"""How far is one call (force and stiffness) from a C loop of the same algorithm?
+"""How far is one call of a roller bearing from a C loop of the same algorithm?
 
 A cylindrical roller bearing with 14 crowned rollers, 32 nodes per raceway contact:
 under a radial load; under the same load with the rings out of line; and that again with
@@ -23,7 +23,8 @@ Half of what a caller sees may be the hand-over from his thread to one of XLA. I
 gone on one core (`--pinned`), or where the calling thread does the work (`--inline`:
 `jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else).
 
-Run: python benchmarks/single_call.py [--json] [--smoke] [--pinned] [--inline]
+README: 14 rollers, 32 nodes: 15 to 44 times the C loop hot, 33 to 50 cold; one of 256
+in a call 3.2 to 3.8 | 5 times hot, 8 cold | **missed** 3- to 9-fold
 
 Last run:
 

@@ -10,7 +10,8 @@ the derivative, or to a thousandth of what is differentiated over the number whe
 is more (numbers that do not matter). In time the clearance of the pockets is left out:
 it is zero, at its bound, and a ball that first has to cross it moves otherwise.
 
-Run: python benchmarks/skid_gradients.py [--smoke]
+README: end state, 38 numbers: 6e-7; 3 ms in time: 7e-6; where balls meet the cage 1e-2,
+at tolerance 1e-10 2e-3 | 1e-6; 1e-4 | **missed** through impacts; rest yes
 
 Last run:
 

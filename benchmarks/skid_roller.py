@@ -8,7 +8,8 @@ source at hand, nor its fill, so that it is compared in its shape alone: slip fa
 load and rises with speed, and above some load it all but vanishes. Nothing is fitted:
 the fill, which the measurements do not tell, decides how far down the load slip begins.
 
-Run: python benchmarks/skid_roller.py [--smoke]
+README: 36 rollers at 8000 rpm: 82 % at 250 N, 59 % at 1000 N, 6 % at 8000 N | shape
+alone | yes
 
 Last run (108 places, errors 1e-4 of the slip or less):
 

@@ -1,4 +1,4 @@
-"""What does an error cost in the way to skidding? Beside SciPy on the same equations.
+"""What does an error cost in the way to skidding, beside SciPy?
 
 The bearing of Han & Chu, 12 balls and a cage, 65 states with the integrated powers,
 from rolling on: 40 N axial for 100 ms; 600 N axial and 400 N radial for 20 ms, where
@@ -13,7 +13,8 @@ against the motion in time 2 s later (axial), against five times as many places 
 the orbit (both loads). Then 64 loads in one call of ours, load solves and tables
 included.
 
-Run: python benchmarks/skid_transient.py [--smoke] [--plot OUT.png]
+README: 12 balls and a cage: SciPy's stiff solvers take 26 to 36 times as long; 64 loads
+at once 29 to 40 times | 10 times; 50 times for 64 | **missed** for 64: 29; rest yes
 
 Last run (another process on the other core):
 

@@ -15,7 +15,8 @@ Then sweeps of load solves, where outputs are what may be absent, and the moment
 loads: microseconds a case, shortest of the rounds; the first
 call, which compiles, apart.
 
-Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
+README: one call without ribs and speed 0.92 of the time; sweeps for displacement and
+stiffness alone 0.8, loads without moments 0.3 |  |
 
 Last run:
 

@@ -1,4 +1,4 @@
-"""How does the paper's strip iteration do beside conjugate gradients on all cells?
+"""How does the published strip iteration do beside conjugate gradients on all cells?
 
 The case of method 004 (Mi & Xia 2011): a tapered roller, 15 mm long, 10 and 12 mm
 thick, 3000 N, on a plane; 35 x 35 even cells over 15 x 0.3528 mm. A strip is a line of
@@ -15,7 +15,8 @@ to the cell at the large end: half widths in those of Hertz's contact (0.11025 m
 cells of one size (0.01008 mm across) and with 35 cells across; 35 and 139 along. All
 cells are kept ("all") or the half that symmetry leaves ("half").
 
-Run: python benchmarks/strips_halfspace.py [--json] [--smoke]
+README: as printed 112 times our time to 1e-6, 8.8 % off; ours with 279 x 279 cells to
+1e-10 in 0.62 s | 10 times; 1 s | yes
 
 Last run:
 
