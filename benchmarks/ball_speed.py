@@ -166,11 +166,7 @@ def ross_call(radial, el):
 
     def call():
         return ross.BallBearingElement(
-            n=0,
-            n_balls=b.n_balls,
-            d_balls=float(b.ball_diameter),
-            fs=radial,
-            alpha=0.0,
+            n=0, n_balls=b.n_balls, d_balls=float(b.ball_diameter), fs=radial, alpha=0.0
         )
 
     return call
@@ -195,11 +191,7 @@ def beside_ross(rounds, block):
     load = jax.jit(
         lambda f: (
             bj.solve_load(
-                el,
-                f,
-                free=["ux", "uy"],
-                prescribed={"uz": 0.0},
-                throw=False,
+                el, f, free=["ux", "uy"], prescribed={"uz": 0.0}, throw=False
             ).stiffness
         )
     )

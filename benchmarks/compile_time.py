@@ -74,11 +74,7 @@ import time
 import numpy as np
 from bench import benchmark
 
-GOALS = {
-    "first force and stiffness": 4.0,
-    "solve, first": 8.0,
-    "solve, second": 2.0,
-}
+GOALS = {"first force and stiffness": 4.0, "solve, first": 8.0, "solve, second": 2.0}
 ADD = "import jax.numpy as jnp; jnp.ones(3) + jnp.ones(3)"
 LIBRARY = """
 import json, time

@@ -136,11 +136,7 @@ from jaxtyping import Array, Float
 from scipy.optimize import minimize
 
 import bearingjax as bj
-from bearingjax.contact.halfspace import (
-    RollerContact,
-    influence,
-    solve_pressure,
-)
+from bearingjax.contact.halfspace import RollerContact, influence, solve_pressure
 from bearingjax.design.profile import AbstractProfile
 
 MODULUS = 210e9 / (2 * (1 - 0.3**2))

@@ -59,11 +59,7 @@ from bench import benchmark, compiled, machine, shuffled, subplots, verdict
 from scipy.interpolate import CubicSpline
 from strips_halfspace import HALF_WIDTH, LENGTH, LOAD, MODULUS, taper
 
-from bearingjax.contact.halfspace import (
-    graded_grid,
-    influence,
-    solve_pressure,
-)
+from bearingjax.contact.halfspace import graded_grid, influence, solve_pressure
 
 # Cells across and along.
 FULL = {

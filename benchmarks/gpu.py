@@ -95,10 +95,7 @@ def sag_and_gradient(load):
 QUESTIONS = {
     "force and stiffness": (force_and_stiffness, motions),
     "load solve": (displacement, lambda n: middle_loads(n, arm=1e-3)),
-    "gradient of a load solve": (
-        sag_and_gradient,
-        lambda n: middle_loads(n, arm=1e-3),
-    ),
+    "gradient of a load solve": (sag_and_gradient, lambda n: middle_loads(n, arm=1e-3)),
 }
 
 

@@ -42,12 +42,7 @@ from bench import benchmark, slopes_beside, verdict
 
 import bearingjax as bj
 from bearingjax.design import FormErrors, Harmonics, RacewayErrors
-from bearingjax.noise import (
-    NoiseModel,
-    level,
-    needed_steps,
-    vibration,
-)
+from bearingjax.noise import NoiseModel, level, needed_steps, vibration
 
 NUMBERS = {
     "outer waves": 0.2e-6,

@@ -67,11 +67,7 @@ from rotor_response import (
 )
 from vibrations import rotor
 
-from bearingjax.rotor.nonlinear import (
-    HarmonicBalance,
-    Shooting,
-    solve_orbit,
-)
+from bearingjax.rotor.nonlinear import HarmonicBalance, Shooting, solve_orbit
 
 SHAKEN, SHOWN, AT = 5.0, 36, 3
 """Acceleration of the base [m/s²], the contact angle of figure 4, y at B."""

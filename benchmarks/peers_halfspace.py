@@ -186,12 +186,8 @@ class Gradients:
     package = "ContactMechanics"
 
     def __init__(self, case):
-        from ContactMechanics import (  # pyright: ignore[reportMissingImports]
-            FreeFFTElasticHalfSpace,
-        )
-        from SurfaceTopography import (  # pyright: ignore[reportMissingImports]
-            Topography,
-        )
+        from ContactMechanics import FreeFFTElasticHalfSpace  # pyright: ignore[reportMissingImports]
+        from SurfaceTopography import Topography  # pyright: ignore[reportMissingImports]
 
         self.case = case
         cells = (case.n, case.n)
@@ -202,9 +198,7 @@ class Gradients:
 
     def solve(self, load, tolerance):
         """Pressure, steps."""
-        from ContactMechanics.Optimization import (  # pyright: ignore
-            constrained_conjugate_gradients,
-        )
+        from ContactMechanics.Optimization import constrained_conjugate_gradients  # pyright: ignore
 
         n = self.case.n
         start = np.zeros(self.substrate.nb_subdomain_grid_pts)
@@ -230,17 +224,13 @@ class Dual(Gradients):
     name = "with NuMPI's CG"
 
     def __init__(self, case):
-        from ContactMechanics.Systems import (  # pyright: ignore[reportMissingImports]
-            NonSmoothContactSystem,
-        )
+        from ContactMechanics.Systems import NonSmoothContactSystem  # pyright: ignore[reportMissingImports]
 
         super().__init__(case)
         self.system = NonSmoothContactSystem(self.substrate, self.surface)
 
     def solve(self, load, tolerance):
-        from NuMPI.Optimization import (  # pyright: ignore[reportMissingImports]
-            CCGWithoutRestart,
-        )
+        from NuMPI.Optimization import CCGWithoutRestart  # pyright: ignore[reportMissingImports]
 
         n = self.case.n
         # It prints what it thinks of round-off.

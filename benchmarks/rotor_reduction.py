@@ -63,11 +63,7 @@ from bench import benchmark, shuffled, table, verdict
 from vibrations import grooves
 
 import bearingjax as bj
-from bearingjax.rotor.nonlinear import (
-    HarmonicBalance,
-    LawSupport,
-    vibrating_rotor,
-)
+from bearingjax.rotor.nonlinear import HarmonicBalance, LawSupport, vibrating_rotor
 from bearingjax.rotor.nonlinear.orbit import (
     along_frequency,
     amplitudes,

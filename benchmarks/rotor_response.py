@@ -345,11 +345,7 @@ def draw(ax, branch, freedom, color, label):
     hertz, size = branch.frequency / (2 * np.pi), 1e6 * branch.amplitude[:, freedom]
     ax.plot(hertz, size, ":", color=color, lw=1.2)
     ax.plot(
-        hertz,
-        np.where(branch.stable, size, np.nan),
-        color=color,
-        lw=1.8,
-        label=label,
+        hertz, np.where(branch.stable, size, np.nan), color=color, lw=1.8, label=label
     )
     for event in branch.events:
         mark = {"fold": "o", "neimark_sacker": "s"}.get(event.kind, "^")

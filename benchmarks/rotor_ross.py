@@ -58,12 +58,7 @@ from bench import benchmark, verdict
 from rotor.machines import STEEL, friswell
 
 import bearingjax as bj
-from bearingjax.rotor.nonlinear import (
-    HarmonicBalance,
-    Steps,
-    follow,
-    vibrating_rotor,
-)
+from bearingjax.rotor.nonlinear import HarmonicBalance, Steps, follow, vibrating_rotor
 
 GOAL = 1e-6
 SHEAR = float(STEEL.elastic_modulus) / (2.0 * (1.0 + float(STEEL.poisson_ratio)))

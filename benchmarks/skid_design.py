@@ -62,13 +62,7 @@ import bearingjax as bj
 from bearingjax.element.ball_speed import EqualShare
 from bearingjax.lubrication import LimitingStress, iso_vg
 from bearingjax.optimise.design_problem import Problem
-from bearingjax.skid import (
-    CageSlip,
-    Drag,
-    FrictionTorque,
-    SkiddingBearing,
-    SkidModel,
-)
+from bearingjax.skid import CageSlip, Drag, FrictionTorque, SkiddingBearing, SkidModel
 from bearingjax.statics import SolveOptions
 
 CASES = np.array(  # radial load and axial load [N], speed [rpm], share of the time

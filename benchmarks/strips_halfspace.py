@@ -108,10 +108,7 @@ BANDS = (3, 5, 6, 7, 10, None)
 WIDTHS = (1.33, 1.6, 2.0, 2.97)
 LIMIT = 400  # sweeps
 GOALS = {"ratio": 10.0, "seconds": 1.0}
-WAYS = {
-    "clipped": {"clip": True},
-    "contact sought": {"clip": False},
-}
+WAYS = {"clipped": {"clip": True}, "contact sought": {"clip": False}}
 
 
 @functools.cache
