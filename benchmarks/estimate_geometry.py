@@ -132,8 +132,8 @@ PUBLISHED = (
      17.0, "Yan (2025)", NSK),
 )  # fmt: skip
 
-# Bearings, parted by ";": d, D, B [mm], C, C0 [N], f_0 (16.3 and less): NSK E1102, pages B8
-# to B14.
+# Bearings, parted by ";": d, D, B [mm], C, C0 [N], f_0 (16.3 and less): NSK E1102,
+# pages B8 to B14.
 DEEP_GROOVE = """
 15 32 9 5600 2830 13.9; 15 35 11 7650 3750 13.2; 15 42 13 11400 5450 12.3;
 17 26 5 2630 1570 15.7; 17 30 7 4600 2550 14.7; 17 35 10 6000 3250 14.4;
