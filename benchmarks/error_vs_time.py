@@ -67,7 +67,7 @@ import functools
 import jax
 import jax.numpy as jnp
 import numpy as np
-from bench import benchmark, compiled, shuffled, subplots, verdict
+from bench import benchmark, compiled, shuffled, subplots, table, verdict
 from float32_error import cast
 from from_oracle import bearing
 from oracle import build, evaluate, graded
@@ -243,18 +243,12 @@ def advantage(rows):
 
 
 def show(rows, doubt):
-    print(
-        f"{'':28}{'worst error':^27}{'time':>9}{'compile':>9}\n"
-        f"{'rule':13}{'':9}{'nodes':>6}"
-        + "".join(f"{name:>10}" for name in ASKED)
-        + f"{'µs':>6}{'s':>9}"
-    )
-    for r in rows:
-        print(
-            f"{r['rule']:13}{r['dtype']:9}{r['nodes']:6d}"
-            + "".join(f"{r[name]:10.0e}" for name in ASKED)
-            + f"{r['time_us']:6.0f}{r['compile_s']:9.1f}"
-        )
+    print("worst errors")
+    errors = {name: f"{{{name}:.0e}}" for name in ASKED}
+    table(rows, {
+        "rule": "{rule}", "type": "{dtype}", "nodes": "{nodes:d}", **errors,
+        "µs": "{time_us:.0f}", "compile, s": "{compile_s:.1f}",
+    })  # fmt: skip
     print(f"\nprice of an error in stiffness, µs\n{'':14}", end="")
     print("".join(f"{target:>9.0e}" for target in TARGETS))
     for rule in dict.fromkeys(r["rule"] for r in rows):

@@ -55,7 +55,7 @@ import functools
 
 import jax.numpy as jnp
 import numpy as np
-from bench import benchmark, compiled, machine, shuffled, subplots, verdict
+from bench import benchmark, compiled, shuffled, subplots, table, verdict
 from scipy.interpolate import CubicSpline
 from strips_halfspace import HALF_WIDTH, LENGTH, LOAD, MODULUS, taper
 
@@ -185,17 +185,13 @@ def advantage(rows):
 
 
 def show(rows, want, doubt):
-    print(
-        f"{'':18}{'worst relative error':^33}{'cell, mm':^15}\n"
-        f"{'cells':18}{'approach':>9}{'0.5 mm in':>12}{'middle':>10}"
-        f"{'end':>8}{'middle':>8}{'steps':>7}{'ms':>9}"
-    )
-    for r in rows:
-        print(
-            f"{r['kind']:7}{r['across']:4d} x {r['along']:<4d}{r['approach']:9.0e}"
-            f"{r['near_ends']:12.0e}{r['middle']:10.0e}{r['end_mm']:8.4f}"
-            f"{r['middle_mm']:8.4f}{r['steps']:7d}{r['ms']:9.2f}"
-        )
+    print("worst relative error of approach and pressure; size of cells, mm")
+    table(rows, {
+        "cells": "{kind}", "": "{across} x {along}", "approach": "{approach:.0e}",
+        "0.5 mm in": "{near_ends:.0e}", "middle": "{middle:.0e}", "end, mm":
+        "{end_mm:.4f}", "middle, mm": "{middle_mm:.4f}", "steps": "{steps:d}",
+        "ms": "{ms:.2f}",
+    })  # fmt: skip
     print(f"\n{'all errors below':18}" + "".join(f"{t:>9.0e}" for t in TARGETS))
     for kind in dict.fromkeys(r["kind"] for r in rows):
         prices = [price(rows, kind, target) for target in TARGETS]
@@ -217,7 +213,6 @@ def show(rows, want, doubt):
         f"\nreference: approach {1e6 * want[0]:.5f} µm, at 0.5, 7.5, 14.5 mm "
         + ", ".join(f"{1e-6 * p:.2f}" for p in want[1:])
         + f" MPa\ncoarser reference differs by {doubt:.0e}"
-        f"\n{machine()}"
     )
 
 

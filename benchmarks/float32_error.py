@@ -32,7 +32,7 @@ import collections
 import jax
 import jax.numpy as jnp
 import numpy as np
-from bench import benchmark
+from bench import benchmark, table
 from registry import bearings as listed
 from registry import motion
 from registry import quadratures as rules
@@ -114,20 +114,13 @@ def study(element, motions):
 
 
 def show(rows):
-    print(
-        f"{'':39}{'force':^16}{'stiffness':^16}{'steps':^8}\n"
-        f"{'bearing':30}{'rule':9}{'float32':>8}{'input':>8}{'float32':>8}"
-        f"{'input':>8}{'32':>4}{'64':>4}  conv."
-    )
-    for r in rows:
-        converged = r["results"].get("converged", 0)
-        print(
-            f"{r['bearing']:30}{r['quadrature'].split()[0]:9}"
-            f"{r['force_worst']:8.0e}{r['rounding_force']:8.0e}"
-            f"{r['stiffness_worst']:8.0e}{r['rounding_stiffness']:8.0e}"
-            f"{r['steps']:4d}{r['steps_float64']:4d}"
-            f"{converged:4d}/{r['motions']}"
-        )
+    rows = [r | {"good": r["results"].get("converged", 0)} for r in rows]
+    table(rows, {
+        "bearing": "{bearing}", "rule": "{quadrature}", "force": "{force_worst:.0e}",
+        "its input": "{rounding_force:.0e}", "stiffness": "{stiffness_worst:.0e}",
+        "its input ": "{rounding_stiffness:.0e}", "steps": "{steps:d}",
+        "of float64": "{steps_float64:d}", "conv.": "{good}/{motions}",
+    })  # fmt: skip
     print(f"\nworst of up to {MOTIONS} motions")
 
 

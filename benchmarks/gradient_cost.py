@@ -64,7 +64,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from bench import benchmark, compiled, shuffled, subplots, verdict
+from bench import benchmark, compiled, shuffled, subplots, table, verdict
 
 import bearingjax as bj
 
@@ -217,18 +217,13 @@ def roughness(values):
 
 def show(found, teeth):
     rows = found["rows"]
-    print(
-        f"{'':15}{'time, µs':^18}{'':7}{'compile, s':^16}{'least':>8}\n"
-        f"{'of':15}{'value':>9}{'gradient':>9}{'ratio':>7}{'value':>8}{'gradient':>8}"
-        f"{'error':>8}{'at step':>9}"
-    )
-    for r in rows:
-        step = STEPS[int(np.argmin(r["errors"]))]
-        print(
-            f"{r['quantity']:15}{r['value_us']:9.0f}{r['gradient_us']:9.0f}"
-            f"{r['ratio']:7.2f}{r['value_compile_s']:8.1f}{r['gradient_compile_s']:8.1f}"
-            f"{r['least_error']:8.0e}{step:9.0e}"
-        )
+    steps = [{"step": STEPS[int(np.argmin(r["errors"]))]} for r in rows]
+    table(map(dict.__or__, rows, steps), {
+        "of": "{quantity}", "value, µs": "{value_us:.0f}",
+        "gradient, µs": "{gradient_us:.0f}", "ratio": "{ratio:.2f}",
+        "compile, s": "{value_compile_s:.1f}",
+        "gradient, s": "{gradient_compile_s:.1f}", "least error": "{least_error:.0e}", "at step": "{step:.0e}",
+    })  # fmt: skip
     print(f"\nwith respect to {rows[0]['numbers']} numbers of the design")
     for r in rows[1:] if rows[0]["quantity"] in SETS else ():
         kinds = "value_us", "gradient_us", "value_compile_s", "gradient_compile_s"

@@ -34,7 +34,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from bench import benchmark, compiled, shuffled
+from bench import benchmark, compiled, shuffled, table
 from scipy.optimize import root
 
 import bearingjax as bj
@@ -227,14 +227,11 @@ def slope_error(value, both, numbers, cases):
 
 
 def show(found):
-    head = f"{'':<20}{'cases':>8}{'cases/s':>10}{'all cases, s':>14}{'ratio':>9}"
-    print(head)
-    for r in found["rows"]:
-        mark = " (extrapolated)" if r["name"] == "SciPy loop" else ""
-        print(
-            f"{r['name']:<20}{r['cases']:>8}{r['cases_per_s']:>10.0f}"
-            f"{r['all_s']:>14.3g}{r['ratio']:>9.3g}{mark}"
-        )
+    print("SciPy loop: extrapolated to all cases")
+    table(found["rows"], {
+        "": "{name}", "cases": "{cases:d}", "cases/s": "{cases_per_s:.0f}",
+        "all cases, s": "{all_s:.3g}", "ratio": "{ratio:.3g}",
+    })  # fmt: skip
     seconds = ", with the gradient ".join(f"{t:.3g} s" for t in found["compile_s"])
     print(
         f"\nlife {found['life'] / 1e6:.6g} million revolutions; trace and compile"

@@ -129,7 +129,7 @@ def main(smoke):
     print(f"\nat {max(speeds):.0f}/min, fill {FILL}")
     heads = "torque [N m]", "drive [W]", "contacts", "drag", "cage max [N]", "steps"
     columns = found.friction_torque, found.power.drive, found.power.contacts
-    cage = np.max(np.abs(found.cage_force.reshape(len(load), -1)), axis=1)
+    cage = np.max(np.abs(found.cage_force.reshape(len(found.steps), -1)), axis=1)
     columns = np.array([*columns, found.power.drag, cage, found.steps])
     fastest = columns.T[int(np.argmax(speeds)) :: len(speeds)]
     rows_of(head, (f"{h:>14}" for h in heads), loads, fastest, ">14.4g")
