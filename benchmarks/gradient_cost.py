@@ -222,7 +222,8 @@ def show(found, teeth):
         "of": "{quantity}", "value, µs": "{value_us:.0f}",
         "gradient, µs": "{gradient_us:.0f}", "ratio": "{ratio:.2f}",
         "compile, s": "{value_compile_s:.1f}",
-        "gradient, s": "{gradient_compile_s:.1f}", "least error": "{least_error:.0e}", "at step": "{step:.0e}",
+        "gradient, s": "{gradient_compile_s:.1f}", "least error": "{least_error:.0e}",
+        "at step": "{step:.0e}",
     })  # fmt: skip
     print(f"\nwith respect to {rows[0]['numbers']} numbers of the design")
     for r in rows[1:] if rows[0]["quantity"] in SETS else ():
