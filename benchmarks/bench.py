@@ -42,7 +42,8 @@ def benchmark(
     Args:
         small: What `--smoke` runs.
         show: Prints the result (of a tuple, all items are its arguments).
-        plot: Gets the same and returns the figure that `--plot` writes.
+        plot: Gets the same and returns the figure that `--plot` writes, or several by
+            what is put behind the name of the file.
         wrong: Gets the same; what is wrong, if anything, printed before exit status 1.
         **notes: Help of an option, or what argparse takes.
     """
@@ -85,7 +86,10 @@ def _run(main, notes, show, plot, wrong):
         for row in [rows] if isinstance(rows, Mapping) else rows:
             print(json.dumps(row), flush=True)
     if target:
-        plot(*told).savefig(target)
+        drawn = plot(*told)
+        for name, figure in (drawn if isinstance(drawn, dict) else {"": drawn}).items():
+            end = f"_{name}{target.suffix or '.png'}" if name else target.suffix
+            figure.savefig(target.with_name(target.stem + end), dpi=figure.dpi)
     fault = wrong and wrong(*told)
     if fault:
         print(f"{parser.prog}: {fault}", file=sys.stderr)
