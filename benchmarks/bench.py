@@ -67,9 +67,10 @@ def _run(main, notes, show, plot, wrong):
         note = notes.get(name, "default: %(default)s")
         kind = {"action": "store_true"}
         if name != "smoke" and option.default is not False:
-            of, many = option.default, isinstance(option.default, list)
+            of = option.default
             kind = {"default": of, "type": str if of is None else type(of)}
-            kind |= {"nargs": "+", "type": type(of[0])} if many else {}
+            if isinstance(of, list):
+                kind |= {"nargs": "+", "type": type(of[0])}
         kind |= {"help": note} if isinstance(note, str) else note
         parser.add_argument(f"--{name}", **kind)
     given = vars(parser.parse_args())

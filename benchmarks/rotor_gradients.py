@@ -146,9 +146,9 @@ def compared(name, steps):
     rows = []
     for i, what in enumerate(names):
         for k, (number, size) in enumerate(NUMBERS.items()):
-            row = {"result": what, "number": number, "error": errors[i, k]}
+            told = {"result": what, "number": number, "error": errors[i, k]}
             missed = "" if errors[i, k] <= goal else "MISSED"
-            rows.append(row | {"missed": missed, "slope": slopes[i, k] / size})
+            rows.append(told | {"missed": missed, "slope": slopes[i, k] / size})
     table(rows, {"result": "{result}", "with respect to": "{number}",
                  "derivative": "{slope:.4e}", "error": "{error:.0e}",
                  "": "{missed}"})  # fmt: skip
