@@ -7,7 +7,8 @@ tuned. Bearings with published geometry stand one by one; of those whose geometr
 estimated from C and C0 the mean and the worst of each type say how well the estimate
 closes, no more (`--all` lists them).
 
-Run: python benchmarks/catalogue_capacity.py [--all] [--smoke] [--json]
+README: 14 published bearings: C within 1.4 % for eleven, worst 8 %; improved classes
+print 4 to 14 % more | 2 % for ten | yes
 
 Last run:
 
@@ -54,16 +55,10 @@ and barrel rollers far below what is printed are those of which only the improve
 is printed; their estimate takes it to be 5, 6, 15 and 13.5 % above ISO 281.
 """
 
-import argparse
-import json
+import numpy as np
+from bench import benchmark
 
-import jax
-
-jax.config.update("jax_enable_x64", True)
-
-import numpy as np  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 
 def differences(entry: bj.scene.CatalogueEntry) -> dict:
@@ -129,20 +124,6 @@ def show(rows: list[dict], everything: bool) -> None:
             print(_line(row))
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--all", action="store_true", help="every bearing")
-    parser.add_argument("--smoke", action="store_true", help="three bearings")
-    parser.add_argument("--json", action="store_true", help="a line of JSON each")
-    options = parser.parse_args()
-    rows = run(options.smoke)
-    if options.json:
-        for row in rows:
-            print(json.dumps(row))
-    else:
-        show(rows, options.all)
-
-
-if __name__ == "__main__":
-    main()
+@benchmark("three bearings", show, all="every bearing")
+def main(smoke, all=False):
+    return run(smoke), all

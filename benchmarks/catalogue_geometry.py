@@ -16,7 +16,8 @@ Crossed rollers: the pitch circle is printed, C gives the diameter.
 Then `estimate_geometry`, which knows bore, outside, width, C and C0 only: how far the
 diameter of its rolling elements is from that of the catalogue.
 
-Run: python benchmarks/catalogue_geometry.py [--smoke] [--json]
+README: worked out anew for 887 bearings: none differs; `estimate_geometry`, from C and
+C0 alone: element diameter within 3 to 17 % at worst | none differs | yes
 
 Last run:
 
@@ -43,23 +44,19 @@ that `estimate_geometry` misses by 5 to 16 % (16 %: a 603) are 15 with bores to 
 thin sections and six large ones.
 """
 
-import argparse
 import functools
-import json
 import math
 import tomllib
 from importlib.resources import files
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.scene.quantity import to_si  # noqa: E402
-from bearingjax.statics import row_rating as by_row  # noqa: E402
+import bearingjax as bj
+from bearingjax.scene.quantity import to_si
+from bearingjax.statics import row_rating as by_row
 
 INCH = 25.4
 SIZES = sorted(
@@ -397,21 +394,7 @@ def blind(kind, values, size) -> float | None:
     return 1e3 * float(getattr(row, name)) / size - 1.0
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--smoke", action="store_true", help="one bearing a type")
-    parser.add_argument("--json", action="store_true", help="a line of JSON each")
-    options = parser.parse_args()
-    rows = [
-        check(kind, key, values)
-        for kind, bearings in sorted(listed().items())
-        for key, values in (bearings[:1] if options.smoke else bearings)
-    ]
-    if options.json:
-        for row in rows:
-            print(json.dumps(row))
-        return
+def show(rows):
     for row in rows:
         if row["differs"]:
             print(row["designation"], row["differs"])
@@ -427,5 +410,10 @@ def main() -> None:
         print(words)
 
 
-if __name__ == "__main__":
-    main()
+@benchmark("one bearing a type", show)
+def main(smoke):
+    return [
+        check(kind, key, values)
+        for kind, bearings in sorted(listed().items())
+        for key, values in (bearings[:1] if smoke else bearings)
+    ]

@@ -10,7 +10,8 @@ worst of all rollers; the contact is evaluated in a batch of all.
 Then a whole bearing (14 rollers, logarithmic): energy, force and stiffness in a batch,
 and load solves by `sweep`, one time over the other; all on one core.
 
-Run: python benchmarks/coupled_slices.py [--json] [--smoke]
+README: 24 coupled slices: load 0.4 % off (median), 4 % at worst, independent ones 8 and
+27 %; a load solve 25 ms, 63 times theirs |  |
 
 Last run:
 
@@ -25,24 +26,18 @@ coupled, 24     0.0035  0.043  0.0001  0.046  0.0012  0.044    1691 (76)      25
 AMD EPYC, 2 cores, load average 1.6; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
 import os
-import sys
 
 os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false")
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, shuffled
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import machine, shuffled  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.contact import LineContact, response  # noqa: E402
-from bearingjax.contact.halfspace import RollerContact  # noqa: E402
+import bearingjax as bj
+from bearingjax.contact import LineContact, response
+from bearingjax.contact.halfspace import RollerContact
 
 STEEL = bj.Material(210e9, 0.3)
 MODULUS = 210e9 / 1.82
@@ -206,19 +201,12 @@ def run(smoke=False):
     return len(rows), table
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="few rollers, few cases")
-    args = parser.parse_args()
-    count, table = run(args.smoke)
-    if args.json:
-        print(json.dumps({"rollers": count, "rows": table}))
-        return 0
-    base = table[0]
+def show(found):
+    rows = found["rows"]
+    base = rows[0]
     print(f"{'':14}{'median, worst error of':^44} bearing, µs   load solve, µs")
     print(f"{'slices':14}{'load':^15}{'moment':^15}{'middle':^15}")
-    for row in table:
+    for row in rows:
         pairs = zip(row["median"], row["worst"], strict=True)
         shown = "".join(f"{m:8.4f}{w:7.3f}" for m, w in pairs)
         spent = [
@@ -226,9 +214,10 @@ def main():
             for k in ("batch", "solve")
         ]
         print(f"{row['law']:14}{shown}{spent[0]}   {spent[1]}")
-    print(f"\n{count} rollers; in brackets: over independent slices\n\n{machine()}")
-    return 0
+    print(f"\n{found['rollers']} rollers; in brackets: over independent slices")
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("few rollers, few cases", show)
+def main(smoke):
+    count, rows = run(smoke)
+    return {"rollers": count, "rows": rows}

@@ -1,4 +1,4 @@
-"""How many cases of a load spectrum become a life in a second, with its gradient too?
+"""How many cases of a load spectrum become a life in a second?
 
 A 6305 deep groove ball bearing under 10 000 random cases: radial load of 0.5 to 4 kN in
 any direction, axial load of -1 to 1 kN, tilts up to 0.5 mrad, each with its hours. Each
@@ -13,7 +13,8 @@ a NumPy bearing of the same equations (balls in series contact, L10r in NumPy), 
 at a radial displacement. It runs a part of the cases; its cases a second are those of
 that part, and its time for all of them is extrapolated.
 
-Run: python benchmarks/life_spectrum.py [--json] [--smoke]
+README: 6305, 10 000 cases in a call: 2700 a second, 1300 with the gradient; SciPy's
+root on NumPy 1000 |  |
 
 Last run:
 
@@ -29,21 +30,15 @@ slope along the clearance within 1.9e-06 of differences
 AMD EPYC, 2 cores, load average 7.1; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
-
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, compiled, shuffled, table
+from scipy.optimize import root
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.optimize import root  # noqa: E402
-from timing import compiled, machine, shuffled  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.statics import solve_case  # noqa: E402
+import bearingjax as bj
+from bearingjax.statics import solve_case
 
 CAPACITY = 23400.0
 FULL = {"cases": 10_000, "batch": 500, "loop": 100, "rounds": 3, "gradient": True}
@@ -232,14 +227,11 @@ def slope_error(value, both, numbers, cases):
 
 
 def show(found):
-    head = f"{'':<20}{'cases':>8}{'cases/s':>10}{'all cases, s':>14}{'ratio':>9}"
-    print(head)
-    for r in found["rows"]:
-        mark = " (extrapolated)" if r["name"] == "SciPy loop" else ""
-        print(
-            f"{r['name']:<20}{r['cases']:>8}{r['cases_per_s']:>10.0f}"
-            f"{r['all_s']:>14.3g}{r['ratio']:>9.3g}{mark}"
-        )
+    print("SciPy loop: extrapolated to all cases")
+    table(found["rows"], {
+        "": "{name}", "cases": "{cases:d}", "cases/s": "{cases_per_s:.0f}",
+        "all cases, s": "{all_s:.3g}", "ratio": "{ratio:.3g}",
+    })  # fmt: skip
     seconds = ", with the gradient ".join(f"{t:.3g} s" for t in found["compile_s"])
     print(
         f"\nlife {found['life'] / 1e6:.6g} million revolutions; trace and compile"
@@ -250,18 +242,6 @@ def show(found):
         print(f"slope along the clearance within {found['gradient_error']:.1e}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", action="store_true")
-    parser.add_argument("--smoke", action="store_true")
-    options = parser.parse_args()
-    found = study(SMOKE if options.smoke else FULL)
-    if options.json:
-        print(json.dumps(found))
-        return
-    show(found)
-    print(f"\n{machine()}")
-
-
-if __name__ == "__main__":
-    main()
+@benchmark("few cases", show)
+def main(smoke):
+    return study(SMOKE if smoke else FULL)

@@ -13,7 +13,8 @@ All start from the same random designs, in shuffled order, and share compiled pr
 which are warmed up before. "Above the best": smooth peak pressure over the least that
 any of them found with the edge load kept. A grid around the best design checks it.
 
-Run: python benchmarks/optimise_profile.py [--json] [--smoke] [--plot OUT]
+README: three numbers, four loads: SLSQP 14 designs (median), Rosenbrock's search 158,
+Nelder and Mead's 326; one search does not repay compiling |  |
 
 Last run:
 
@@ -39,24 +40,16 @@ several runs Rosenbrock's search took 6 to 9 times as long as SLSQP once compile
 Nelder and Mead's 11 to 20 times.)
 """
 
-import argparse
-import json
-import sys
 import time
-from pathlib import Path
 
-import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, subplots
 
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from quadrature import processor  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.optimise.design_problem import Problem  # noqa: E402
-from bearingjax.optimise.search import Ending  # noqa: E402
-from bearingjax.statics import SolveOptions  # noqa: E402
+import bearingjax as bj
+from bearingjax.optimise.design_problem import Problem
+from bearingjax.optimise.search import Ending
+from bearingjax.statics import SolveOptions
 
 REFERENCE = (1.0, 0.6, 8e-6)
 LOWER, UPPER = (0.5, 0.2, 2e-6), (8.0, 1.0, 60e-6)
@@ -259,7 +252,8 @@ def johns_gohar():
     return 1.0, 1.0, float(unit * np.log(0.5 * length / (0.3033 * float(half))))
 
 
-def show(rows, grid, best, published):
+def show(rows, best, published):
+    grid = rows[0]["grid"]
     print(
         f"{'':12}{'designs evaluated':^27}{'load':>8}{'time':>8}{'first':>8}"
         f"{'above the best':>18}{'edge':>6}\n"
@@ -288,24 +282,19 @@ def show(rows, grid, best, published):
         f" smooth peak {1e-6 * published[0]:.1f} MPa,"
         f" edge load {1e-3 * published[1]:.0f} N/mm"
         "\nleast on a grid of ±0.1 of the ranges around the best, over the best:"
-        f" {grid:+.1e}\n{len(rows)} searches; {processor()}"
+        f" {grid:+.1e}\n{len(rows)} searches"
     )
 
 
-def plot(rows, target):
+def plot(rows, *_):
     """Objective against designs evaluated, one line a search."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
     colours = {
         "slsqp": "#009E73",
         "l-bfgs-b": "#0072B2",
         "nelder-mead": "#D55E00",
         "rosenbrock": "#CC79A7",
     }
-    figure, axis = pyplot.subplots(figsize=(7.5, 4.5))
+    figure, axis = subplots(figsize=(7.5, 4.5))
     for method, colour in colours.items():
         mine = [r for r in rows if r["method"] == method]
         if not mine:
@@ -326,35 +315,16 @@ def plot(rows, target):
     axis.set_xlabel("designs evaluated until the search ended")
     axis.set_ylabel("smooth peak pressure above the best")
     axis.set_title("Profile of a roller, three numbers, several starts", loc="left")
-    axis.grid(alpha=0.3)
-    axis.spines[["top", "right"]].set_visible(False)
     axis.legend(frameon=False)
-    figure.tight_layout()
-    figure.savefig(target, dpi=150)
+    return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line per search")
-    parser.add_argument("--smoke", action="store_true", help="one start, few points")
-    parser.add_argument("--starts", type=int, default=8, help="random starts")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
-    args = parser.parse_args()
-    if args.smoke:
+@benchmark("one start, few points", show, plot, starts="random starts")
+def main(smoke, starts=8):
+    if smoke:
         rows = measure(1, 21, ("slsqp", "nelder-mead"))
-        grid, best, published = check_by_grid(rows, 21, 2)
+        grid, *more = check_by_grid(rows, 21, 2)
     else:
-        rows = measure(args.starts, 101)
-        grid, best, published = check_by_grid(rows, 101, 9)
-    if args.json:
-        for row in rows:
-            print(json.dumps({**row, "grid": grid}))
-    else:
-        show(rows, grid, best, published)
-    if args.plot:
-        plot(rows, args.plot)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        rows = measure(starts, 101)
+        grid, *more = check_by_grid(rows, 101, 9)
+    return [row | {"grid": grid} for row in rows], *more

@@ -13,7 +13,8 @@ follow by scaling, their sum is the point load. Along the edge the factor tends 
 whatever Poisson's ratio: a wedge of 90 degrees has (1/(π/2 + 1) + 1/(π/2 - 1))/(2/π)
 = 3.363 times the plane compliance of a half-space.
 
-Run: python benchmarks/quarter_space.py [--json] [--smoke] [--fit]
+README: displacement over the mirrored load's, Poisson's ratio 0.3: 1.845 where equally
+far from the face, 1.53 twenty times as far; `FreeEnds` within 0.002 |  |
 
 Last run:
 
@@ -50,22 +51,13 @@ AMD EPYC, 2 cores, load average 0.8; devices: 1 cpu; jax 0.10.1
 What `FreeEnds` uses leaves 0.002 at most.
 """
 
-import argparse
-import json
-import sys
-import time
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark
+from scipy.interpolate import CubicSpline
+from scipy.special import k0, k1
 
-import jax
-
-jax.config.update("jax_enable_x64", True)
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.interpolate import CubicSpline  # noqa: E402
-from scipy.special import k0, k1  # noqa: E402
-from timing import machine  # noqa: E402
-
-from bearingjax.contact.halfspace.ends import WEDGE, Mirrored  # noqa: E402
+from bearingjax.contact.halfspace.ends import WEDGE, Mirrored
 
 POISSON = (0.0, 0.15, 0.3, 0.4, 0.5)
 TIMES = (1.0, 2.0, 5.0, 20.0)
@@ -192,7 +184,7 @@ def run(poisson=POISSON, times=TIMES, across=ACROSS, step=STEP):
     return rows
 
 
-def fit(powers=POWERS):
+def fitted(powers=POWERS):
     """Coefficients for `FreeEnds` by least squares, and what they leave."""
     angle = np.array(ANGLE)
     terms, wanted = [], []
@@ -218,34 +210,23 @@ def fit(powers=POWERS):
     return coefficients.reshape(powers), np.abs(terms @ coefficients - wanted)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line of figures")
-    parser.add_argument("--smoke", action="store_true", help="one ratio, coarse steps")
-    parser.add_argument("--fit", action="store_true", help="coefficients instead")
-    args = parser.parse_args()
-    begin = time.perf_counter()
-    if args.fit:
-        coefficients, left = fit()
-        print(np.array2string(coefficients, separator=", ", suppress_small=True))
-        print(f"left: {left.max():.4f} at most, {left.mean():.4f} in the mean")
-        return 0
-    rows = run((0.3,), step=0.2) if args.smoke else run()
-    if args.json:
-        print(json.dumps({"rows": rows}))
-        return 0
+def show(found):
     print("found / used by FreeEnds")
     print("Poisson   y/y'   x/sqrt(y y') = " + "".join(f"{s:14g}" for s in ACROSS))
-    for row in rows:
+    for row in found["rows"]:
         pairs = zip(row["found"], row["used"], strict=True)
         values = "".join(f"{found:8.4f}/{used:5.3f}" for found, used in pairs)
         print(f"{row['poisson']:7g} {row['times']:6.2f}{'':17}{values}")
     near = round((-16.0 - LOWEST) / STEP)
     found = "  ".join(f"{orders(Edge(nu))[near]:.5f}" for nu in POISSON)
     print(f"\nits pressure on a half-space, 1/distance to: {found}")
-    print(f"\n{time.perf_counter() - begin:.0f} s\n\n{machine()}")
-    return 0
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("one ratio, coarse steps", show, fit="coefficients instead")
+def main(smoke, fit=False):
+    if fit:
+        coefficients, left = fitted()
+        print(np.array2string(coefficients, separator=", ", suppress_small=True))
+        print(f"left: {left.max():.4f} at most, {left.mean():.4f} in the mean")
+        return None
+    return {"rows": run((0.3,), step=0.2) if smoke else run()}

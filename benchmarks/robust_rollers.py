@@ -5,7 +5,7 @@ the rollers pulled apart instead: loose), tilts of the rings against each other 
 10 mrad, axial shifts up to 0.1 mm, four designs. Counted: result codes, and rollers
 whose residual, evaluated afresh, is above the tolerance that the solver claims.
 
-Run: python benchmarks/robust_rollers.py [--count 1000000] [--solver newton|bfgs|plain]
+README: 1 000 000 rollers: 0 unconverged, 0 wrong, at most 91 steps | 0 | yes
 
 Last run, 1 000 000 rollers, `--solver newton`: 0 unconverged, 0 wrong, at most 91
 steps (goal 0 and 0).
@@ -16,22 +16,17 @@ the steps (mean 19, at most 108; the trust-region method: mean 5.5 and 9.4). `--
 plain` (Newton's method) left 116, all reported as step limit.
 """
 
-import argparse
-import json
-
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, no_rows_with
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.element.energy import derivatives, response  # noqa: E402
-from bearingjax.element.equilibrium import is_loose, solve_element  # noqa: E402
-from bearingjax.numerics.linear import solve_symmetric  # noqa: E402
-from bearingjax.numerics.minimise import AbstractMinimiser, first_state  # noqa: E402
+import bearingjax as bj
+from bearingjax.element.energy import derivatives, response
+from bearingjax.element.equilibrium import is_loose, solve_element
+from bearingjax.numerics.linear import solve_symmetric
+from bearingjax.numerics.minimise import AbstractMinimiser, first_state
 
 CHUNK = 5000
 
@@ -166,16 +161,9 @@ def run(count, solver, seed=0, names=()):
     return rows
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=1_000_000)
-    parser.add_argument("--solver", choices=SOLVERS, default="newton")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--smoke", action="store_true", help="a few hundred rollers")
-    args = parser.parse_args()
-    for row in run(400 if args.smoke else args.count, args.solver, args.seed):
-        print(json.dumps(row))
-
-
-if __name__ == "__main__":
-    main()
+@benchmark(
+    "a few hundred rollers", no_rows_with("unconverged", "silently_wrong"),
+    solver={"choices": SOLVERS},
+)  # fmt: skip
+def main(smoke, count=1_000_000, solver="newton", seed=0):
+    return run(400 if smoke else count, solver, seed)

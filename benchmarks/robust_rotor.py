@@ -15,7 +15,8 @@ not found, or lies further off, the branch is followed between them once more wi
 of a sixteenth of their distance, and if that fails of a 64th: it must arrive at the
 second one. Else it was a jump.
 
-Run: python benchmarks/robust_rotor.py [--count N] [--seed S] [--smoke] [--json]
+README: 50 random rotors: 45 branches end at their limit, 5 say that 800 points were too
+few; residuals at most 4e-10; no jump | 1e-8; no jump | yes
 
 Last run:
 
@@ -33,25 +34,17 @@ jumps that were not seen: 0 (at most 0): met
 AMD EPYC, 2 cores, load average 9.1; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
-import sys
 import time
 from collections import Counter
-from pathlib import Path
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, verdict
+from vibrations import ROTOR, grooves
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-from vibrations import ROTOR, grooves  # noqa: E402
-
-from bearingjax.rotor.nonlinear import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (
     Ending,
     FixedAngle,
     HarmonicBalance,
@@ -61,7 +54,7 @@ from bearingjax.rotor.nonlinear import (  # noqa: E402
     rigid_rotor,
     simulate,
 )
-from bearingjax.rotor.nonlinear.continuation import place  # noqa: E402
+from bearingjax.rotor.nonlinear.continuation import place
 
 RANGE = 1.3, 0.5
 SOLVED, ASIDE, FINER = 1e-8, 0.2, (16, 64)
@@ -217,25 +210,12 @@ def show(rows):
     print(verdict("largest residual, evaluated anew", worst, SOLVED))
     jumps = float(sum(row["jumps"] for row in rows))
     print(verdict("jumps that were not seen", jumps, 0.0))
-    print(machine())
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", action="store_true", help="one line")
-    parser.add_argument("--smoke", action="store_true", help="two rotors, few points")
-    args = parser.parse_args()
-    method = HarmonicBalance(7, 64, steps=32)
-    count, points = args.count, 800
-    if args.smoke:
+@benchmark("two rotors, few points", show)
+def main(smoke, count=50, seed=0):
+    method, points = HarmonicBalance(7, 64, steps=32), 800
+    if smoke:
         method, count, points = HarmonicBalance(2, 8, steps=8), 2, 40
-    rng = np.random.default_rng(args.seed)
-    rows = [one(rng, method, points) for _ in range(count)]
-    print(json.dumps(rows)) if args.json else show(rows)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    rng = np.random.default_rng(seed)
+    return [one(rng, method, points) for _ in range(count)]

@@ -1,4 +1,4 @@
-"""Does every run end, or say why not? Random bearings, oils, speeds and loads.
+"""Does every run of skidding end, or say why not?
 
 300 runs of `skid.simulate`: five balls with a cage, designs, oil temperatures of -40 to
 200 °C, drag up to an immersed bearing, pockets without clearance, from still stand or
@@ -10,7 +10,8 @@ power balance is out by more than the tolerance, 1e-4 of the work or of the kine
 energy of balls that roll at the fastest speed, or if numbers follow on a time that was
 not reached.
 
-Run: python benchmarks/robust_skid.py [--smoke] [--first K] [--runs N]
+README: 300 runs: 260 end, 34 need more than 5000 steps, 6 say that no step is small
+enough; none wrong | none wrong | yes
 
 Last run:
 
@@ -23,34 +24,17 @@ are Newtonian films of oils that pressure has made a glass, where no step is sma
 enough.
 """
 
-import argparse
 import collections
-import sys
 import time
 
-import jax
+import numpy as np
+from bench import benchmark
 
-jax.config.update("jax_enable_x64", True)
-
-import numpy as np  # noqa: E402
-from timing import machine  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax import skid  # noqa: E402
-from bearingjax.lubrication import (  # noqa: E402
-    Eyring,
-    LimitingStress,
-    Newtonian,
-    mil_l_23699,
-)
-from bearingjax.numerics import Result  # noqa: E402
-from bearingjax.skid import (  # noqa: E402
-    Cage,
-    Drag,
-    LoadHistory,
-    SkidModel,
-    SpeedTable,
-)
+import bearingjax as bj
+from bearingjax import skid
+from bearingjax.lubrication import Eyring, LimitingStress, Newtonian, mil_l_23699
+from bearingjax.numerics import Result
+from bearingjax.skid import Cage, Drag, LoadHistory, SkidModel, SpeedTable
 
 BALLS = 5
 FREE = ["ux", "uy", "uz", "gx", "gy"]
@@ -127,33 +111,21 @@ def judged(found, rolling):
     return code.label, ""
 
 
-def main():
-    """Print the counts."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--smoke", action="store_true")
-    parser.add_argument("--first", type=int, default=0, metavar="K")
-    parser.add_argument("--runs", type=int, default=300, metavar="N")
-    args = parser.parse_args()
-    runs = 2 if args.smoke else args.runs
+@benchmark("two")
+def main(smoke, first=0, runs=300):
+    runs = 2 if smoke else runs
     codes, wrong, begin = collections.Counter(), [], time.perf_counter()
-    for k in range(args.first, args.first + runs):
+    for k in range(first, first + runs):
         rng = np.random.default_rng(k)
-        kind = KINDS[0] if args.smoke else KINDS[k % 2]
+        kind = KINDS[0] if smoke else KINDS[k % 2]
         laws = Newtonian(), LimitingStress(0.08), Eyring(5e6)
-        one = model(rng, laws[0] if args.smoke else laws[k % 3])
+        one = model(rng, laws[0] if smoke else laws[k % 3])
         load, speed, duration = given(rng, kind, float(one.bearing.pitch_diameter))
         found = skid.simulate(
-            one,
-            load,
-            speed=speed,
-            duration=duration,
-            free=FREE,
-            n_times=21,
-            tolerance=1e-4,
-            max_steps=5_000,
+            one, load, speed=speed, duration=duration, free=FREE, n_times=21,
+            tolerance=1e-4, max_steps=5_000, throw=False,
             places=None if kind == "balanced" else 48,
-            throw=False,
-        )
+        )  # fmt: skip
         pitch = 0.4 * float(one.bearing.pitch_diameter) * np.abs(speed.inner).max()
         mass = np.pi / 6.0 * 7850.0 * float(one.bearing.ball_diameter) ** 3
         label, fault = judged(found, 0.5 * BALLS * mass * (0.5 * pitch) ** 2)
@@ -164,9 +136,4 @@ def main():
     count = ", ".join(f"{n} {label}" for label, n in codes.most_common())
     seconds = time.perf_counter() - begin
     print(f"{runs} runs in {seconds:.0f} s: {count}; wrong: {wrong or 'none'}")
-    print(machine())
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return not wrong

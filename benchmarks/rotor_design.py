@@ -9,7 +9,8 @@ larger of both bearing loads at the top speed is least: four variables and one m
 the largest load, by SLSQP of SciPy with gradients by automatic differentiation through
 static equilibrium (balls with inertia, at speeds from rest on) and critical speeds.
 
-Run: python benchmarks/rotor_design.py [--smoke] [--json]
+README: first critical speed 20 % above the range at 880 N, 0.7 % less than with the
+first angles; 10 designs, gradients to 1e-9 | 1.2 times; 1e-6 | yes
 
 Last run:
 
@@ -38,22 +39,15 @@ gradients against differences: 1.24e-09 (at most 1e-06): met
 AMD EPYC, 2 cores, load average 2.8; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
-import time
-
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, timed, verdict
+from scipy.optimize import brentq, minimize
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.optimize import brentq, minimize  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.speed_support import chebyshev_analysis  # noqa: E402
+import bearingjax as bj
+from bearingjax.rotor.speed_support import chebyshev_analysis
 
 RPM = np.pi / 30.0
 WORKING = 15_000.0 * RPM, 22_000.0 * RPM
@@ -205,47 +199,28 @@ def shown(title, x):
     return value
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--smoke", action="store_true")
-    parser.add_argument("--json", action="store_true")
-    options = parser.parse_args()
-    start = np.array([15.0, 15.0, 8.0, 8.0])
-    begin = time.perf_counter()
-    x, found, evaluations = optimised(start, 2 if options.smoke else 100)
-    seconds = time.perf_counter() - begin
-    if options.json:
-        print(json.dumps({"x": list(x), "load": 1e3 * found.x[4], "seconds": seconds}))
-        return
+def show(found, start, x, evaluations):
     shown("before", start)
     after = shown("after", x)
     pressed = brentq(lambda um: clear_by(pressed_by(start, um)), 8.0, 25.0, xtol=1e-3)
     plain = shown("first angles, pressed until clear", pressed_by(start, pressed))
     print(
-        f"{found.message}; {evaluations} designs with their gradients in"
-        f" {seconds:.0f} s, compiling included"
+        f"{found['ended']}; {evaluations} designs with their gradients in"
+        f" {found['seconds']:.0f} s, compiling included"
     )
     settled = bj.rotor.static_equilibrium(spindle(jnp.asarray(x)), LOADS, after[2])
     again = float(bj.rotor.critical_speeds(settled.rotor, count=1).speed[0])
     print(f"first critical speed, settled there: {again / after[2] - 1.0:+.1e} of it")
-    print(
-        verdict(
-            "first critical speed over the range's top",
-            after[2] / WORKING[1],
-            CLEAR * (1 - 1e-6),
-            False,
-        )
-    )
-    print(
-        verdict(
-            "largest load over that of the first angles, pressed until clear",
-            after[:2].max() / plain[:2].max(),
-            1.0,
-        )
-    )
+    over, goal = after[2] / WORKING[1], CLEAR * (1 - 1e-6)
+    print(verdict("first critical speed over the range's top", over, goal, False))
+    what = "largest load over that of the first angles, pressed until clear"
+    print(verdict(what, after[:2].max() / plain[:2].max(), 1.0))
     print(verdict("gradients against differences", difference(x), 1e-6))
-    print(machine())
 
 
-if __name__ == "__main__":
-    main()
+@benchmark("two steps", show)
+def main(smoke):
+    start = np.array([15.0, 15.0, 8.0, 8.0])
+    seconds, (x, found, n) = timed(lambda: optimised(start, 2 if smoke else 100))
+    told = {"x": list(x), "load": 1e3 * found.x[4], "seconds": seconds}
+    return told | {"ended": found.message}, start, x, n

@@ -13,7 +13,8 @@ by both methods on their own. Time: 200 points of a branch with their multiplier
 beside SciPy (`solve_ivp` DOP853 with rtol 1e-8 and `fsolve`), forces in NumPy for all
 balls at once, each orbit from its neighbour; fewer orbits are timed and scaled.
 
-Run: python benchmarks/rotor_response.py [--smoke] [--json] [--plot OUT.png]
+README: both methods within 2.3e-5 in amplitude, 1.4e-6 at folds; 14 and 84 times faster
+than SciPy | 1e-4; 1e-3; 10 and 50 times | yes
 
 Last run:
 
@@ -62,34 +63,26 @@ unstable parts begin and end at folds and Neimark-Sacker points, and x and z tak
 in what shakes along y.
 """
 
-import argparse
-import json
-import sys
 import time
-from pathlib import Path
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, shades, subplots, verdict
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+from vibrations import grooves, rotor
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.integrate import solve_ivp  # noqa: E402
-from scipy.optimize import fsolve  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-from vibrations import grooves, rotor  # noqa: E402
-
-from bearingjax.rotor.nonlinear import (  # noqa: E402
+from bearingjax.rotor.nonlinear import (
     HarmonicBalance,
     Shooting,
     Steps,
     follow,
     solve_orbit,
 )
-from bearingjax.rotor.nonlinear.continuation import place  # noqa: E402
-from bearingjax.rotor.nonlinear.orbit import amplitudes  # noqa: E402
+from bearingjax.rotor.nonlinear.continuation import place
+from bearingjax.rotor.nonlinear.orbit import amplitudes
 
 ANGLES = (12, 15, 26, 36, 40)
 NAMES = ("x at A", "y at A", "x at B", "y at B", "z")
@@ -293,7 +286,7 @@ def matched(ours, theirs):
     return worst
 
 
-def show(r):
+def show(r, *_):
     print("angle  natural   peak of y at B      z     points  unstable  residual")
     for k, row in enumerate(r["branches"]):
         b = row["balance"]
@@ -345,7 +338,6 @@ def show(r):
         print(
             ", ".join(f"{label} {error:.0e}" for label, error in s[f"precision_{name}"])
         )
-    print(machine())
 
 
 def draw(ax, branch, freedom, color, label):
@@ -353,11 +345,7 @@ def draw(ax, branch, freedom, color, label):
     hertz, size = branch.frequency / (2 * np.pi), 1e6 * branch.amplitude[:, freedom]
     ax.plot(hertz, size, ":", color=color, lw=1.2)
     ax.plot(
-        hertz,
-        np.where(branch.stable, size, np.nan),
-        color=color,
-        lw=1.8,
-        label=label,
+        hertz, np.where(branch.stable, size, np.nan), color=color, lw=1.8, label=label
     )
     for event in branch.events:
         mark = {"fold": "o", "neimark_sacker": "s"}.get(event.kind, "^")
@@ -365,15 +353,10 @@ def draw(ax, branch, freedom, color, label):
         ax.plot(*at, mark, color=color, ms=5, mfc="white")
 
 
-def plot(curves, more, target):
-    import matplotlib
+def plot(_, curves, more):
+    figure, axes = subplots(1, 2, figsize=(13, 5.2), layout="constrained", dpi=140)
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 2, figsize=(13, 5.2), layout="constrained")
-
-    colors = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(curves)))
+    colors = shades(np.linspace(0.0, 0.85, len(curves)))
     for color, (angle, branch) in zip(colors, curves.items(), strict=True):
         draw(axes[0], branch, 3, color, f"{angle}°")
     for k, name in enumerate(NAMES):
@@ -384,35 +367,14 @@ def plot(curves, more, target):
         ax.set_xlabel("frequency [Hz]; dotted: unstable")
         ax.set_ylabel("half of peak to peak [µm]")
         ax.legend(frameon=False, fontsize=9)
-        ax.grid(alpha=0.3)
-        ax.spines[["top", "right"]].set_visible(False)
-    figure.savefig(target, dpi=140)
+    return figure
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line")
-    parser.add_argument("--smoke", action="store_true", help="one angle, few points")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
-    args = parser.parse_args()
-    if args.smoke:
+@benchmark("one angle, few points", show, plot)
+def main(smoke):
+    if smoke:
         small = HarmonicBalance(3, 16, steps=16), Shooting(16)
-        given = (36,), *small, 30, 4, (*small, 30, 1, False)
-    else:
-        fine = HarmonicBalance(15, 192, steps=96), Shooting(192)
-        given = (
-            ANGLES,
-            *fine,
-            400,
-            40,
-            (HarmonicBalance(5, 32, steps=24), Shooting(24), 200, 20, True),
-        )
-    result, curves, more = measure(*given)
-    print(json.dumps(result)) if args.json else show(result)
-    if args.plot:
-        plot(curves, more, args.plot)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        return measure((36,), *small, 30, 4, (*small, 30, 1, False))
+    fine = HarmonicBalance(15, 192, steps=96), Shooting(192)
+    timing = HarmonicBalance(5, 32, steps=24), Shooting(24), 200, 20, True
+    return measure(ANGLES, *fine, 400, 40, timing)

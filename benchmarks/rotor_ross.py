@@ -17,7 +17,8 @@ inertia, and periodic orbits with the true force of every ball, which may lift o
 which the linear amplitude of the disc differs by more than 10 % from that of a stable
 orbit are listed.
 
-Run: python benchmarks/rotor_ross.py [--smoke]
+README: within 2e-12 of ROSS 2.3; with 10 g mm unbalance on true bearings up to 37 %
+wrong, from 9312 to 9461 rpm | 1e-6 | yes
 
 Last run:
 
@@ -49,28 +50,15 @@ The last table was run by itself. In these bearings 10 g mm bend the resonance u
 by 0.6 %, half of its width, and what is linear is up to 37 % off on both sides of it.
 """
 
-import argparse
 import importlib
-import sys
 import warnings
-from pathlib import Path
 
-import jax
+import numpy as np
+from bench import benchmark, verdict
+from rotor.machines import STEEL, friswell
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import numpy as np  # noqa: E402
-from rotor.machines import STEEL, friswell  # noqa: E402
-from timing import machine, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax.rotor.nonlinear import (  # noqa: E402
-    HarmonicBalance,
-    Steps,
-    follow,
-    vibrating_rotor,
-)
+import bearingjax as bj
+from bearingjax.rotor.nonlinear import HarmonicBalance, Steps, follow, vibrating_rotor
 
 GOAL = 1e-6
 SHEAR = float(STEEL.elastic_modulus) / (2.0 * (1.0 + float(STEEL.poisson_ratio)))
@@ -302,20 +290,12 @@ def linear_against_true(smoke):
         )
 
 
-def main():
-    """Print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--smoke", action="store_true")
-    smoke = parser.parse_args().smoke
+@benchmark("few speeds and points")
+def main(smoke):
     worst = beside_ross(smoke)
     if worst is not None:
         print(verdict("largest difference from ROSS", worst, GOAL))
     print()
     over_speed(smoke)
     linear_against_true(smoke)
-    print(machine())
-    return 0 if worst is None or worst <= GOAL else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return worst is None or worst <= GOAL

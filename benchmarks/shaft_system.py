@@ -16,7 +16,8 @@ the rollers, chosen by Adam on the gradient of the logarithm of the life of all 
 under three torques, with a penalty where the flanks of the teeth stand more than 60
 µrad askew; projected on bounds.
 
-Run: python benchmarks/shaft_system.py [--design] [--smoke] [--json]
+README: four bearings, 1000 cases: 44 s, SciPy's root 13 times as long; life by 40
+gradients 38 400 to 49 400 h | 1e-6; bound kept | yes
 
 Last run:
 
@@ -36,25 +37,21 @@ gradient against differences: 3.37e-07 (at most 1e-06): met
 AMD EPYC, 2 cores, load average 4 to 8; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
 import json
 import time
 from typing import Any
 
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+import optax
+from bench import benchmark, timed, verdict
+from scipy.optimize import root
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-import optax  # noqa: E402
-from scipy.optimize import root  # noqa: E402
-from timing import machine, timed, verdict  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
-from bearingjax import shafts  # noqa: E402
-from bearingjax.statics.life import LifeConditions  # noqa: E402
+import bearingjax as bj
+from bearingjax import shafts
+from bearingjax.statics.life import LifeConditions
 
 BEARING = bj.DeepGrooveBallBearing(
     8, 0.065, 0.015081, outer_osculation=0.53, inner_osculation=0.52,
@@ -410,38 +407,34 @@ def described(x):
     }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--smoke", action="store_true")
-    parser.add_argument("--design", action="store_true", help="question (c) alone")
-    parser.add_argument("--json", action="store_true")
-    args = parser.parse_args()
-    if args.smoke:
-        print(json.dumps(cases(4, 1)))
+def show(parts):
+    found = {}
+    for row in parts:
+        print(json.dumps(row), flush=True)
+        found |= row
+    if "load differs by" in found:
+        print(verdict("loads of SciPy and ours", found["load differs by"], 1e-6))
+    if "after" not in found:
         return
-    row: dict[str, Any] = {}
-    if not args.design:
-        row = cases(1000, 20)
-        print(json.dumps({k: float(f"{v:.3g}") for k, v in row.items()}), flush=True)
-        for size in sizes(64, [(1, 3), (2, 3), (4, 3), (1, 100)]):
-            shown = {k: float(f"{v:.3g}") for k, v in size.items()}
-            print(json.dumps(shown), flush=True)
-    begin = described(START)
-    print(json.dumps({"before": begin}), flush=True)
-    x, seconds, error = improved(40)
-    after = described(x)
-    print(json.dumps({"after": after, "seconds": round(seconds, 1)}), flush=True)
-    if args.json:
-        return
-    if not args.design:
-        print(verdict("loads of SciPy and ours", row["load differs by"], 1e-6))
-    gained = after["system h"] / begin["system h"]
+    before, after = found["before"], found["after"]
+    gained = after["system h"] / before["system h"]
     print(verdict("life of the system, times", gained, 1.0, False))
     worst = max(map(abs, after["misalignment urad"]))
     print(verdict("misalignment [urad]", worst, 1e6 * ALLOWED * 1.02))
-    print(verdict("gradient against differences", error, 1e-6))
-    print(machine())
+    print(verdict("gradient against differences", found["gradient error"], 1e-6))
 
 
-if __name__ == "__main__":
-    main()
+@benchmark("four cases", show, design="question (c) alone")
+def main(smoke, design=False):
+    def told(row):
+        return {k: float(f"{v:.3g}") for k, v in row.items()}
+
+    if smoke:
+        yield cases(4, 1)
+        return
+    if not design:
+        yield told(cases(1000, 20))
+        yield from map(told, sizes(64, [(1, 3), (2, 3), (4, 3), (1, 100)]))
+    yield {"before": described(START)}
+    x, seconds, error = improved(40)
+    yield {"after": described(x), "seconds": round(seconds, 1), "gradient error": error}

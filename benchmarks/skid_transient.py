@@ -1,4 +1,4 @@
-"""What does an error cost in the way to skidding? Beside SciPy on the same equations.
+"""What does an error cost in the way to skidding, beside SciPy?
 
 The bearing of Han & Chu, 12 balls and a cage, 65 states with the integrated powers,
 from rolling on: 40 N axial for 100 ms; 600 N axial and 400 N radial for 20 ms, where
@@ -13,7 +13,8 @@ against the motion in time 2 s later (axial), against five times as many places 
 the orbit (both loads). Then 64 loads in one call of ours, load solves and tables
 included.
 
-Run: python benchmarks/skid_transient.py [--smoke] [--plot OUT.png]
+README: 12 balls and a cage: SciPy's stiff solvers take 26 to 36 times as long; 64 loads
+at once 29 to 40 times | 10 times; 50 times for 64 | **missed** for 64: 29; rest yes
 
 Last run (another process on the other core):
 
@@ -49,31 +50,24 @@ long as ours (goal 10). 64 loads were to be 50 times faster: missed. The end sta
 timed before its loads followed the orbit.
 """
 
-import argparse
 import statistics
-import sys
 from functools import partial
-from pathlib import Path
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, shuffled, subplots, timed
+from han_chu import ELEMENT, FREE, MODEL, SPEED
+from scipy.integrate import solve_ivp
 
-jax.config.update("jax_enable_x64", True)
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-import numpy as np  # noqa: E402
-from han_chu import ELEMENT, FREE, MODEL, SPEED  # noqa: E402
-from scipy.integrate import solve_ivp  # noqa: E402
-from timing import machine, shuffled, timed  # noqa: E402
-
-from bearingjax import skid  # noqa: E402
-from bearingjax.numerics.types import as_real  # noqa: E402
-from bearingjax.skid.beginning import surroundings  # noqa: E402
-from bearingjax.skid.integration import Options, integrated  # noqa: E402
-from bearingjax.skid.load_table import _as_row, _pieces  # noqa: E402
-from bearingjax.skid.ring_speed import as_table  # noqa: E402
-from bearingjax.statics.load import solve_load  # noqa: E402
+from bearingjax import skid
+from bearingjax.numerics.types import as_real
+from bearingjax.skid.beginning import surroundings
+from bearingjax.skid.integration import Options, integrated
+from bearingjax.skid.load_table import _as_row, _pieces
+from bearingjax.skid.ring_speed import as_table
+from bearingjax.statics.load import solve_load
 
 CASES = {
     "axial": ([0.0, 0.0, 40.0, 0.0, 0.0, 0.0], 0.1, 1),
@@ -275,14 +269,9 @@ def steady_row(name, smoke):
     return "end state", error, median
 
 
-def plot(tables, target):
+def plot(_, tables):
     """Error against time."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(
+    figure, axes = subplots(
         1, len(tables), figsize=(5.5 * len(tables), 4.3), squeeze=False
     )
     looks = {
@@ -299,11 +288,8 @@ def plot(tables, target):
         ax.set_title(name, loc="left")
         ax.set_xlabel("time [ms]")
         ax.set_ylabel("error of the orbital speed [1]")
-        ax.grid(alpha=0.3)
-        ax.spines[["top", "right"]].set_visible(False)
     axes[0][0].legend(frameon=False, fontsize=9)
-    figure.tight_layout()
-    figure.savefig(target, dpi=150)
+    return figure
 
 
 def batch(name, tolerance, scipy_tolerance, count, rounds, smoke):
@@ -333,13 +319,8 @@ def batch(name, tolerance, scipy_tolerance, count, rounds, smoke):
     )
 
 
-def main():
-    """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--smoke", action="store_true")
-    parser.add_argument("--plot", metavar="OUT", type=Path, help="write a picture")
-    args = parser.parse_args()
-    smoke = args.smoke
+@benchmark("one case, one tolerance", plot=plot)
+def main(smoke):
     names = ["axial"] if smoke else list(CASES)
     tolerances = [1e-5] if smoke else [1e-4, 1e-6, 1e-8]
     rounds = 1 if smoke else 3
@@ -347,12 +328,6 @@ def main():
     tables = {name: one_run(name, tolerances, rounds, smoke) for name in names}
     for name, rows in tables.items():
         rows.append(steady_row(name, smoke))
-    if args.plot:
-        plot(tables, args.plot)
     for name in names:
         batch(name, 1e-5, 1e-8, 2 if smoke else 64, rounds, smoke)
-    print(machine())
-
-
-if __name__ == "__main__":
-    main()
+    return None, tables

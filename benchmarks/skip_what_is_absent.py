@@ -15,7 +15,8 @@ Then sweeps of load solves, where outputs are what may be absent, and the moment
 loads: microseconds a case, shortest of the rounds; the first
 call, which compiles, apart.
 
-Run: python benchmarks/skip_what_is_absent.py [--json] [--smoke]
+README: one call without ribs and speed 0.92 of the time; sweeps for displacement and
+stiffness alone 0.8, loads without moments 0.3 |  |
 
 Last run:
 
@@ -42,25 +43,19 @@ displacement, loads without moments         473.0   0.25         0.3
 AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """
 
-import argparse
-import json
 import random
 import re
-import sys
 import time
 from functools import partial
 from typing import NamedTuple
 
+import equinox as eqx
 import jax
+import jax.numpy as jnp
+import numpy as np
+from bench import benchmark, shuffled, table, timed
 
-jax.config.update("jax_enable_x64", True)
-
-import equinox as eqx  # noqa: E402
-import jax.numpy as jnp  # noqa: E402
-import numpy as np  # noqa: E402
-from timing import machine, shuffled, timed  # noqa: E402
-
-import bearingjax as bj  # noqa: E402
+import bearingjax as bj
 
 FAR_RIB = bj.Rib(0.3, 1.5e-3, 1e-3)
 SPEED = bj.Speed(inner=3000 * 2 * np.pi / 60)
@@ -281,49 +276,28 @@ def sweeps(rounds):
     ]
 
 
-def show_sweeps(rows):
-    print(f"\n{'load solves, kept':40}{'µs/case':>9}{'ratio':>7}{'compile, s':>12}")
-    for r in rows:
-        print(f"{r['sweep']:40}{r['us']:9.1f}{r['ratio']:7.2f}{r['compile_s']:12.1f}")
+def show(rows, swept):
+    table(rows, {
+        "variant": "{variant}", "loaded": "{loaded_rollers:d}", "steps": "{steps:d}",
+        "hot, µs": "{hot_us:.0f}", "median": "{median_us:.0f}", "ratio": "{ratio:.2f}",
+        f"of {BATCH}, µs": "{batch_us:.1f}", "kernels": "{kernels:d}", 
+        "trace, s": "{trace_s:.2f}", "compile, s": "{compile_s:.2f}",
+    })  # fmt: skip
+    print()
+    table(swept, {
+        "load solves, kept": "{sweep}", "µs/case": "{us:.1f}", "ratio": "{ratio:.2f}",
+        "compile, s": "{compile_s:.1f}",
+    })  # fmt: skip
 
 
-def show(rows):
-    print(
-        f"{'':25}{'loaded':>7}{'':>6}{'hot, µs':^14}{'ratio':>5}{'of ' + str(BATCH):>8}"
-        f"{'':>8}{'trace':>7}{'compile':>8}\n"
-        f"{'variant':25}{'rollers':>7}{'steps':>6}{'min':>7}{'median':>7}"
-        f"{'':>5}{'µs each':>8}{'kernels':>8}{'s':>7}{'s':>8}"
-    )
-    for r in rows:
-        print(
-            f"{r['variant']:25}{r['loaded_rollers']:7d}{r['steps']:6d}"
-            f"{r['hot_us']:7.0f}{r['median_us']:7.0f}{r['ratio']:5.2f}{r['batch_us']:8.1f}"
-            f"{r['kernels']:8d}{r['trace_s']:7.2f}{r['compile_s']:8.2f}"
-        )
+def unsolved(rows, _):
+    others = {r["result"] for r in rows} - {"converged"}
+    return others and "a variant did not converge."
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="one line per result")
-    parser.add_argument("--smoke", action="store_true", help="two variants")
-    args = parser.parse_args()
-    if args.smoke:
-        rows, swept = measure(SMOKE, rounds=5, block=20, repeats=1), []
-    else:
-        rows = measure(tuple(VARIANTS), rounds=40, block=50, repeats=3)
-        swept = sweeps(rounds=5)
-    if args.json:
-        for r in [*rows, *swept]:
-            print(json.dumps(r))
-    else:
-        show(rows)
-        show_sweeps(swept)
-        print(f"\n{machine()}")
-    if any(r["result"] != "converged" for r in rows):
-        print("skip_what_is_absent: a variant did not converge.", file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@benchmark("two variants", show, wrong=unsolved)
+def main(smoke):
+    if smoke:
+        return measure(SMOKE, rounds=5, block=20, repeats=1), []
+    rows = measure(tuple(VARIANTS), rounds=40, block=50, repeats=3)
+    return rows, sweeps(rounds=5)

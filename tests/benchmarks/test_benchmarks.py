@@ -9,12 +9,13 @@ import shutil
 import sys
 from pathlib import Path
 
+import bench
 import jax
 import pytest
 import robust_rollers
 
 FOLDER = Path(__file__).parent.parent.parent / "benchmarks"
-HELPERS = {"timing.py", "peers.py"}
+HELPERS = {"bench.py", "peers.py"}
 SCRIPTS = sorted({p.name for p in FOLDER.glob("*.py")} - HELPERS)
 
 
@@ -65,6 +66,13 @@ def test_benchmark_script_docstring_and_help(script):
     first = (FOLDER / script).read_text().splitlines()[0]
     assert first.startswith('"""') and "?" in first
     assert "usage" in run(script, "--help")
+
+
+def test_readme_has_the_rows_of_all_scripts():
+    """`python benchmarks/bench.py` writes them."""
+    text = (FOLDER / "README.md").read_text()
+    assert bench.readme(text) == text
+    assert all(f"({script})" in text for script in SCRIPTS)
 
 
 NEED_C = {
