@@ -389,7 +389,7 @@ class FormErrors(eqx.Module):
                     allowed = f"below {most:.4g} m in size together on the {part}"
                     check("Harmonics", "amplitude", high < most, allowed, high, "m")
 
-    def met(
+    def deviations(
         self,
         surfaces: "Surfaces",
         azimuth: Float[Array, " element"],

@@ -71,7 +71,7 @@ class Ball(AbstractRollingElement):
     def axes(self, azimuth):
         return self.geometry.axes(azimuth)
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         of_contacts = jnp.repeat(heights, len(self.grooves.on_outer) // 2)
         reach = self.grooves.reach - of_contacts
         grooves = dataclasses.replace(self.grooves, reach=reach)

@@ -29,7 +29,7 @@ from .equilibrium import Near
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed
 from .kinematics import AbstractKinematics
-from .row import Place, Row
+from .row import Row, RowPlacement
 from .solved_row import RowResults
 
 State = tuple[Near, ...]
@@ -426,7 +426,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         def one(deviation):
             found = self.choices.rolling_element(part, speed, deviation.diameter)
             raceway = deviation.raceway
-            return found if raceway is None else found.raised(raceway[:, 2])
+            return found if raceway is None else found.with_heights(raceway[:, 2])
 
         unlike = deviation.makes_unlike
         element = jax.vmap(one)(deviation) if unlike else one(deviation)
@@ -438,7 +438,9 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             sign = none + (-1.0 if part.mirrored else 1.0)
             itself = element.places_itself
             position, offset = part.position, sign * part.inner_offset
-            place = Place(*((none, sign, none) if itself else (position, sign, offset)))
+            place = RowPlacement(
+                *((none, sign, none) if itself else (position, sign, offset))
+            )
         radius = 0.5 * bearing.pitch_diameter
         azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
         return Row(element, azimuth, shift, ratio, radius, place, part.spring, unlike)

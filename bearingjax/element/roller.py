@@ -56,10 +56,10 @@ class Roller(AbstractRollingElement):
     def axes(self, azimuth):
         return self.constants.to_axes @ section_matrix(azimuth)
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         constants = self.constants
         constants = dataclasses.replace(constants, gap=constants.gap - heights)
-        geometry = self.geometry.raised(heights)
+        geometry = self.geometry.with_heights(heights)
         return dataclasses.replace(self, constants=constants, geometry=geometry)
 
     def coordinates(self, rings, x):

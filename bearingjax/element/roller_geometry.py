@@ -69,7 +69,7 @@ class AbstractRollerGeometry(eqx.Module):
         raise NotImplementedError
 
     @abc.abstractmethod
-    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
         """Return the geometry with material added along the normals of both raceways.
 
         Args:
@@ -111,7 +111,7 @@ class LinearisedRoller(AbstractRollerGeometry):
     def is_linear(self):
         return True
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         more = jnp.ravel(jnp.stack([heights, 0.0 * heights], axis=1))
         return dataclasses.replace(self, start=self.start.at[:4].add(more))
 
@@ -195,7 +195,7 @@ class FiniteRoller(AbstractRollerGeometry):
     def is_linear(self):
         return False
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         gap = self.raceways.gap
         # Of the points, the first is the middle.
         gap = gap - heights if gap.ndim == 1 else gap.at[:, 0].add(-heights)

@@ -80,7 +80,7 @@ class AbstractRollingElement(eqx.Module):
             azimuth: Azimuth of the rolling element [rad].
         """
 
-    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
         """Return the element with material added in its contacts, along their normals.
 
         Args:
@@ -90,8 +90,8 @@ class AbstractRollingElement(eqx.Module):
             TypeError: If the class does not say how.
         """
         raise TypeError(
-            f"{type(self).__name__} has no method `raised`, which `raceway_deviation`"
-            " needs."
+            f"{type(self).__name__} has no method `with_heights`, which"
+            " `raceway_deviation` needs."
         )
 
     @abc.abstractmethod

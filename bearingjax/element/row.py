@@ -24,19 +24,19 @@ _UZ = FREEDOMS.index("uz")
 _TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
 
 
-class Place(NamedTuple):
-    """Position of a row in its set.
+class RowPlacement(NamedTuple):
+    """Position of a row in its set; of several rows, with an axis.
 
     Attributes:
         position: z of the origin of the row's elements [m].
-        sign: -1 for a reversed row, else 1.
-        offset: Axial place of the inner ring against the outer one, in the row's own
-            axes [m].
+        sign: -1 for a mirrored row, else 1 [1].
+        offset: Axial position of the inner ring relative to the outer one, in the
+            row's own axes [m].
     """
 
-    position: Scalar
-    sign: Scalar
-    offset: Scalar
+    position: Float[Array, "..."]
+    sign: Float[Array, "..."]
+    offset: Float[Array, "..."]
 
 
 class Row(eqx.Module):
@@ -60,7 +60,7 @@ class Row(eqx.Module):
     shift: Float[Array, "element 2 2"] | None
     ratio: Scalar
     pitch_radius: Scalar
-    place: Place | None
+    place: RowPlacement | None
     spring: PreloadSpring | None
     unlike: bool = eqx.field(static=True)
 

@@ -18,7 +18,7 @@ from ..contact.hertz import EXPONENT
 from ..element.ball import Ball
 from ..element.ball_contacts import add
 from ..numerics.power import positive_power
-from .encounter import Section
+from .element_positions import Section
 from .free_element import FreeElement
 
 _N, _D = EXPONENT
@@ -39,7 +39,7 @@ def ball_forces(
     outer: Section,
     inner: Section,
     places: Float[Array, "element 2"],
-    raised: Float[Array, "2 element"] | None,
+    heights: Float[Array, "2 element"] | None,
 ) -> tuple[tuple[Section, Section], Float[Array, "element 2"]]:
     """Return the derivatives of the energy of all balls [N, N m].
 
@@ -47,7 +47,7 @@ def ball_forces(
         free: One ball, or balls with a leading axis.
         outer, inner: Motions of the rings at every ball [m, rad].
         places: Of the balls (z, r) [m].
-        raised: Material added in the contacts of the raceways [m], or `None`.
+        heights: Material added in the contacts of the raceways [m], or `None`.
 
     Returns:
         By the motions of outer and inner ring, and by the places of the balls.
@@ -63,8 +63,8 @@ def ball_forces(
 
     start_z, start_r = each(grooves.start[..., 0]), each(grooves.start[..., 1])
     reach, constant = each(grooves.reach), each(free.element.constant)
-    if raised is not None:
-        reach = reach - jnp.stack([raised[k] for k in of])
+    if heights is not None:
+        reach = reach - jnp.stack([heights[k] for k in of])
     z, r = [outer.axial, inner.axial], [outer.outwards, inner.outwards]
     arm = geometry.pitch_radius
     tilts = [ring.tilt for ring in (outer, inner)]

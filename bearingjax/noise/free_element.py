@@ -68,9 +68,9 @@ class FreeElement(eqx.Module):
         """
         return (place - rings.mean[: place.shape[0]]) * self.scale
 
-    def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
+    def with_heights(self, heights: Float[Array, "2"]) -> "FreeElement":
         """Return a copy with material added in its contacts [m]."""
-        return dataclasses.replace(self, element=self.element.raised(heights))
+        return dataclasses.replace(self, element=self.element.with_heights(heights))
 
     def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
         """Return the strain energy of its contacts [J]; arguments as in `unknowns`."""

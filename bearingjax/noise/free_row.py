@@ -11,7 +11,6 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from ..design import rows_of
 from ..design.form_error import Surfaces
@@ -19,7 +18,7 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import orbit, rotation
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
-from ..element.row import Row
+from ..element.row import Row, RowPlacement
 from .free_element import free_element
 
 
@@ -44,35 +43,21 @@ def of_small_motions(element: BearingElement) -> BearingElement:
     return dataclasses.replace(element, choices=choices)
 
 
-class Sites(NamedTuple):
-    """Positions of the rows of a set, for each of their elements.
-
-    Attributes:
-        position: z of the origin of its row in the set (element,) [m].
-        sign: -1 in a mirrored row, else 1 (element,) [1].
-        offset: Axial position of the inner ring relative to the outer, in the row's
-            axes (element,) [m].
-    """
-
-    position: Float[Array, " element"]
-    sign: Float[Array, " element"]
-    offset: Float[Array, " element"]
-
-
 class FreeRow(NamedTuple):
     """All rolling elements of a bearing.
 
     Attributes:
         row: Their `FreeElement`s, the rows of a set one after the other; its ratio and
             pitch radius are those of the first.
-        sites: `None`: the row is the bearing.
+        placements: Placement of its row for each element, numbers (element,); `None`:
+            the row is the bearing.
         carried: Speed of the orbit; of a set for every element [rad/s].
         own: Speed of the elements about their own axes against the orbit, likewise.
         surfaces: Contact tracks of each row.
     """
 
     row: Row
-    sites: Sites | None
+    placements: RowPlacement | None
     carried: Any
     own: Any
     surfaces: tuple[Surfaces, ...]
@@ -110,7 +95,9 @@ class FreeRow(NamedTuple):
             )
 
         # Its rows have places: that of a set is never `None`.
-        sites = Sites(*map(all_of, zip(*(row.place for row in rows), strict=True)))
+        placements = RowPlacement(
+            *map(all_of, zip(*(row.place for row in rows), strict=True))
+        )
         elements = [row.element for row in rows]
         joined = Row(
             element=jax.tree.map(lambda *parts: jnp.concatenate(parts), *elements),
@@ -126,7 +113,7 @@ class FreeRow(NamedTuple):
             all_of([getattr(f, k) for f in found]) for k in cls._fields[2:4]
         )
         surfaces = tuple(s for one in found for s in one.surfaces)
-        return cls(joined, sites, carried, own, surfaces)
+        return cls(joined, placements, carried, own, surfaces)
 
 
 def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:

@@ -104,8 +104,8 @@ def _linear_model(model, orbits) -> LinearModel:
     zero = jnp.zeros((), start.dtype)
     none = jnp.zeros((system.row.azimuth.shape[0], 2, 3), start.dtype)
 
-    def contact_forces(met):
-        return system.contact_forces(start, zero, met)
+    def contact_forces(deviations):
+        return system.contact_forces(start, zero, deviations)
 
     stiffness = contact_stiffness(system, start)
     damping = system.retardation * stiffness

@@ -277,7 +277,7 @@ def _system(model, points) -> NoiseSystem:
         errors = tuple(one.tabulated(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
         row=found.row,
-        sites=found.sites,
+        placements=found.placements,
         errors=errors,
         surfaces=found.surfaces,
         turning=(model.speed.outer, model.speed.inner, found.carried, found.own),

@@ -119,7 +119,7 @@ def at_instant(
     """
     bearing: Any = element.bearing
     turned = system.turning[2] * time
-    met = system.met(system.azimuth(time), time)
+    deviations = system.deviations(system.azimuth(time), time)
 
     def rows(tree):
         return list(bearings_of(tree))
@@ -129,7 +129,11 @@ def at_instant(
         # All elements of a row orbit alike.
         orbit = turned if turned.ndim == 0 else of_rows(turned, bearing)[k][0]
         row = eqx.tree_at(lambda b: b.first_azimuth, row, row.first_azimuth + orbit)
-        now.append(row if met is None else with_raceways(row, of_rows(met, bearing)[k]))
+        now.append(
+            row
+            if deviations is None
+            else with_raceways(row, of_rows(deviations, bearing)[k])
+        )
     if isinstance(bearing, BearingSet):
         bearing = eqx.tree_at(rows, bearing, now)
     else:

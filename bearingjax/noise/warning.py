@@ -170,11 +170,11 @@ def _above(model, told, tolerances) -> Iterator[str]:
         }
         for part, given in _parts(errors).items():
             highest = max(_highest(given), drawn[part])
-            met = highest * passing[part]
-            if met > told:
+            rate = highest * passing[part]
+            if rate > told:
                 yield (
                     f"waves of order {highest} of the {part}{where} are met at"
-                    f" {met:.5g} Hz, {cut}"
+                    f" {rate:.5g} Hz, {cut}"
                 )
 
 

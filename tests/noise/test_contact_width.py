@@ -87,7 +87,7 @@ def test_bridged_model_attenuates_short_waves():
     assert left[1] < 0.9
     time = jnp.asarray(1.3e-3)
     found, wanted = (
-        np.asarray(m.system().met(m.system().azimuth(time), time))
+        np.asarray(m.system().deviations(m.system().azimuth(time), time))
         for m in (given, model(1e-6 * left))
     )
     np.testing.assert_allclose(found, wanted, atol=1e-6 * np.abs(wanted).max())

@@ -24,7 +24,7 @@ from bearingjax.rotor.nonlinear import (
     trace,
 )
 from bearingjax.rotor.nonlinear.branch import _flip, _pairs
-from bearingjax.rotor.nonlinear.continuation import Place
+from bearingjax.rotor.nonlinear.continuation import BranchPoint
 
 BALANCE, SHOOTING = HarmonicBalance(7, 32, steps=24), Shooting(24)
 STEPS = Steps(first=0.05, largest=0.5)
@@ -88,7 +88,7 @@ def test_hundreds_of_pairs_of_multipliers():
         turned = last * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
         matrix = np.diag([*np.linspace(0.95, 0.98, 39), 0.0, 0.0])
         matrix[39:, 39:] = turned
-        point = Place(*blank)._replace(monodromy=matrix)
+        point = BranchPoint(*blank)._replace(monodromy=matrix)
         assert np.isclose(sign * _pairs(point), abs(last**2 - 1.0))
         assert _flip(point) > 0
 

@@ -14,9 +14,9 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (
     Arclength,
+    BranchPoint,
     ChangeOfParameter,
     Ending,
-    Place,
     Steps,
     Traced,
     place,
@@ -132,7 +132,7 @@ def follow(
     motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
     found = _traced(system, method, motion, begin, end, parameter, steps, points)
     *every, count, refused, ending = jax.tree.map(np.asarray, found)
-    at = Place(*(x[:count] for x in every))
+    at = BranchPoint(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
     multipliers = np.linalg.eigvals(at.monodromy)
     stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
@@ -173,15 +173,15 @@ def _along(system, method, x, tangent, length):
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
-def _fold(point: Place) -> float:
+def _fold(point: BranchPoint) -> float:
     return float(point.tangent[-1])
 
 
-def _flip(point: Place) -> float:
+def _flip(point: BranchPoint) -> float:
     return _least(np.linalg.eigvals(point.monodromy) + 1.0)
 
 
-def _pairs(point: Place) -> float:
+def _pairs(point: BranchPoint) -> float:
     """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
     i, j = np.triu_indices(len(k), 1)
@@ -198,11 +198,11 @@ def _least(factors: np.ndarray) -> float:
     return float(np.copysign(sizes.min(), np.prod(signs).real))
 
 
-def _side(point: Place) -> float:
+def _side(point: BranchPoint) -> float:
     return float(point.side)
 
 
-_TESTS: dict[str, Callable[[Place], float]] = {
+_TESTS: dict[str, Callable[[BranchPoint], float]] = {
     "fold": _fold,
     "flip": _flip,
     "neimark_sacker": _pairs,
@@ -211,8 +211,8 @@ _TESTS: dict[str, Callable[[Place], float]] = {
 """Test functions, which change sign at events."""
 
 
-def _events(system, method, points: Place) -> tuple[Event, ...]:
-    every = [Place(*(x[k] for x in points)) for k in range(len(points.x))]
+def _events(system, method, points: BranchPoint) -> tuple[Event, ...]:
+    every = [BranchPoint(*(x[k] for x in points)) for k in range(len(points.x))]
     events = []
     for kind, test in _TESTS.items():
         signs = np.sign([test(point) for point in every])
@@ -269,6 +269,6 @@ def _amplitude(system, u):
     return np.asarray(_half_range(u)) * np.asarray(system.scale)
 
 
-def _beyond(point: Place) -> int:
+def _beyond(point: BranchPoint) -> int:
     """Return the number of multipliers outside the unit circle."""
     return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

@@ -134,7 +134,7 @@ class Traced(NamedTuple):
     ending: Int[Array, ""]
 
 
-class Place(NamedTuple):
+class BranchPoint(NamedTuple):
     """Point of a branch; fields as in `Traced`."""
 
     x: Float[Array, " x"]
@@ -147,8 +147,8 @@ class Place(NamedTuple):
 
 
 class _State(NamedTuple):
-    points: Place
-    last: Place
+    points: BranchPoint
+    last: BranchPoint
     before: Float[Array, " x"]
     step: Scalar
     count: Int[Array, ""]
@@ -172,7 +172,7 @@ def place(
     direction: Float[Array, " x"],
     towards: Float[Array, " x"],
     limit: int | Int[Array, ""] = _NEWTON,
-) -> tuple[Place, Int[Array, ""]]:
+) -> tuple[BranchPoint, Int[Array, ""]]:
     """Return the point of a branch in the plane through `x`, and its `Result` code.
 
     Args:
@@ -194,7 +194,9 @@ def place(
     monodromy = method.monodromy(system, z, ratio, found.jacobian)
     motion, _ = method.motion(system, z, ratio)
     residual = jnp.max(jnp.abs(found.left))
-    point = Place(found.x, tangent, monodromy, motion, residual, side, found.steps)
+    point = BranchPoint(
+        found.x, tangent, monodromy, motion, residual, side, found.steps
+    )
     return point, found.result
 
 
