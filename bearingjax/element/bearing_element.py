@@ -428,8 +428,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             raceway = deviation.raceway
             return found if raceway is None else found.with_heights(raceway[:, 2])
 
-        unlike = deviation.makes_unlike
-        element = jax.vmap(one)(deviation) if unlike else one(deviation)
+        per_element = deviation.makes_unlike
+        element = jax.vmap(one)(deviation) if per_element else one(deviation)
         raceway = deviation.raceway
         shift = None if raceway is None else raceway[:, :, :2]
         place = None
@@ -443,4 +443,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             )
         radius = 0.5 * bearing.pitch_diameter
         azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
-        return Row(element, azimuth, shift, ratio, radius, place, part.spring, unlike)
+        return Row(
+            element, azimuth, shift, ratio, radius, place, part.spring, per_element
+        )

@@ -52,7 +52,7 @@ class Row(eqx.Module):
         pitch_radius: Radius of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
         spring: Preload spring, or `None`.
-        unlike: Whether `element` has a leading axis. Static.
+        per_element: Whether `element` has a leading axis. Static.
     """
 
     element: Any
@@ -62,7 +62,7 @@ class Row(eqx.Module):
     pitch_radius: Scalar
     place: RowPlacement | None
     spring: PreloadSpring | None
-    unlike: bool = eqx.field(static=True)
+    per_element: bool = eqx.field(static=True)
 
     def each(self, function: Callable, *arrays) -> Any:
         """Apply function(element, *arrays) to every rolling element.
@@ -72,9 +72,9 @@ class Row(eqx.Module):
             *arrays: More arguments, with leading axis element. Without any, like
                 elements are one element.
         """
-        if not (self.unlike or arrays):
+        if not (self.per_element or arrays):
             return function(self.element)
-        axes = (0 if self.unlike else None,) + (0,) * len(arrays)
+        axes = (0 if self.per_element else None,) + (0,) * len(arrays)
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
 
     def turn(self, q: Ring) -> Scalar:
@@ -115,7 +115,7 @@ class Row(eqx.Module):
         tilt = jnp.concatenate([r[_TILTS] for r in local])
         magnitude = jnp.max(jnp.abs(shift))
         magnitude = magnitude + self.pitch_radius * jnp.max(jnp.abs(tilt))
-        rings = self.seen(local, azimuth)
+        rings = self.in_element_axes(local, azimuth)
 
         def one(element, rings, *near):
             found = solve_element(element, rings, magnitude, minimiser, *near)
@@ -181,7 +181,7 @@ class Row(eqx.Module):
         def one(placed, rings, energies):
             return expanded(condensed, rings, placed, energies)
 
-        return jnp.sum(solved.each(self, one, self.seen(local, azimuth)))
+        return jnp.sum(solved.each(self, one, self.in_element_axes(local, azimuth)))
 
     def energy(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].
@@ -210,7 +210,7 @@ class Row(eqx.Module):
         if self.spring is not None:
             travel = _travel(jnp.concatenate(local), (self, azimuth, solved))
             local = _closed(local, travel)
-        rings = self.seen(local, azimuth)
+        rings = self.in_element_axes(local, azimuth)
 
         def one(placed, rings, energies):
             x = own_unknowns(placed, rings)
@@ -240,7 +240,9 @@ class Row(eqx.Module):
         outer, inner = (moved @ ring for ring in both)
         return _closed(RingMotion(outer, inner), self.place.offset)
 
-    def seen(self, local: RingMotion, azimuth: Azimuth) -> Float[Array, "element r"]:
+    def in_element_axes(
+        self, local: RingMotion, azimuth: Azimuth
+    ) -> Float[Array, "element r"]:
         """Ring motions in the elements' axes, as their solves take them.
 
         Args:
@@ -260,7 +262,7 @@ class Row(eqx.Module):
     def unsolved(self) -> SolvedRow:
         """Return an unsolved row in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
-        rings = jnp.zeros_like(self.seen(local, self.azimuth))
+        rings = jnp.zeros_like(self.in_element_axes(local, self.azimuth))
         n, zero = self.element.n_unknowns, jnp.zeros((), rings.dtype)
 
         def one(element, rings):

@@ -24,7 +24,7 @@ from ..contact.point_law import ball_ellipses, balls_of
 from ..design import AbstractBallBearing, rows_of
 from ..design.material import contact_modulus
 from ..numerics.programs import program
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
 from .standing import standing
 

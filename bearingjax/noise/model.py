@@ -32,7 +32,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
 from .cage import GuidedCage
-from .free_row import FreeRow, of_small_motions
+from .dynamic_row import DynamicRow, of_small_motions
 from .sensor import Sensor
 from .system import NoiseSystem
 
@@ -255,7 +255,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     return total
 
 
-def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
+def _surfaces(model: NoiseModel, found: DynamicRow) -> tuple[Surfaces, ...]:
     """Return the contact tracks of each row, with their averaging of waves."""
     if (widths := model.half_width) is None:
         return found.surfaces
@@ -266,7 +266,7 @@ def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
 
 @program(quick=True)
 def _system(model, points) -> NoiseSystem:
-    found = FreeRow.of(model.small, model.speed)
+    found = DynamicRow.of(model.small, model.speed)
     some = jax.tree.leaves(model.errors)
     mass = jnp.repeat(model.mass, 3)
     if (inertia := model.inertia) is not None:

@@ -23,7 +23,7 @@ from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
 from .system import NoiseSystem
 

@@ -60,8 +60,8 @@ def standing(
             placements.sign * tilt,
         )
 
-    def place(free, *motion):
-        return combined(free.own.T, jnp.stack(motion))[: free.mass.shape[0]]
+    def place(element, *motion):
+        return combined(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
 
     places = system.row.each(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]

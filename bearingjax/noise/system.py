@@ -35,9 +35,9 @@ from ..element.frame import RINGS, orbit, roll_ratio
 from ..element.row import Row, RowPlacement
 from ..numerics.types import Scalar
 from .cage import GuidedCage, cage_forces, cage_loads
+from .dynamic_balls import ball_forces, is_written_out
+from .dynamic_element import DynamicElement, forces
 from .element_positions import ElementPositions, Section
-from .free_balls import ball_forces, is_written_out
-from .free_element import FreeElement, forces
 from .sensor import Sensor
 
 
@@ -51,7 +51,7 @@ class NoiseSystem(eqx.Module):
     element are in the axes of its row, whose z is reversed if it is mirrored.
 
     Attributes:
-        row: The rolling elements, each a `FreeElement`; of a set, those of all rows.
+        row: The rolling elements, each a `DynamicElement`; of a set, those of all rows.
         placements: Positions of the rows of a set; `None`: of a single row.
         errors: Form errors of each row, tabulated; `None`: none.
         surfaces: Contact tracks of each row.
@@ -95,7 +95,9 @@ class NoiseSystem(eqx.Module):
 
     def _of_each(self, name):
         """Return a property of the rolling elements, with leading axis element."""
-        return self.row.each(lambda free, _: getattr(free, name), self.row.azimuth)
+        return self.row.each(
+            lambda element, _: getattr(element, name), self.row.azimuth
+        )
 
     def parted(
         self, motion: Float[Array, " n"]
@@ -205,16 +207,16 @@ class NoiseSystem(eqx.Module):
         return outer, inner, places
 
     def _each(self, function, motion, positions):
-        """Map function(free, rings, place) over the elements at these positions."""
+        """Map function(element, rings, place) over the elements at these positions."""
         outer, inner, places = self._motions(motion, positions)
         rings = outer.stacked, inner.stacked
         heights = positions.heights
         given = () if heights is None else (heights.T,)
 
-        def one(free, outer, inner, place, *heights):
+        def one(element, outer, inner, place, *heights):
             if heights:
-                free = free.with_heights(heights[0])
-            return function(free, free.seen(outer, inner), place)
+                element = element.with_heights(heights[0])
+            return function(element, element.in_element_axes(outer, inner), place)
 
         return self.row.each(one, *rings, places, *given)
 
@@ -224,9 +226,9 @@ class NoiseSystem(eqx.Module):
             given = self._motions(motion, positions)
             return ball_forces(self.row.element, *given, positions.heights)
 
-        def one(free, rings, place):
-            on_rings, on_place = forces(free, rings, place)
-            return [free.in_section(force) for force in on_rings], on_place
+        def one(element, rings, place):
+            on_rings, on_place = forces(element, rings, place)
+            return [element.in_section(force) for force in on_rings], on_place
 
         on_rings, on_places = self._each(one, motion, positions)
         return [Section(*force.T) for force in on_rings], on_places
@@ -310,7 +312,7 @@ class NoiseSystem(eqx.Module):
     ) -> Float[Array, "element contact"]:
         """Return the load of every contact [N]; arguments as in `contact_forces`."""
         positions = self.positions(self.azimuth(time, motion), time)
-        return self._each(FreeElement.loads, motion, positions)
+        return self._each(DynamicElement.loads, motion, positions)
 
     def traction(
         self,
@@ -334,9 +336,9 @@ class NoiseSystem(eqx.Module):
         outer, inner, even, _ = self.turning
         radius = self.row.pitch_radius
 
-        def one(free, rings, place):
-            load, cosine = free.carried(rings, place)
-            diameter = free.element.diameter
+        def one(element, rings, place):
+            load, cosine = element.carried(rings, place)
+            diameter = element.element.diameter
             own = roll_ratio(diameter, 2.0 * radius, cosine)
             return load, radius * (orbit(own, outer, inner) - even)
 

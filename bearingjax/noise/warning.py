@@ -17,7 +17,7 @@ from ..numerics.result import Result
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_states import contact_states
 from .contact_width import contact_half_width
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
 from .natural import natural_modes, orbited, ring_modes
 from .orders import kinematic_frequencies

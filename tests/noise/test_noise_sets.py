@@ -23,7 +23,7 @@ from bearingjax.noise import (
     name_lines,
     spectrum,
 )
-from bearingjax.noise.free_row import of_rows
+from bearingjax.noise.dynamic_row import of_rows
 from bearingjax.noise.standing import standing
 from bearingjax.noise.warning import _gyroscopic
 

@@ -19,7 +19,7 @@ from ..element.frame import orbit, rotation
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
 from ..element.row import Row, RowPlacement
-from .free_element import free_element
+from .dynamic_element import dynamic_element
 
 
 class Untilted(Linearised):
@@ -43,12 +43,12 @@ def of_small_motions(element: BearingElement) -> BearingElement:
     return dataclasses.replace(element, choices=choices)
 
 
-class FreeRow(NamedTuple):
+class DynamicRow(NamedTuple):
     """All rolling elements of a bearing.
 
     Attributes:
-        row: Their `FreeElement`s, the rows of a set one after the other; its ratio and
-            pitch radius are those of the first.
+        row: Their `DynamicElement`s, the rows of a set one after the other; its ratio
+            and pitch radius are those of the first.
         placements: Placement of its row for each element, numbers (element,); `None`:
             the row is the bearing.
         carried: Speed of the orbit; of a set for every element [rad/s].
@@ -63,8 +63,8 @@ class FreeRow(NamedTuple):
     surfaces: tuple[Surfaces, ...]
 
     @classmethod
-    def of(cls, element: BearingElement, speed: Speed) -> "FreeRow":
-        """Create the free row of a bearing at given ring speeds.
+    def of(cls, element: BearingElement, speed: Speed) -> "DynamicRow":
+        """Create the row of a bearing at given ring speeds.
 
         Args:
             element: The bearing, with linearised kinematics.
@@ -75,7 +75,7 @@ class FreeRow(NamedTuple):
         """
         rows = element.model().rows
         found = [
-            _free(row, part.bearing, speed)
+            _dynamic_row(row, part.bearing, speed)
             for row, part in zip(rows, rows_of(element.bearing), strict=True)
         ]
         if len(found) == 1 and found[0].row.place is None:
@@ -107,7 +107,7 @@ class FreeRow(NamedTuple):
             pitch_radius=rows[0].pitch_radius,
             place=None,
             spring=None,
-            unlike=True,
+            per_element=True,
         )
         carried, own = (
             all_of([getattr(f, k) for f in found]) for k in cls._fields[2:4]
@@ -129,24 +129,26 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
     return cut.split(values, np.cumsum(counts)[:-1], axis=axis)
 
 
-def _free(row: Row, bearing: Any, speed: Speed) -> FreeRow:
-    """Return one row of free elements."""
+def _dynamic_row(row: Row, bearing: Any, speed: Speed) -> DynamicRow:
+    """Return one row of elements with inertia."""
     surfaces = Surfaces.of(bearing)
     rings = speed.outer, speed.inner
     carried = orbit(row.ratio, *rings)
     diameters = 2.0 * surfaces.element.radius, 2.0 * row.pitch_radius
     own = rotation(row.ratio, *diameters, *rings)
 
-    def free(element):
-        return free_element(element, bearing.material, row.pitch_radius, speed, carried)
+    def with_inertia(element):
+        return dynamic_element(
+            element, bearing.material, row.pitch_radius, speed, carried
+        )
 
-    row = eqx.tree_at(lambda r: r.element, row, row.each(free))
-    return FreeRow(row, None, carried, own, (surfaces,))
+    row = eqx.tree_at(lambda r: r.element, row, row.each(with_inertia))
+    return DynamicRow(row, None, carried, own, (surfaces,))
 
 
 def _unlike(row: Row) -> Row:
     """Return the row with a leading axis on its elements."""
-    if row.unlike:
+    if row.per_element:
         return row
     count = row.azimuth.shape[0]
     element = jax.tree.map(lambda a: _repeated(a, count), row.element)

@@ -25,7 +25,7 @@ from ..numerics.linear import combined
 from ..numerics.types import Scalar
 
 
-class FreeElement(eqx.Module):
+class DynamicElement(eqx.Module):
     """One rolling element with freedoms of its own.
 
     Attributes:
@@ -45,7 +45,9 @@ class FreeElement(eqx.Module):
     scale: Float[Array, " n"]
     own: Float[Array, "h 3"]
 
-    def seen(self, outer: Float[Array, "3"], inner: Float[Array, "3"]) -> RingMotion:
+    def in_element_axes(
+        self, outer: Float[Array, "3"], inner: Float[Array, "3"]
+    ) -> RingMotion:
         """Return ring motions in its axes, from those in the axial section [m, rad].
 
         Args:
@@ -68,7 +70,7 @@ class FreeElement(eqx.Module):
         """
         return (place - rings.mean[: place.shape[0]]) * self.scale
 
-    def with_heights(self, heights: Float[Array, "2"]) -> "FreeElement":
+    def with_heights(self, heights: Float[Array, "2"]) -> "DynamicElement":
         """Return a copy with material added in its contacts [m]."""
         return dataclasses.replace(self, element=self.element.with_heights(heights))
 
@@ -101,9 +103,9 @@ class FreeElement(eqx.Module):
 
 
 @functools.singledispatch
-def free_element(
+def dynamic_element(
     element: Any, material: Material, pitch_radius: Scalar, speed: Speed, orbit: Scalar
-) -> FreeElement:
+) -> DynamicElement:
     """Create a rolling element with its inertia.
 
     Args:
@@ -122,23 +124,23 @@ def free_element(
     )
 
 
-@free_element.register
-def _(element: Ball, material, pitch_radius, speed, orbit) -> FreeElement:
+@dynamic_element.register
+def _(element: Ball, material, pitch_radius, speed, orbit) -> DynamicElement:
     mass, _ = ball_mass(element.diameter, material.density)
     both, none = jnp.stack([mass, mass]), jnp.zeros_like(mass)
     force = jnp.stack([none, mass * pitch_radius * orbit**2])
-    return FreeElement(element, both, force, jnp.ones_like(both), _own(element))
+    return DynamicElement(element, both, force, jnp.ones_like(both), _own(element))
 
 
-@free_element.register
-def _(element: Roller, material, pitch_radius, speed, orbit) -> FreeElement:
+@dynamic_element.register
+def _(element: Roller, material, pitch_radius, speed, orbit) -> DynamicElement:
     c = element.constants
     mass, _, tilting = mass_and_inertia(c)
     one = jnp.ones_like(mass)
     masses = jnp.stack([mass, mass, tilting])
     scale = jnp.stack([one, one, c.half_length])
     force = inertia_force(c, speed)
-    return FreeElement(element, masses, force, scale, _own(element))
+    return DynamicElement(element, masses, force, scale, _own(element))
 
 
 def _own(element):
@@ -148,7 +150,7 @@ def _own(element):
 
 
 def forces(
-    free: FreeElement, rings: RingMotion, place: Float[Array, " n"]
+    element: DynamicElement, rings: RingMotion, place: Float[Array, " n"]
 ) -> tuple[RingMotion, Float[Array, " n"]]:
     """Return derivatives of the energy by both ring motions and by place [N, N m]."""
-    return jax.grad(FreeElement.energy, argnums=(1, 2))(free, rings, place)
+    return jax.grad(DynamicElement.energy, argnums=(1, 2))(element, rings, place)
