@@ -55,7 +55,7 @@ from quadrature import processor  # noqa: E402
 
 import bearingjax as bj  # noqa: E402
 from bearingjax.optimise.design_problem import Problem  # noqa: E402
-from bearingjax.optimise.search import Ending  # noqa: E402
+from bearingjax.optimise.search import SearchOutcome  # noqa: E402
 from bearingjax.statics import SolveOptions  # noqa: E402
 
 REFERENCE = (1.0, 0.6, 8e-6)
@@ -146,9 +146,9 @@ def rosenbrock(attempt, start, max_steps, tolerance, step):
                     lost[k] = True
         step(x)
         if np.linalg.norm(x - begin) <= tolerance:
-            return Ending(x, True, "the last stage got nowhere")
+            return SearchOutcome(x, True, "the last stage got nowhere")
         axes = turned(axes, gone)
-    return Ending(x, False, "stages used up")
+    return SearchOutcome(x, False, "stages used up")
 
 
 def turned(axes, gone):

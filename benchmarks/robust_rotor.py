@@ -52,7 +52,7 @@ from timing import machine, verdict  # noqa: E402
 from vibrations import ROTOR, grooves  # noqa: E402
 
 from bearingjax.rotor.nonlinear import (  # noqa: E402
-    Ending,
+    BranchEnd,
     FixedAngle,
     HarmonicBalance,
     OpposedPair,
@@ -143,7 +143,7 @@ def one(rng, method, points):
     begun = time.perf_counter()
     given = RANGE[0] * unit, RANGE[1] * unit, method
     branch = follow(system, *given, steps=steps, points=points)
-    begun_anew = branch.ending == Ending.NO_START
+    begun_anew = branch.ending == BranchEnd.NO_START
     if begun_anew:
         last = settled(system, RANGE[0] * unit)
         branch = follow(system, *given, last, steps=steps, points=points)

@@ -39,7 +39,7 @@ from vibrations import ROTOR, grooves  # noqa: E402
 
 from bearingjax.rotor.nonlinear import (  # noqa: E402
     Arclength,
-    Ending,
+    BranchEnd,
     FixedAngle,
     HarmonicBalance,
     Steps,
@@ -126,7 +126,7 @@ def main():
         "seconds": seconds,
         "endings": {
             e.label: int((batch["ending"] == e).sum())
-            for e in Ending
+            for e in BranchEnd
             if (batch["ending"] == e).any()
         },
         "same_counts": sum(

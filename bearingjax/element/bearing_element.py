@@ -25,14 +25,14 @@ from .azimuth import azimuths, orbit_ratio
 from .ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, Evaluated, RowGroup
 from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
-from .equilibrium import Near
+from .equilibrium import ElementStart
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed
 from .kinematics import AbstractKinematics
 from .row import Row, RowPlacement
 from .solved_row import RowResults
 
-State = tuple[Near, ...]
+State = tuple[ElementStart, ...]
 """Rolling elements solved at ring freedoms near by."""
 
 

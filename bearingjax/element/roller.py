@@ -85,7 +85,7 @@ class Roller(AbstractRollingElement):
             value=Approaches(raceway.value, rib.value),
             gradient=Approaches(raceway.gradient, rib.gradient),
             hessian=Approaches(raceway.hessian, rib.hessian),
-            beside=load,
+            aux=load,
         )
         return found if met is None else composed(found, met)
 

@@ -15,7 +15,7 @@ from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
 from .azimuth import Azimuth, turn
 from .energy import response
-from .equilibrium import Near, condensed, own_unknowns, solve_element, unloaded
+from .equilibrium import ElementStart, condensed, own_unknowns, solve_element, unloaded
 from .frame import FREEDOMS, placement
 from .rolling_element import RingMotion, split
 from .solved_row import RowResults, SolvedRow
@@ -90,7 +90,7 @@ class Row(eqx.Module):
         q: Ring,
         azimuth: Azimuth,
         minimiser: AbstractMinimiser,
-        near: Near | None,
+        near: ElementStart | None,
     ) -> SolvedRow:
         """Equilibrium of every rolling element at given ring freedoms.
 
@@ -121,8 +121,8 @@ class Row(eqx.Module):
             found = solve_element(element, rings, magnitude, minimiser, *near)
             return *found, magnitude
 
-        known = () if near is None else (near,)
-        state, energies, magnitudes = self.each(one, rings, *known)
+        starts = () if near is None else (near,)
+        state, energies, magnitudes = self.each(one, rings, *starts)
         return SolvedRow(rings, magnitudes, state, energies)
 
     def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
@@ -178,8 +178,8 @@ class Row(eqx.Module):
     def _sum(self, local, azimuth, solved):
         """Energy of all elements at freedoms in the row's own axes."""
 
-        def one(placed, rings, energies):
-            return expanded(condensed, rings, placed, energies)
+        def one(solved_element, rings, energies):
+            return expanded(condensed, rings, solved_element, energies)
 
         return jnp.sum(solved.each(self, one, self.in_element_axes(local, azimuth)))
 
@@ -212,16 +212,16 @@ class Row(eqx.Module):
             local = _closed(local, travel)
         rings = self.in_element_axes(local, azimuth)
 
-        def one(placed, rings, energies):
-            x = own_unknowns(placed, rings)
+        def one(solved_element, rings, energies):
+            x = own_unknowns(solved_element, rings)
 
             def loads(element, rings, x):
-                return response(element, rings, x).beside
+                return response(element, rings, x).aux
 
-            args = placed.element, rings, x
-            load = recall(loads, placed.state.known.beside, args)
+            args = solved_element.element, rings, x
+            load = recall(loads, solved_element.state.contact_response.aux, args)
             # A loose one carries nothing.
-            nothing = energies.beside.contact_load == 0.0
+            nothing = energies.aux.contact_load == 0.0
             return x, jnp.where(nothing, 0.0, load)
 
         x, load = solved.each(self, one, rings)
@@ -267,8 +267,8 @@ class Row(eqx.Module):
 
         def one(element, rings):
             x = jnp.zeros((n,), rings.dtype)
-            known = jax.eval_shape(lambda: response(element, rings, x))
-            return *unloaded(rings, x, known), zero
+            contacts = jax.eval_shape(lambda: response(element, rings, x))
+            return *unloaded(rings, x, contacts), zero
 
         state, energies, magnitude = self.each(one, rings)
         travel = () if self.spring is None else zero

@@ -83,7 +83,7 @@ class DynamicElement(eqx.Module):
     ) -> Float[Array, " contact"]:
         """Return the load of each contact [N]; arguments as in `unknowns`."""
         at = self.element.coordinates(rings, self.unknowns(rings, place))
-        return self.element.respond(at).beside
+        return self.element.respond(at).aux
 
     def carried(
         self, rings: RingMotion, place: Float[Array, " n"]
@@ -94,7 +94,7 @@ class DynamicElement(eqx.Module):
         Arguments as in `unknowns`.
         """
         x = self.unknowns(rings, place)
-        load = self.element.respond(self.element.coordinates(rings, x)).beside
+        load = self.element.respond(self.element.coordinates(rings, x)).aux
         cosines = jnp.abs(self.element.contacts(rings, x).normal[:, 1])
         total = jnp.sum(load)
         loose = total == 0.0

@@ -17,7 +17,7 @@ from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
 from .measure import AbstractMeasure, label_of
-from .search import METHODS, Ending, search, takes_gradients
+from .search import METHODS, SearchOutcome, search, takes_gradients
 from .system import AbstractSystem, Design, check_design
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
@@ -197,7 +197,7 @@ def optimise(
 
 
 def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
-    best = trials.attempt(ending.unit, slopes or ending.settled)
+    best = trials.attempt(ending.unit, slopes or ending.converged)
     if best.fault:
         # Its gradient may have failed: take the last step.
         best = trials.steps[-1]
@@ -239,7 +239,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
 
 def verdict(
     trials: Trials,
-    ending: Ending,
+    ending: SearchOutcome,
     best: Trial,
     slopes: bool,
     max_steps: int,

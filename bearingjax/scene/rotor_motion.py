@@ -18,7 +18,7 @@ from ..rotor import (
 )
 from ..rotor.nonlinear import (
     Branch,
-    Ending,
+    BranchEnd,
     HarmonicBalance,
     Shooting,
     Steps,
@@ -40,15 +40,15 @@ _REDUCED = 0.03
 _SAMPLES = 64
 """Number of phases at which a linear vibration is output."""
 _ENDINGS = {
-    Ending.POINTS: (
+    BranchEnd.POINTS: (
         "the branch did not reach the end of the range within the allowed points;"
         " raise `rotor.response.points`, or `scale` where the vibration is far larger"
     ),
-    Ending.SMALL_STEP: (
+    BranchEnd.SMALL_STEP: (
         "the branch could not be followed further: no step, however small, led on;"
         " take more {finer}"
     ),
-    Ending.NO_START: (
+    BranchEnd.NO_START: (
         "no periodic vibration was found at the first frequency; begin farther from"
         " the resonances, or take more {finer}"
     ),

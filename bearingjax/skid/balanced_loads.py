@@ -87,7 +87,7 @@ class BalancedLoads(eqx.Module):
         moved = ball.coordinates(unpacked(ball, seen), centre)
         outwards = jnp.asarray(ball.grooves.outwards, moved.dtype)
         angle = angles(outwards[:, None] * ball.grooves.touch(moved).normal)
-        load = ball.respond(moved).beside
+        load = ball.respond(moved).aux
         law, contacts = skid.point_law, (load, angle, self.ellipses)
         loaded = loaded_ball(skid.bearing, law, skid.oil, *contacts)
         on_rings = unpacked(ball, forces[:-2])

@@ -85,8 +85,8 @@ def ring_forces(
         return row.in_element_axes(row.local(q), azimuth)
 
     def energy(rings):
-        def one(placed, rings, energies):
-            return expanded(condensed, rings, placed, energies)
+        def one(solved_element, rings, energies):
+            return expanded(condensed, rings, solved_element, energies)
 
         return jnp.sum(solved.each(row, one, rings))
 

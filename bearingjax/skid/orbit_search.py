@@ -133,14 +133,14 @@ class AbstractOrbit(eqx.Module):
 
     @abc.abstractmethod
     def described(
-        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
+        self, y: Float[Array, " unknown"], solved: SolvedRow, **fields: Any
     ) -> SteadyMotion:
         """Return the results of the steady motion.
 
         Args:
             y: Unknowns that fulfil the equations (unknown,) [rad/s, m].
             solved: Their row, solved there.
-            **known: Fields that do not follow from them.
+            **fields: Fields that do not follow from them.
         """
 
     def parts(self, y: Float[Array, " unknown"]) -> tuple[Array, Array, Array]:
@@ -294,7 +294,7 @@ class Evaluated(NamedTuple):
     solved: SolvedRow
 
 
-class Found(NamedTuple):
+class OrbitSolution(NamedTuple):
     """Result of a search.
 
     Attributes:
@@ -313,8 +313,8 @@ class Found(NamedTuple):
     solved: SolvedRow
 
 
-def search(orbit: AbstractOrbit) -> Found:
-    """Find the periodic motion; without derivatives, see `known`.
+def search(orbit: AbstractOrbit) -> OrbitSolution:
+    """Find the periodic motion; without derivatives, see `with_derivatives`.
 
     Args:
         orbit: Its equations.
@@ -323,10 +323,10 @@ def search(orbit: AbstractOrbit) -> Found:
     """
     loop = lanes.Loop(_init, _step, _terminate, _finish, _blank)
     few = orbit.start.size <= _FEW + _RING
-    return Found(*lanes.run(loop, stop(orbit), 16 if few else 2))
+    return OrbitSolution(*lanes.run(loop, stop(orbit), 16 if few else 2))
 
 
-def known(
+def with_derivatives(
     orbit: AbstractOrbit, y: Float[Array, " unknown"], result: Int[Array, ""]
 ) -> Float[Array, " unknown"]:
     """Return the unknowns found, with derivatives; NaN if the search failed.

@@ -91,7 +91,7 @@ def test_open_rollers_carry_no_load(design):
     is_open = np.asarray(jax.vmap(jax.vmap(told))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9
     assert np.all(np.asarray(row.state.result) == bj.Result.CONVERGED)
-    assert np.all(np.asarray(row.energies.beside.contact_load)[is_open] == 0.0)
+    assert np.all(np.asarray(row.energies.aux.contact_load)[is_open] == 0.0)
     # One reference: that a batch is a loop is an identity of every element.
     want = evaluated(bj.BearingElement(build(untold)), q, jax.lax.map)
     for over in (jax.lax.map, in_a_batch):

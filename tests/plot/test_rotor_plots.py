@@ -13,7 +13,7 @@ from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
 from bearingjax.rotor.nonlinear import (
     Branch,
-    Ending,
+    BranchEnd,
     Event,
     Waterfall,
     envelope,
@@ -192,7 +192,8 @@ def branch(events=()):
     hertz = np.array([10.0, 11, 12, 13, 12.5, 12, 13, 14])
     return Branch(
         2.0 * np.pi * hertz, 1e-6 * (1.0 + x[:, None]), np.zeros((8, 4, 1)), empty,
-        ~np.isin(x, [3, 4]), empty, np.zeros(8), np.zeros(8), events, 0, Ending.LIMIT,
+        ~np.isin(x, [3, 4]), empty, np.zeros(8), np.zeros(8), events, 0,
+        BranchEnd.LIMIT,
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from tolerances import PUBLISHED, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import harmonic_response
-from bearingjax.rotor.nonlinear import Ending
+from bearingjax.rotor.nonlinear import BranchEnd
 from bearingjax.scene import (
     SceneError,
     read_rotor,
@@ -374,7 +374,7 @@ def test_rotor_command_unsolved_part(run, tmp_path, part):
         assert found["result"] == "step_limit"
         assert "step_limit: response: at 50" in done.err
         assert "raise `rotor.response.points`" in done.err
-        assert found["response"]["ending"] == Ending.POINTS.label
+        assert found["response"]["ending"] == BranchEnd.POINTS.label
         assert len(found["response"]["frequency"]) == 2
         assert "the branch ends: points" in done.out
 

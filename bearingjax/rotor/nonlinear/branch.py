@@ -14,9 +14,9 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (
     Arclength,
+    BranchEnd,
     BranchPoint,
     ChangeOfParameter,
-    Ending,
     Steps,
     Traced,
     place,
@@ -82,7 +82,7 @@ class Branch(NamedTuple):
     newton: np.ndarray
     events: tuple[Event, ...]
     refused: int
-    ending: Ending
+    ending: BranchEnd
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -149,7 +149,7 @@ def follow(
         newton=np.asarray(at.newton),
         events=_events(system, method, at) if locate else (),
         refused=int(refused),
-        ending=Ending(int(ending)),
+        ending=BranchEnd(int(ending)),
     )
 
 

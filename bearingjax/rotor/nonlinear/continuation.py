@@ -30,7 +30,7 @@ from .orbit import along_frequency, correct
 from .system import AbstractVibratingSystem
 
 
-class Ending(enum.IntEnum):
+class BranchEnd(enum.IntEnum):
     """Reason for the end of a branch."""
 
     LIMIT = 0
@@ -119,7 +119,7 @@ class Traced(NamedTuple):
         newton: Newton steps (point,).
         count: Points.
         refused: Steps that were tried in vain.
-        ending: `Ending` code.
+        ending: `BranchEnd` code.
     """
 
     x: Float[Array, "point x"]
@@ -287,11 +287,11 @@ def trace(
         count = state.count + good.astype(jnp.int32)
         outside = (new.x[-1] <= low) | (new.x[-1] >= high)
         ended = [
-            (good & ~first & (at_limit | outside), Ending.LIMIT),
-            (~good & first, Ending.NO_START),
-            (rest, Ending.REST),
-            (step < steps.smallest, Ending.SMALL_STEP),
-            (count >= points, Ending.POINTS),
+            (good & ~first & (at_limit | outside), BranchEnd.LIMIT),
+            (~good & first, BranchEnd.NO_START),
+            (rest, BranchEnd.REST),
+            (step < steps.smallest, BranchEnd.SMALL_STEP),
+            (count >= points, BranchEnd.POINTS),
         ]
         ending = jnp.int32(_GOING)
         for why, code in reversed(ended):
