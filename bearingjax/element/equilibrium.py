@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.expansion import Expansion
 from ..numerics.implicit import attach, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
@@ -124,7 +124,7 @@ def solve_element(
     given = _prepare(*frozen)
     contacts = jax.eval_shape(response, element, rings, given.start)
     loop = _loop(minimiser, contacts, given.is_open is not None)
-    return lanes.run(loop, given, *element.hints.slots)
+    return batched_loop.run(loop, given, *element.hints.slots)
 
 
 def _without_unknowns(element, rings) -> LocalState:
@@ -313,7 +313,7 @@ def _problem(given: _Inputs, shapes) -> Problem:
     return Problem(function, given.start, given.radius, correction, memory)
 
 
-def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> lanes.Loop:
+def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> batched_loop.Loop:
     """Iteration for one element, skipped for an open one.
 
     Args:
@@ -330,12 +330,14 @@ def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> lanes.Loop:
         state = _solved(element, rings, loop.finish(given, state))
         return state, condensed(rings, SolvedElement(element, state, given.magnitude))
 
-    def blank(given):
+    def trivial_result(given):
         return unloaded(given.rings, given.centre, contacts)
 
-    rests = (lambda given: given.is_open) if may_be_open else None
+    is_trivial = (lambda given: given.is_open) if may_be_open else None
     loop = minimiser.loop(problem_of)
-    return loop._replace(finish=finish, blank=blank, rests=rests)
+    return loop._replace(
+        finish=finish, trivial_result=trivial_result, is_trivial=is_trivial
+    )
 
 
 def unloaded(rings: Rings, x: Unknowns, contacts: Any) -> tuple[LocalState, Expansion]:

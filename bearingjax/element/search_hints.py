@@ -10,7 +10,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
 
@@ -83,11 +83,11 @@ class SearchHints(eqx.Module):
     @property
     def slots(self) -> tuple[int, int]:
         """Number of elements of a batch solved at a time, and number of them that may
-        be finished before others follow (`lanes.run`). Static.
+        be finished before others follow (`batched_loop.run`). Static.
 
         Larger where a step costs little compared with its overhead.
         """
-        return lanes.SLOTS, lanes.IDLE
+        return batched_loop.SLOTS, batched_loop.IDLE
 
     @property
     def corrects_steps(self) -> bool:

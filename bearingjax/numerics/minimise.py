@@ -2,9 +2,9 @@
 
 Equilibria are minimisations that must lower an energy, not bare root finds. A
 minimiser is four pure functions of a `Problem`: `init`, then `step` until `terminate`,
-then `finish`. So the same four run alone (`minimise`), many at a time (`lanes.run`), or
-under a load that comes down to its size (`continuation`). Each step takes one
-evaluation of the function.
+then `finish`. So the same four run alone (`minimise`), many at a time
+(`batched_loop.run`), or under a load that comes down to its size (`continuation`). Each
+step takes one evaluation of the function.
 """
 
 import abc
@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from .lanes import Either, Loop
+from .batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 
@@ -141,7 +141,7 @@ class Minimum(NamedTuple):
     memory: Any = ()
 
 
-def blank(problem: Problem) -> Minimum:
+def trivial_result(problem: Problem) -> Minimum:
     """Return a `Minimum` of the right shapes, for an unsolved problem."""
     zero, none = jnp.zeros((), problem.start.dtype), jnp.zeros((), jnp.int32)
     return Minimum(problem.start, zero, zero, none, none, problem.memory)
@@ -186,7 +186,7 @@ class AbstractMinimiser(eqx.Module):
             lambda given, state: self.step(problem_of(given), state),
             lambda given, state: self.terminate(problem_of(given), state),
             lambda given, state: self.finish(problem_of(given), state),
-            lambda given: blank(problem_of(given)),
+            lambda given: trivial_result(problem_of(given)),
         )
 
     @abc.abstractmethod
@@ -426,4 +426,6 @@ def continuation(
         goal = minimiser.goal(problem)
         return minimiser.finish(larger(problem, factor)._replace(tolerance=goal), state)
 
-    return Loop(init, step, terminate, finish, lambda given: blank(problem_of(given)))
+    return Loop(
+        init, step, terminate, finish, lambda given: trivial_result(problem_of(given))
+    )

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int
 from ..design import pitch_radius
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults, SolvedRow
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.lapack import solve_any
 from ..numerics.linear import solve
@@ -321,9 +321,9 @@ def search(orbit: AbstractOrbit) -> OrbitSolution:
 
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
-    loop = lanes.Loop(_init, _step, _terminate, _finish, _blank)
+    loop = batched_loop.Loop(_init, _step, _terminate, _finish, _trivial_result)
     few = orbit.start.size <= _FEW + _RING
-    return OrbitSolution(*lanes.run(loop, stop(orbit), 16 if few else 2))
+    return OrbitSolution(*batched_loop.run(loop, stop(orbit), 16 if few else 2))
 
 
 def with_derivatives(
@@ -405,7 +405,7 @@ def _step(orbit, state):
     step = jnp.where(taken, longer, 0.2 * state.step)
     new = _State(y, at, jnp.where(first, state.step, step), state.steps + 1)
     kept = state._replace(step=step, steps=state.steps + 1)
-    return lanes.Either(taken, new, kept)
+    return batched_loop.Either(taken, new, kept)
 
 
 def _size(out):
@@ -435,7 +435,7 @@ def _finish(orbit, state):
     return state.y, _size(at.out / at.sizes), state.steps, result, at.solved
 
 
-def _blank(orbit):
+def _trivial_result(orbit):
     y, none = orbit.start, jnp.zeros((), jnp.int32)
     return y, jnp.zeros_like(y[0]), none, none, _unsolved(orbit)
 

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.implicit import attach_by, stop
 from ..numerics.linear import null_space, solve
 from ..numerics.minimise import (
@@ -128,7 +128,7 @@ def search(
     problem = partial(_problem, shapes=shapes)
     loop = continuation(solver, problem, lambda given: given.begin.factor)
     given = _Inputs(model, balance, begin, options)
-    return lanes.run(loop, given, slots=SLOTS, idle=IDLE)
+    return batched_loop.run(loop, given, slots=SLOTS, idle=IDLE)
 
 
 class _Inputs(NamedTuple):

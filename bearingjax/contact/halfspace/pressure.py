@@ -13,7 +13,7 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from ...design.checks import check
-from ...numerics import lanes
+from ...numerics import batched_loop
 from ...numerics.implicit import attach_by, stop
 from ...numerics.linear import solve_symmetric
 from ...numerics.programs import program
@@ -213,7 +213,7 @@ def solve_pressure(
 @program
 def _solved(problem, solver):
     dtype = problem.gap.dtype
-    pressed = lanes.run(solver.loop(), stop(problem))
+    pressed = batched_loop.run(solver.loop(), stop(problem))
     result = pressed.result
     solved = result == int(Result.CONVERGED)
     misfit = solved & ~_fits(problem.grid, pressed)
