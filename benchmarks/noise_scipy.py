@@ -42,10 +42,10 @@ from bearingjax.noise import (  # noqa: E402
     NoiseModel,
     RandomWaves,
     Tolerances,
-    drawn,
     monte_carlo,
     needed_steps,
-    standing,
+    sampled_model,
+    static_start,
     vibration,
 )
 from bearingjax.noise.stepping import REACH, step_weights  # noqa: E402
@@ -193,7 +193,7 @@ def main():
     turns, batches, bearings = given.turns, given.batch, given.bearings
     if given.smoke:
         turns, batches, bearings = 1, [2], 2
-    one = drawn(plain(), SCATTER, jax.random.key(0))
+    one = sampled_model(plain(), SCATTER, jax.random.key(0))
     needed = needed_steps(one, SAMPLES)
     print(f"{turns} turns, {needed} steps a sample needed")
     finest = 8 if not given.smoke else 2
@@ -217,7 +217,7 @@ def main():
         )
         sys.stdout.flush()
     equations = Equations(one)
-    start = np.array(standing(one, one.system())[0])
+    start = np.array(static_start(one, one.system())[0])
     # SciPy's equations have the coordinates ball by ball.
     start[3:] = start[3:].reshape(2, 14).T.ravel()
     begin = np.concatenate([start, np.zeros_like(start)])

@@ -26,7 +26,7 @@ from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .model import NoiseModel
 from .natural import contact_stiffness
-from .standing import standing
+from .static_start import static_start
 
 
 class LinearModel(NamedTuple):
@@ -100,7 +100,7 @@ def linear_model(model: NoiseModel) -> LinearModel:
 @program(quick=True)
 def _linear_model(model, orbits) -> LinearModel:
     system = model.still_system()
-    start, result = standing(model, system, orbits)
+    start, result = static_start(model, system, orbits)
     zero = jnp.zeros((), start.dtype)
     none = jnp.zeros((system.row.azimuth.shape[0], 2, 3), start.dtype)
 

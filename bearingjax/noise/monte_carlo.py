@@ -21,7 +21,7 @@ from ..numerics.result import Result
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .scatter import Drawn, Tolerances, draw
+from .scatter import SampledErrors, Tolerances, sample_errors
 from .spectrum import AbstractWindow, Hann, spectrum
 from .vibration import bandwidth, needed_steps, vibration
 
@@ -39,7 +39,7 @@ class MonteCarlo(eqx.Module):
             does not hold.
         centre: Nominal centres of the bands (band,) [Hz].
         result: `Result` codes (bearing,).
-        keys: Keys with which `drawn` reproduces each bearing (bearing,).
+        keys: Keys with which `sampled_model` reproduces each bearing (bearing,).
     """
 
     level: Float[Array, "bearing 3"]
@@ -62,7 +62,7 @@ class MonteCarlo(eqx.Module):
         return jnp.nanpercentile(self.level, jnp.asarray(share, float), axis=0)
 
 
-def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
+def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
     """Draw one bearing: the model with random errors added to its own.
 
     Args:
@@ -75,7 +75,8 @@ def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
     # Rows of a set are drawn on their own.
     keys = [key] if len(parts) == 1 else jax.random.split(key, len(parts))
     found = [
-        draw(tolerances, row.bearing, k) for row, k in zip(parts, keys, strict=True)
+        sample_errors(tolerances, row.bearing, k)
+        for row, k in zip(parts, keys, strict=True)
     ]
     rows = [_with(row.bearing, one) for row, one in zip(parts, found, strict=True)]
     errors = tuple(
@@ -158,7 +159,7 @@ def monte_carlo(
     return MonteCarlo(total, each, jnp.asarray(bands.centre), result, keys)
 
 
-def _with(bearing: Any, found: Drawn) -> Any:
+def _with(bearing: Any, found: SampledErrors) -> Any:
     """Return a single row with deviations of its elements added to its own."""
     name = f"{bearing.noun}_deviation"
     for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
@@ -243,7 +244,7 @@ def _records(model, tolerances, factors, keys, counts):
 
     def one(key):
         found = vibration(
-            drawn(model, tolerances, key),
+            sampled_model(model, tolerances, key),
             turns=turns,
             settle=settle,
             samples=samples,

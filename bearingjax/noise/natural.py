@@ -23,7 +23,7 @@ from ..numerics.implicit import stop
 from ..numerics.lapack import eigh
 from ..numerics.programs import program
 from .model import NoiseModel
-from .standing import standing
+from .static_start import static_start
 from .system import NoiseSystem
 
 LOOSE = 1.0
@@ -111,7 +111,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 @program(quick=True)
 def _natural_modes(model, orbits) -> NaturalModes:
     system = model.still_system()
-    motion, result = standing(model, system, orbits)
+    motion, result = static_start(model, system, orbits)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)
     _, vectors = eigh(stop(k))

@@ -95,7 +95,7 @@ class RandomWaves(eqx.Module):
     def _shares(self):
         return (self.low / jnp.arange(self.low, self.high + 1)) ** self.slope
 
-    def draw(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
+    def sample(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
         """Draw random waves.
 
         Args:
@@ -117,7 +117,7 @@ class RandomWaves(eqx.Module):
         return eqx.tree_at(lambda w: w.amplitude, self, factor * self.amplitude)
 
 
-class Drawn(NamedTuple):
+class SampledErrors(NamedTuple):
     """Deviations of one bearing from its design.
 
     Attributes:
@@ -303,11 +303,11 @@ class Tolerances(eqx.Module):
         check(self, "spacing", spacing <= room, allowed, spacing, "rad")
 
 
-def draw(
+def sample_errors(
     tolerances: Tolerances,
     bearing: AbstractBearing,
     key: Array,
-) -> Drawn:
+) -> SampledErrors:
     """Draw the random errors of one bearing.
 
     Args:
@@ -331,14 +331,14 @@ def draw(
 
     def waves(name, shape=()):
         found = getattr(tolerances, name)
-        return () if found is None else (found.draw(keys[name], shape),)
+        return () if found is None else (found.sample(keys[name], shape),)
 
     def raceway(ring):
         name, outwards = f"{ring}_eccentricity", waves(f"{ring}_outwards")
         size = getattr(tolerances, name)
         if size is not None:
-            outwards += (RandomWaves(size, 1, 1).draw(keys[name]),)
+            outwards += (RandomWaves(size, 1, 1).sample(keys[name]),)
         return RacewayErrors(waves(f"{ring}_axial"), outwards)
 
     errors = FormErrors(raceway("outer"), raceway("inner"), waves("elements", (count,)))
-    return Drawn(even("diameter"), even("spacing"), errors)
+    return SampledErrors(even("diameter"), even("spacing"), errors)

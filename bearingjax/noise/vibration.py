@@ -24,7 +24,7 @@ from ..statics.options import DEFAULT_TOLERANCE
 from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
-from .standing import standing, why
+from .static_start import static_start, why
 from .stepping import HELD, stepped
 
 _STABLE = 2.5
@@ -233,7 +233,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
 def _of_cage(model) -> Scalar:
     """Return a bound of the frequency of cage and balls on the pitch circle [rad/s]."""
     system = model.still_system()
-    start, _ = standing(model, system)
+    start, _ = static_start(model, system)
     loads = system.contact_loads(start, jnp.zeros_like(model.mass))
     cage, (ring, ball) = model.cage, system.masses[jnp.array([0, system.mass.size])]
     size, radius = loads.shape[0], system.row.pitch_radius
@@ -247,7 +247,7 @@ def _of_cage(model) -> Scalar:
 @program
 def _vibration(model, turns, settle, samples, steps) -> Vibration:
     system = model.system()
-    start, result = standing(model, system)
+    start, result = static_start(model, system)
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     h = 1.0 / (frequency * samples * steps)
     if settle:

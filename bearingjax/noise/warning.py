@@ -22,7 +22,7 @@ from .model import NoiseModel
 from .natural import natural_modes, orbited, ring_modes
 from .orders import kinematic_frequencies
 from .scatter import Tolerances
-from .shares import Shares
+from .source_contributions import SourceContributions
 from .spectrum import Spectrum
 from .vibration import Vibration, bandwidth, needed_steps, rounding
 
@@ -96,11 +96,11 @@ def record_warnings(
     ]
 
 
-def share_warnings(found: Shares) -> list[str]:
+def contribution_warnings(found: SourceContributions) -> list[str]:
     """Return warnings about shares of sources.
 
     Args:
-        found: From `shares`.
+        found: From `source_contributions`.
 
     Returns:
         A sentence, or none.

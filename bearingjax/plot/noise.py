@@ -11,7 +11,7 @@ from ..noise import (
     Bands,
     ContactStates,
     Line,
-    Shares,
+    SourceContributions,
     Spectrum,
     Vibration,
 )
@@ -254,20 +254,27 @@ def level_distribution(
     )
 
 
-def source_bars(shares: Shares, ax: Ax = None) -> Any:
+def source_bars(contributions: SourceContributions, ax: Ax = None) -> Any:
     """Plot the share of each source in the mean square of the acceleration [%].
 
     Args:
-        shares: From `shares`.
+        contributions: From `source_contributions`.
 
     Returns:
         The axes; the largest source is at the top. Thin lines are standard errors.
     """
     ax = axes_or_new(ax)
-    part = 100.0 * np.asarray(shares.share) / float(shares.mean_square)
+    part = 100.0 * np.asarray(contributions.share) / float(contributions.mean_square)
     order = np.argsort(part)
-    names = [SOURCES[shares.sources[k]].replace(" of the ", "\nof the ") for k in order]
-    error = 100.0 * np.asarray(shares.error)[order] / float(shares.mean_square)
+    names = [
+        SOURCES[contributions.sources[k]].replace(" of the ", "\nof the ")
+        for k in order
+    ]
+    error = (
+        100.0
+        * np.asarray(contributions.error)[order]
+        / float(contributions.mean_square)
+    )
     bars = ax.barh(
         names, part[order], color=CURVES[0], xerr=np.nan_to_num(error), ecolor=GREY
     )

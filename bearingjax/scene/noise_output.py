@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
-from ..noise import Shares, write_sound
+from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
 from .noise_run import NoiseRun, RandomBearings
 from .noise_scene import DIRECTIONS
@@ -99,20 +99,20 @@ def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
             "level": np.asarray(levels.percentile(PERCENTILES)).tolist(),
         },
     }
-    if many.shares is not None:
-        told["sources"] = list(many.shares.sources)
-        told["part"] = parts_of(many.shares).tolist()
-        total = float(many.shares.mean_square)
-        told["part_error"] = (np.asarray(many.shares.error) / total).tolist()
-        told["part_by_band"] = np.asarray(many.shares.by_band).tolist()
+    if many.contributions is not None:
+        told["sources"] = list(many.contributions.sources)
+        told["part"] = parts_of(many.contributions).tolist()
+        total = float(many.contributions.mean_square)
+        told["part_error"] = (np.asarray(many.contributions.error) / total).tolist()
+        told["part_by_band"] = np.asarray(many.contributions.by_band).tolist()
         told["tighter"] = [
-            {"name": name, "gain": float(many.shares.gain_together(ratio))}
+            {"name": name, "gain": float(many.contributions.gain_together(ratio))}
             for name, ratio in tighter
         ]
     return told
 
 
-def parts_of(found: Shares) -> np.ndarray:
+def parts_of(found: SourceContributions) -> np.ndarray:
     """Return the part of the mean square lost without each source (source,) [1]."""
     return np.asarray(found.share) / float(found.mean_square)
 

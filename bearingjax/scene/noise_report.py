@@ -140,7 +140,10 @@ def _many(run):
     names = [f"{share:g} % are below" for share in PERCENTILES]
     columns = [Column("level", names), *_by_direction(levels)]
     grid = Grid(columns, f"{task.bearings} random bearings")
-    return [grid, *([] if many.shares is None else _sources(task, many.shares))]
+    return [
+        grid,
+        *([] if many.contributions is None else _sources(task, many.contributions)),
+    ]
 
 
 def _sources(task, found):

@@ -13,12 +13,13 @@ from ..noise import (
     Line,
     MonteCarlo,
     NaturalModes,
-    Shares,
+    SourceContributions,
     Spectrum,
     Vibration,
     band_levels,
     bridged,
     contact_states,
+    contribution_warnings,
     level,
     line_causes,
     model_warnings,
@@ -28,13 +29,12 @@ from ..noise import (
     record_warnings,
     ring_modes,
     rounding,
-    share_warnings,
-    shares,
+    source_contributions,
     spectrum,
     total_root_mean_square,
     vibration,
 )
-from ..noise.standing import why
+from ..noise.static_start import why
 from ..numerics.result import Result
 from .noise_scene import DIRECTIONS, NoiseScene
 
@@ -78,12 +78,12 @@ class RandomBearings:
 
     Attributes:
         levels: Levels of each bearing.
-        shares: Share of each source of scatter in the mean square, from a subset of
-            the bearings; `None` if none of these was solved.
+        contributions: Share of each source of scatter in the mean square, from a subset
+            of the bearings; `None` if none of these was solved.
     """
 
     levels: MonteCarlo
-    shares: Shares | None
+    contributions: SourceContributions | None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -169,8 +169,8 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         warned += (
             f"{many.levels.failed} of {task.bearings} random bearings were not solved",
         )
-    if many is not None and many.shares is not None:
-        warned += tuple(share_warnings(many.shares))
+    if many is not None and many.contributions is not None:
+        warned += tuple(contribution_warnings(many.contributions))
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
@@ -211,7 +211,7 @@ def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
     sensor = task.line.sensor
     along = None if sensor is None else np.asarray(sensor.direction)
     with contextlib.suppress(FloatingPointError):
-        made = shares(
+        made = source_contributions(
             *given,
             max(fewer, batch),
             key,

@@ -19,7 +19,7 @@ from bearingjax.noise import (
     needed_steps,
 )
 from bearingjax.noise import vibration as in_time
-from bearingjax.noise.standing import standing
+from bearingjax.noise.static_start import static_start
 
 SPEED = bj.Speed(inner=600.0)
 BALLS = bj.BearingElement(
@@ -73,7 +73,7 @@ def test_damping_follows_the_rate_of_loads_along_their_normals():
         AXIAL, load=load, speed=turning, errors=FormErrors(), retardation=1e-4
     )
     system = model.still_system()
-    start, result = standing(model, system)
+    start, result = static_start(model, system)
     assert result == 0
     h, zero = 1e-7, jnp.zeros(())
     loads = [np.asarray(system.contact_loads(start, zero + k * h)) for k in (-1, 0, 1)]

@@ -22,7 +22,7 @@ _CARRIES = 1e-7
 [1]: round-off of a search without load."""
 
 
-def standing(
+def static_start(
     model: NoiseModel, system: NoiseSystem, orbits: bool = True
 ) -> tuple[Float[Array, " n"], Int[Array, ""]]:
     """Return the equilibrium of ring and elements under load, without form errors.
