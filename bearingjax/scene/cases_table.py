@@ -55,7 +55,7 @@ MOST_DESIGNS = 10**5
 
 
 @dataclasses.dataclass(frozen=True)
-class Structure:
+class DesignGroup:
     """Designs solved by one program: with the same classes, counts and parts, and the
     same catalogue bearing.
 
@@ -89,7 +89,7 @@ class CaseTable:
 
     Attributes:
         scene: The scene without its cases.
-        structures: The bearing, preloaded and mounted; several designs are grouped
+        design_groups: The bearing, preloaded and mounted; several designs are grouped
             by structure.
         cases: The cases.
         varied: Keys that vary, in order.
@@ -102,7 +102,7 @@ class CaseTable:
     """
 
     scene: Scene
-    structures: tuple[Structure, ...]
+    design_groups: tuple[DesignGroup, ...]
     cases: Cases
     varied: tuple[str, ...]
     settings: tuple[dict[str, Any], ...]
@@ -202,13 +202,13 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
-    structures, design, made, odd = _designs(data, path, columns)
-    _check_outputs(table, outputs, structures)
+    design_groups, design, made, odd = _designs(data, path, columns)
+    _check_outputs(table, outputs, design_groups)
     cases = _cases(table, scene, columns, design)
-    odd += speeds_told(structures, cases)
+    odd += speed_warnings(design_groups, cases)
     return CaseTable(
         scene=scene,
-        structures=structures,
+        design_groups=design_groups,
         cases=cases,
         varied=tuple(column.key for column in columns),
         settings=made,
@@ -246,14 +246,18 @@ def _makes_design(key: str) -> bool:
     return "." in key and key.partition(".")[0] in DESIGN
 
 
-def speeds_told(structures: Sequence[Structure], cases: Cases) -> tuple[str, ...]:
+def speed_warnings(
+    design_groups: Sequence[DesignGroup], cases: Cases
+) -> tuple[str, ...]:
     """Warn of case speeds above the catalogue speeds of each bearing."""
     turns, told = turns_of(cases), []
-    for name in dict.fromkeys(part.designation for part in structures):
-        mine = [part.of(cases) for part in structures if part.designation == name]
+    for name in dict.fromkeys(part.designation for part in design_groups):
+        mine = [part.of(cases) for part in design_groups if part.designation == name]
         own = np.zeros(cases.count)
         own[np.concatenate(mine)] = turns[np.concatenate(mine)]
-        bearing = next(p.scene for p in structures if p.designation == name).installed
+        bearing = next(
+            p.scene for p in design_groups if p.designation == name
+        ).installed
         told += bearing.speed_warnings(own)
     return tuple(told)
 
@@ -295,11 +299,11 @@ def _placed(cases, path) -> dict[str, Any]:
     return {**cases, "file": str((path.parent / name).resolve())} if name else cases
 
 
-def _check_outputs(table, outputs, structures) -> None:
+def _check_outputs(table, outputs, design_groups) -> None:
     """Reject outputs per rolling element if the number of elements varies."""
     sizes = {
         tuple(row.bearing.n_elements for row in rows_of(part.element.bearing))
-        for part in structures
+        for part in design_groups
     }
     lives = [name for name in LIFE_OUTPUTS if name != "damage_share"]
     whole = ("displacement", "force", "stiffness", *SUMMARIES, *lives)
@@ -431,7 +435,7 @@ def _designs(data, path, columns):
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
-        return (Structure(scene.running(), None, scene),), None, ({},), ()
+        return (DesignGroup(scene.running(), None, scene),), None, ({},), ()
     # Repeated values are merged, and so are repeated designs.
     codes = []
     for column in varied:
@@ -467,15 +471,15 @@ def _designs(data, path, columns):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
         key = jax.tree.structure(element), shapes, _rated_as(scenes[number])
         alike.setdefault(key, []).append(number)
-    structures = tuple(
-        Structure(
+    design_groups = tuple(
+        DesignGroup(
             stack_designs([elements[k] for k in numbers]),
             np.array(numbers),
             scenes[numbers[0]],
         )
         for numbers in alike.values()
     )
-    return structures, design.reshape(-1), tuple(made), tuple(odd)
+    return design_groups, design.reshape(-1), tuple(made), tuple(odd)
 
 
 def _rated_as(scene: Scene) -> tuple[Any, ...]:

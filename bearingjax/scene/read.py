@@ -25,6 +25,7 @@ from .fit_table import Fits, fit_warnings, installed, read_fits
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
+from .preload_of_set import PreloadOfSet
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -34,7 +35,6 @@ from .scene_file import (
     shipped_scenes,
 )
 from .schema import read_keys
-from .set_preload import SetPreload
 from .table import Table
 
 
@@ -61,7 +61,7 @@ class Scene:
         catalogue: Catalogue entry of its `designation`, or `None` without one.
         inputs: The scene as it was read, all quantities in SI, defaults filled in, in
             the form of a scene file.
-        set_preload: Preload of a set on its seats, or `None`: not computed
+        preload_of_set: Preload of a set on its seats, or `None`: not computed
             (`with_set_preload`).
     """
 
@@ -81,7 +81,7 @@ class Scene:
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
-    set_preload: SetPreload | None = None
+    preload_of_set: PreloadOfSet | None = None
 
     @property
     def moving_ring(self) -> str:
