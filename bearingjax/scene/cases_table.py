@@ -202,10 +202,10 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
-    design_groups, design, made, odd = _designs(data, path, columns)
+    design_groups, design, made, warned = _designs(data, path, columns)
     _check_outputs(table, outputs, design_groups)
     cases = _cases(table, scene, columns, design)
-    odd += speed_warnings(design_groups, cases)
+    warned += speed_warnings(design_groups, cases)
     return CaseTable(
         scene=scene,
         design_groups=design_groups,
@@ -213,7 +213,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=outputs,
-        warnings=_alike(scene.warnings, odd),
+        warnings=_alike(scene.warnings, warned),
         inputs=_inputs(scene, columns, _placed(data["cases"], path)),
     )
 
@@ -272,11 +272,11 @@ def turns_of(cases: Cases) -> np.ndarray:
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
-def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
+def _alike(first: Iterable[str], warned: Sequence[str]) -> tuple[str, ...]:
     """Merge the warnings of a scene and of its designs; of those that differ only in
     their numbers the first is kept."""
     kinds: dict[str, list[str]] = {}
-    for text in dict.fromkeys((*first, *odd)):
+    for text in dict.fromkeys((*first, *warned)):
         kinds.setdefault(re.sub(r"\d[\d.e+-]*", "#", text), []).append(text)
     return tuple(
         texts[0] + (f" ({len(texts)} designs alike)" if len(texts) > 1 else "")
@@ -448,7 +448,7 @@ def _designs(data, path, columns):
     if len(first) > MOST_DESIGNS:
         problem = f"make {len(first)} designs; at most {MOST_DESIGNS}"
         raise SceneError(f"{path.name}: `cases`: {problem}")
-    made, elements, scenes, odd = [], [], [], []
+    made, elements, scenes, warned = [], [], [], []
     for case in first:
         settings = {c.key: c.values[c.index[case]] for c in varied}
         changed = copy.deepcopy(data)
@@ -465,7 +465,7 @@ def _designs(data, path, columns):
         made.append(dict(pairs))
         elements.append(scene.running())
         scenes.append(scene)
-        odd += scene.warnings
+        warned += scene.warnings
     alike: dict[Any, list[int]] = {}
     for number, element in enumerate(elements):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
@@ -479,7 +479,7 @@ def _designs(data, path, columns):
         )
         for numbers in alike.values()
     )
-    return design_groups, design.reshape(-1), tuple(made), tuple(odd)
+    return design_groups, design.reshape(-1), tuple(made), tuple(warned)
 
 
 def _rated_as(scene: Scene) -> tuple[Any, ...]:

@@ -9,7 +9,7 @@ from .._version import __version__
 from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
 from .noise_run import NoiseRun, RandomBearings
-from .noise_scene import DIRECTIONS
+from .noise_scene import AXES
 from .tolerance_table import Tighter
 
 
@@ -61,9 +61,9 @@ def _analysis(run: NoiseRun) -> dict[str, Any]:
     analysis = run.analysis
     assert analysis is not None  # checked by the caller
     states = analysis.states
-    three = len(DIRECTIONS)
+    three = len(AXES)
     return {
-        "direction": list(DIRECTIONS),
+        "direction": list(AXES),
         "time": analysis.record.time.tolist(),
         "acceleration": analysis.acceleration.tolist(),
         "displacement": np.asarray(analysis.record.displacement)[:, :three].tolist(),
@@ -130,7 +130,7 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
         ("acceleration", "m/s²", analysis.acceleration),
         ("displacement", "m", np.asarray(analysis.record.displacement)),
     ):
-        for k, direction in enumerate(DIRECTIONS):
+        for k, direction in enumerate(AXES):
             columns[f"{name}_{direction} [{unit}]"] = values[:, k]
     return columns
 
@@ -146,7 +146,7 @@ def loudest_direction(run: NoiseRun) -> np.ndarray:
         direction = np.asarray(sensor.direction)
         return direction / np.linalg.norm(direction)
     assert run.analysis is not None
-    return np.eye(len(DIRECTIONS))[int(np.argmax(run.analysis.level))]
+    return np.eye(len(AXES))[int(np.argmax(run.analysis.level))]
 
 
 def write_noise_sound(path: str | Path, run: NoiseRun) -> float:

@@ -8,7 +8,7 @@ from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
-from .noise_scene import DIRECTIONS
+from .noise_scene import AXES
 from .report import bearing_text
 from .report_model import Column, Grid, Report
 
@@ -93,7 +93,7 @@ def _by_direction(levels):
     held = np.where(levels > LOWEST_LEVEL, levels, np.nan)
     return [
         Column(name, values, "dB", ".1f")
-        for name, values in zip(DIRECTIONS, held.T, strict=True)
+        for name, values in zip(AXES, held.T, strict=True)
     ]
 
 
@@ -152,10 +152,8 @@ def _sources(task, found):
     where = "in all directions"
     if sensor is not None:
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
-        named = [
-            k for k, d in enumerate(np.eye(len(DIRECTIONS))) if np.allclose(d, along)
-        ]
-        told = DIRECTIONS[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
+        named = [k for k, d in enumerate(np.eye(len(AXES))) if np.allclose(d, along)]
+        told = AXES[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
         where = f"along the sensor ({told})"
     total = float(found.mean_square)
     parts, errors = parts_of(found), np.asarray(found.error) / total

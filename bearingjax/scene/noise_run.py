@@ -36,7 +36,7 @@ from ..noise import (
 )
 from ..noise.static_start import why
 from ..numerics.result import Result
-from .noise_scene import DIRECTIONS, NoiseScene
+from .noise_scene import AXES, NoiseScene
 
 LARGEST_LINES = 12
 """Number of largest spectral lines reported regardless of their neighbours."""
@@ -69,7 +69,7 @@ class NoiseAnalysis:
     @property
     def acceleration(self) -> np.ndarray:
         """Acceleration of the moving ring (time, direction) [m/s²]."""
-        return np.asarray(self.record.acceleration)[:, : len(DIRECTIONS)]
+        return np.asarray(self.record.acceleration)[:, : len(AXES)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -234,7 +234,7 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         record: The vibration.
         modes: Natural modes, in NumPy.
     """
-    acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
+    acceleration = np.asarray(record.acceleration)[:, : len(AXES)]
     shaft = float(record.shaft_frequency)
     found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
     bearing = task.model.element.bearing

@@ -26,7 +26,7 @@ from ..noise import (
 )
 from ..noise.reference_levels import NORM
 from .deviations_table import read_deviations
-from .noise_scene import DIRECTIONS, NoiseScene
+from .noise_scene import AXES, NoiseScene
 from .read import Scene, scene_of, with_speed_told
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
@@ -83,7 +83,7 @@ class VibrationKeys(Keys):
         reader=lambda table, name: _direction(table, name),
         json={
             "anyOf": [
-                {"enum": list(DIRECTIONS)},
+                {"enum": list(AXES)},
                 {
                     "type": "array",
                     "items": {"type": "number"},
@@ -309,8 +309,8 @@ def _direction(table: Table, name: str) -> list[float]:
         numbers = [one for one in given if isinstance(one, int | float)]
         if len(numbers) == 3 and len(given) == 3 and not any(map(_is_bool, given)):
             return [float(one) for one in numbers]
-    elif given in DIRECTIONS:
-        return [float(given == axis) for axis in DIRECTIONS]
+    elif given in AXES:
+        return [float(given == axis) for axis in AXES]
     problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
     raise table.error(name, problem)
 

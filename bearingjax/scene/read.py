@@ -18,10 +18,10 @@ from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from .bearing_table import designated, read_bearing
-from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_warnings, installed, read_fits
+from .leftover_keys import leftover_warnings
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
@@ -197,10 +197,10 @@ def scene_of(
         bearing, preload = read_bearing(table, top)
     found = designated(table)
     catalogue = None if found is None else found[1].varied(varied)
-    odd = tuple(str(w.message) for w in caught)
+    warned = tuple(str(w.message) for w in caught)
     if found is not None:
-        odd += catalogue_doubts(*found, varied)
-    scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
+        warned += leftover_warnings(*found, varied)
+    scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())
 
@@ -226,14 +226,14 @@ def read_element(
     return element
 
 
-def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
+def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     numerics, asked = top.table("numerics"), read_keys(SolveKeys, top.table("numerics"))
     operating = read_keys(OperatingKeys, top.table("operating"))
     speed = operating.speed
     oil = None
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
-        odd += assumed
+        warned += assumed
     bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
     element = read_element(bearing, top.table("contact"), operating.table, numerics)
     numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
@@ -246,8 +246,8 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     life = read_life(top, bearing, speed, points)
     if fits is not None:
         fixed_to = "space" if life is None else life.load_fixed_to
-        odd += tuple(fit_warnings(fits, fixed_to))
-    odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
+        warned += tuple(fit_warnings(fits, fixed_to))
+    warned += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,
         element=element,
@@ -262,7 +262,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         tolerance=asked.tolerance,
         points=points,
         life=life,
-        warnings=odd,
+        warnings=warned,
         catalogue=catalogue,
     )
 

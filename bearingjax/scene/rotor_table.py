@@ -288,8 +288,8 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         warnings.simplefilter("always")
         scene = _scene(top, path)
     top.finish()
-    odd = tuple(dict.fromkeys(str(w.message) for w in caught))
-    return dataclasses.replace(scene, warnings=odd, inputs=top.echo())
+    warned = tuple(dict.fromkeys(str(w.message) for w in caught))
+    return dataclasses.replace(scene, warnings=warned, inputs=top.echo())
 
 
 def _scene(top: Table, path: Path) -> RotorScene:

@@ -186,8 +186,8 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
         warming = np.asarray(warm_up(system, task.heat, task.times))
     state = jax.device_get(state)
     run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
-    odd = dict.fromkeys((*task.warnings, *_warnings(run)))
-    return dataclasses.replace(run, warnings=tuple(odd))
+    warned = dict.fromkeys((*task.warnings, *_warnings(run)))
+    return dataclasses.replace(run, warnings=tuple(warned))
 
 
 def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:

@@ -361,14 +361,14 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         cases.append(dataclasses.replace(one, hours=_hours(hours)))
         every.append(values)
     first = cases[0]
-    odd = dict.fromkeys(text for one in cases for text in one.warnings)
+    warned = dict.fromkeys(text for one in cases for text in one.warnings)
     return dataclasses.replace(
         first,
         hours=None,
         cases=tuple(cases),
         varied=tuple(c.key for c in columns if c.key != "hours"),
         settings=tuple(every),
-        warnings=tuple(odd),
+        warnings=tuple(warned),
         inputs={**first.inputs, "cases": data["cases"]},
     )
 
@@ -392,8 +392,8 @@ def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene
         warnings.simplefilter("always")
         scene = _scene(top, path, known)
     top.finish()
-    odd = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
-    return dataclasses.replace(scene, warnings=tuple(odd), inputs=top.echo())
+    warned = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
+    return dataclasses.replace(scene, warnings=tuple(warned), inputs=top.echo())
 
 
 def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:

@@ -101,10 +101,10 @@ def read_skid(
     cage = read_keys(CageKeys, top.table("cage"))
     dynamics = read_keys(DynamicsKeys, top.table("dynamics"))
     _check_dynamics(dynamics, scene, steady)
-    odd = lubricant.assumed
+    warned = lubricant.assumed
     if lubricant.supply != "oil_bath":
-        odd = (
-            *odd,
+        warned = (
+            *warned,
             f"`lubricant.supply` {lubricant.supply!r} counts for the friction torque of"
             " `solve` alone; what skids has films of plenty of oil, and the drag of"
             " `dynamics.fill`",
@@ -143,7 +143,7 @@ def read_skid(
         tolerance=dynamics.tolerance,
         max_steps=dynamics.max_steps,
         places=dynamics.places,
-        warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+        warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
         inputs={},
     )
     for keys in (lubricant, cage, dynamics):

@@ -283,7 +283,7 @@ class SkidSystem(AbstractSystem):
         units = self._units
         return own / units[0], shared / units[1], work / self.energy
 
-    def beside(self, time, shared):
+    def rest(self, time, shared):
         """Return rates from cage rotation and ring load, as `AbstractSystem`."""
         loads, units = self.around.loads, self._units[1]
         own = shared * units
