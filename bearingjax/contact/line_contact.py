@@ -256,8 +256,8 @@ class LineContact(AbstractLineContact):
         middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
         local = dataclasses.replace(
             self,
-            roller_profile=self.roller_profile.around(middle),
-            raceway_profile=self.raceway_profile.around(middle),
+            roller_profile=self.roller_profile.between_knots(middle),
+            raceway_profile=self.raceway_profile.between_knots(middle),
         )
         rule = of_intervals(quadrature, ends.shape[0] - 1)
         return local, rule.table(partial(_offset, local), ends, ends.dtype), rule

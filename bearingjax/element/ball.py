@@ -199,7 +199,7 @@ class BallSearchHints(SearchHints):
         constant = self.element.constants(free)
         return jnp.max(constant) * positive_power(approach, _N, _D)
 
-    def inertia_size(self):
+    def inertia_scale(self):
         turning = self.element.turning
         return None if turning is None else turning.centrifugal
 

@@ -195,7 +195,7 @@ def _size(element, x, magnitude):
 
 def _load(element, contacts):
     load = jnp.sum(contacts.aux)
-    inertia = element.hints.inertia_size()
+    inertia = element.hints.inertia_scale()
     return load if inertia is None else load + inertia
 
 

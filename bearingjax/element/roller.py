@@ -162,7 +162,7 @@ class RollerSearchHints(SearchHints):
         # A roller that is turned over meets no raceway.
         return gone | (jnp.abs(x[2]) > _TURNED * self.element.constants.half_length)
 
-    def inertia_size(self):
+    def inertia_scale(self):
         return None if self.element.body_force is None else norm(self._on_unknowns())
 
     def is_open(self, rings):

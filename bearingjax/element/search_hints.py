@@ -50,7 +50,7 @@ class SearchHints(eqx.Module):
         """
         return jnp.zeros_like(approach)
 
-    def inertia_size(self) -> Scalar | None:
+    def inertia_scale(self) -> Scalar | None:
         """Size of the inertia forces [N], or `None` if there are none."""
         return None
 
@@ -121,7 +121,7 @@ class SearchHints(eqx.Module):
     @property
     def may_be_ejected(self) -> bool:
         """Whether `is_ejected` needs to be evaluated. Static."""
-        return self.inertia_size() is not None
+        return self.inertia_scale() is not None
 
     def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
         """Whether inertia has moved the element to where no contact can hold it."""

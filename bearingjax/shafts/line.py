@@ -112,7 +112,7 @@ class ShaftLine(eqx.Module):
         x = x / jnp.sqrt(x @ x)
         return jnp.stack([x, jnp.cross(z, x), z])
 
-    def around(self, angle: Any) -> Float[Array, "3"]:
+    def radial_direction(self, angle: Any) -> Float[Array, "3"]:
         """Return the radial direction at an angle around the shaft, in global axes.
 
         Args:

@@ -310,6 +310,6 @@ def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:
     """Largest inertia force of a rolling element [N]."""
-    sizes = model.of_elements(lambda one: one.hints.inertia_size())
+    sizes = model.of_elements(lambda one: one.hints.inertia_scale())
     found = [jnp.max(size) for size in sizes if size is not None]
     return jnp.max(jnp.stack(found)) if found else jnp.zeros_like(like)
