@@ -73,7 +73,7 @@ def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
     found: dict[str, dict[int, set[int]]] = {}
     for one in causes:
         found.setdefault(one.words, {}).setdefault(one.row, set()).add(one.order)
-    told = []
+    texts = []
     for words, by_row in found.items():
         # Rows with the same orders are told together.
         together: dict[tuple[int, ...], list[int]] = {}
@@ -83,8 +83,8 @@ def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
             numbers = " and ".join(map(str, sorted(of)))
             where = f" of row{'s' if len(of) > 1 else ''} {numbers}" if rows > 1 else ""
             waves = "" if orders == (0,) else f", order {', '.join(map(str, orders))}"
-            told.append(f"{words}{where}{waves}")
-    return tuple(told)
+            texts.append(f"{words}{where}{waves}")
+    return tuple(texts)
 
 
 def _known(model: NoiseModel, highest: float) -> Iterator[_Cause]:

@@ -179,7 +179,7 @@ def source_contributions(
     done = 0
     shaft = float(model.shaft_speed) / (2.0 * np.pi)
 
-    def told(count, _):
+    def report_progress(count, _):
         if progress is not None:
             progress(done + count, whole * n)
 
@@ -197,7 +197,7 @@ def source_contributions(
     for change in runs:
         found = [
             (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r), part)
-            for part, a, r in records.batches(keys, batch, told, change)
+            for part, a, r in records.batches(keys, batch, report_progress, change)
         ]
         parts = ([a[:part] for a in one] for *one, part in found)
         square, of_each, result = (np.concatenate(a) for a in zip(*parts, strict=True))
@@ -210,7 +210,7 @@ def source_contributions(
         for part, at in records.parts(n, batch):
             slope = _slopes(*records.given, keys[at], records.counts, along)
             slopes.append([slope[name][:part] for name in sources])
-            told(min(len(slopes) * batch, n), n)
+            report_progress(min(len(slopes) * batch, n), n)
     if not fine.any():
         raise FloatingPointError(
             f"source_contributions: of {n} bearings none has a result in all runs;"

@@ -58,11 +58,11 @@ def model_warnings(
     Returns:
         A sentence each; empty if there are none.
     """
-    told = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
+    band_limit = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
     return [
         *_few_steps(model, samples, steps),
         *_wandering_modes(model),
-        *_above(model, told, tolerances),
+        *_above(model, band_limit, tolerances),
     ]
 
 
@@ -139,26 +139,26 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
         if int(modes.result) == Result.CONVERGED:
             for name, frequency in ring_modes(modes, model):
                 every.setdefault(name, []).append(frequency)
-    told = [
+    changes = [
         f"{name} between {min(known):.5g} and {max(known):.5g} Hz"
         for name, known in every.items()
         if max(known) > (1.0 + _WANDERING) * min(known)
     ]
-    if told:
+    if changes:
         yield (
             "natural modes are told of where the rolling elements stand at time zero;"
-            f" as these orbit, they change: {'; '.join(told)}"
+            f" as these orbit, they change: {'; '.join(changes)}"
         )
 
 
-def _above(model, told, tolerances) -> Iterator[str]:
+def _above(model, band_limit, tolerances) -> Iterator[str]:
     """Warn of modes and waves above the bandwidth of the samples."""
     cut = (
-        f"above {told:.5g} Hz, up to which the samples tell the vibration; raise"
+        f"above {band_limit:.5g} Hz, up to which the samples tell the vibration; raise"
         " `vibration.samples` to hear what they make there"
     )
     for name, frequency in ring_modes(jax.device_get(natural_modes(model)), model):
-        if frequency > told:
+        if frequency > band_limit:
             yield f"the {name} at {frequency:.5g} Hz lies {cut}"
     drawn = _highest_drawn(tolerances)
     for where, bearing, errors in _rows(model):
@@ -171,7 +171,7 @@ def _above(model, told, tolerances) -> Iterator[str]:
         for part, given in _parts(errors).items():
             highest = max(_highest(given), drawn[part])
             rate = highest * passing[part]
-            if rate > told:
+            if rate > band_limit:
                 yield (
                     f"waves of order {highest} of the {part}{where} are met at"
                     f" {rate:.5g} Hz, {cut}"

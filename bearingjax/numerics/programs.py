@@ -347,8 +347,8 @@ def _processor() -> str:
             first = [line for line in iter(lines.readline, "\n") if line]
     except OSError:
         return repr(platform.uname())
-    told = [line for line in first if line.split("\t")[0].split(":")[0] in names]
-    return platform.machine() + "".join(told)
+    described = [line for line in first if line.split("\t")[0].split(":")[0] in names]
+    return platform.machine() + "".join(described)
 
 
 @contextlib.contextmanager

@@ -57,7 +57,7 @@ class AbstractMeasure(eqx.Module):
         """Measure that reports show in its place: itself, or a more familiar one."""
         return self
 
-    def told(self, value: Any) -> Any:
+    def reported_value(self, value: Any) -> Any:
         """Convert a value of this measure to that of `reported_as`."""
         return value
 

@@ -187,12 +187,12 @@ def optimise(
     bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
     with bar:
 
-        def told():
+        def advance():
             bar.set_postfix_str(f"{trials.steps[-1].objective:.6g} of the start")
             bar.update()
 
         n_bounds = len(problem.bounds)
-        ending = search(method, trials, n_bounds, max_steps, tolerance, told)
+        ending = search(method, trials, n_bounds, max_steps, tolerance, advance)
     return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
 
 

@@ -76,7 +76,7 @@ def search(
     n_bounds: int,
     max_steps: int,
     tolerance: float,
-    told: Callable[[], None] = lambda: None,
+    on_step: Callable[[], None] = lambda: None,
 ) -> SearchOutcome:
     """Look for the least objective with all margins at least 0.
 
@@ -91,7 +91,7 @@ def search(
         n_bounds: Number of margins.
         max_steps: Step limit.
         tolerance: See `optimise`.
-        told: Called after every step.
+        on_step: Called after every step.
     """
     slopes, run = takes_gradients(method), _method(method, n_bounds, max_steps)
 
@@ -104,7 +104,7 @@ def search(
     def step(unit):
         trial = attempt(unit)
         trials.accept(trial)
-        told()
+        on_step()
         if slopes and not trial.fault and arrived(trial, tolerance):
             raise _Flat
 

@@ -81,8 +81,8 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
     ax.set_axisbelow(True)
     every = _radial_labels(polar, azimuth, load, limit, 2 * len(rows) * width)
     balls = isinstance(solution, BallSolution)
-    told = f"; circles every {every:g} {unit}" if every else ""
-    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{told}")
+    note = f"; circles every {every:g} {unit}" if every else ""
+    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{note}")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
         loc="center left",
@@ -132,13 +132,13 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
     k = int(np.argmin(beside + 0.3 * np.abs(np.sin(between))))
     where, reach = between[k], max(most[k], most[(k + 1) % len(angle)])
     # The outermost would meet the labels of the azimuth.
-    told = ticks[ticks <= 0.88 * limit]
-    room = (gaps[k] - bars) * _RADIUS * (told + 0.3 * limit) / (1.3 * limit)
+    labelled = ticks[ticks <= 0.88 * limit]
+    room = (gaps[k] - bars) * _RADIUS * (labelled + 0.3 * limit) / (1.3 * limit)
     wide, low = _TICK_LABEL
     needed = low * abs(np.cos(where)) + wide * abs(np.sin(where))
-    if np.any((room < needed) & (told < reach)):
+    if np.any((room < needed) & (labelled < reach)):
         return float(ticks[0])
-    for tick in told:
+    for tick in labelled:
         ax.text(
             where,
             tick,

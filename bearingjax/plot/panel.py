@@ -111,7 +111,7 @@ class Bars:
     colour: Any = OUTER
     away: float = 0.0
     width: float = 0.8
-    told: Any = None
+    labels: Any = None
     look: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
     def draw(self, ax, across: float, up: float) -> None:
@@ -120,10 +120,10 @@ class Bars:
         places = np.arange(len(heights)) + self.away
         more = {"label": self.label} if self.label else {}
         bars = ax.bar(places, heights, self.width, color=self.colour, **more)
-        if self.told is not None:
-            words = isinstance(self.told, list)
-            told = {"labels": self.told} if words else {"fmt": self.told}
-            ax.bar_label(bars, **told, fontsize=SMALL, **{"padding": 2, **self.look})
+        if self.labels is not None:
+            words = isinstance(self.labels, list)
+            text = {"labels": self.labels} if words else {"fmt": self.labels}
+            ax.bar_label(bars, **text, fontsize=SMALL, **{"padding": 2, **self.look})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -212,9 +212,9 @@ def curves(x: Any, columns: Any, names: Sequence[str] = (), **look: Any) -> list
         look: As in `Curve`.
     """
     columns = np.asarray(columns, float)
-    told = [*names, *(f"_curve {k}" for k in range(len(names), columns.shape[1]))]
+    labels = [*names, *(f"_curve {k}" for k in range(len(names), columns.shape[1]))]
     return [
-        Curve(x, column, told[k], CURVES[k % len(CURVES)], look=look)
+        Curve(x, column, labels[k], CURVES[k % len(CURVES)], look=look)
         for k, column in enumerate(columns.T)
     ]
 

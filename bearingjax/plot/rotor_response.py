@@ -71,14 +71,14 @@ def response_curve(
             part, label = slice(first, last + 1), f"_{name}" if number else name
             x, y, look = frequency[part], amplitude[part], {"lw": 1.6, "zorder": 3}
             marks.append(Curve(x, y, label, colour, style, look))
-    told = set()
+    named = set()
     look = {"mec": "black", "ms": 6, "ls": "none", "zorder": 5}
     for event in branch.events:
         name, mark = EVENTS[event.kind]
-        label = f"_{name}" if name in told else name
+        label = f"_{name}" if name in named else name
         height = _at_event(branch, event, amplitude)
         marks.append(Curve([event.frequency], [height], label, "white", mark, look))
-        told.add(name)
+        named.add(name)
     return _panel("Response", _EXCITATION, marks, unit, frequency)
 
 

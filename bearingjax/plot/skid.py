@@ -162,7 +162,7 @@ def power_bars(found: SteadySkid | SteadyRollerSkid, ax: Ax = None) -> Panel:
 
     return Panel(
         "Power of the drive, and where it goes", Axis(""), Axis("power", "W"),
-        [Bars(heights, "", colours, told="%.3g")], names=list(bars), also=small,
+        [Bars(heights, "", colours, labels="%.3g")], names=list(bars), also=small,
     )  # fmt: skip
 
 

@@ -79,12 +79,12 @@ def sweep_overview(
             ax.locator_params(axis="x", integer=True)
         if k == 0 and any(curve.name for curve in curves):
             # Curves of one colour are told once.
-            told = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+            handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
             figure.legend(
-                told.values(),
-                told.keys(),
+                handles.values(),
+                handles.keys(),
                 loc="outside lower center",
-                ncols=min(3, len(told)),
+                ncols=min(3, len(handles)),
                 fontsize=SMALL,
             )
     if not shown:
@@ -138,8 +138,8 @@ def _curves(inputs, good) -> tuple[str, list[_Curve]]:
         rising = mine[np.argsort(x[mine])]
         colour = int(np.searchsorted(kinds, values[mine[0]])) if name else 0
         text, factor = _shown(name, values) if name else ("", 0.0)
-        told = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
-        curves.append(_Curve(scale * x[rising], rising, colour, told))
+        name_and_value = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
+        curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
     return words, curves
 
 

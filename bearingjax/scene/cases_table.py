@@ -250,7 +250,7 @@ def speed_warnings(
     design_groups: Sequence[DesignGroup], cases: Cases
 ) -> tuple[str, ...]:
     """Warn of case speeds above the catalogue speeds of each bearing."""
-    turns, told = turns_of(cases), []
+    turns, texts = turns_of(cases), []
     for name in dict.fromkeys(part.designation for part in design_groups):
         mine = [part.of(cases) for part in design_groups if part.designation == name]
         own = np.zeros(cases.count)
@@ -258,8 +258,8 @@ def speed_warnings(
         bearing = next(
             p.scene for p in design_groups if p.designation == name
         ).installed
-        told += bearing.speed_warnings(own)
-    return tuple(told)
+        texts += bearing.speed_warnings(own)
+    return tuple(texts)
 
 
 def turns_of(cases: Cases) -> np.ndarray:

@@ -91,7 +91,7 @@ PERCENTILES = (5.0, 50.0, 95.0)
 
 def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
-    told: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         "level": np.asarray(levels.level).tolist(),
         "band_level": np.asarray(levels.bands).tolist(),
         "percentile": {
@@ -100,16 +100,16 @@ def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
         },
     }
     if many.contributions is not None:
-        told["sources"] = list(many.contributions.sources)
-        told["part"] = parts_of(many.contributions).tolist()
+        numbers["sources"] = list(many.contributions.sources)
+        numbers["part"] = parts_of(many.contributions).tolist()
         total = float(many.contributions.mean_square)
-        told["part_error"] = (np.asarray(many.contributions.error) / total).tolist()
-        told["part_by_band"] = np.asarray(many.contributions.by_band).tolist()
-        told["tighter"] = [
+        numbers["part_error"] = (np.asarray(many.contributions.error) / total).tolist()
+        numbers["part_by_band"] = np.asarray(many.contributions.by_band).tolist()
+        numbers["tighter"] = [
             {"name": name, "gain": float(many.contributions.gain_together(ratio))}
             for name, ratio in tighter
         ]
-    return told
+    return numbers
 
 
 def parts_of(found: SourceContributions) -> np.ndarray:

@@ -123,12 +123,12 @@ def _lines(run):
 
 def _states(run):
     states = run.analysis.states
-    told = ", ".join(
+    text = ", ".join(
         f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
     )
     kind = f"{run.task.model.element.bearing.noun}s"
     return (
-        f"contacts of the {kind}, share of the time: {told};"
+        f"contacts of the {kind}, share of the time: {text};"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"
     )
 
@@ -153,8 +153,8 @@ def _sources(task, found):
     if sensor is not None:
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
         named = [k for k, d in enumerate(np.eye(len(AXES))) if np.allclose(d, along)]
-        told = AXES[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
-        where = f"along the sensor ({told})"
+        text = AXES[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
+        where = f"along the sensor ({text})"
     total = float(found.mean_square)
     parts, errors = parts_of(found), np.asarray(found.error) / total
     gains, factors = np.asarray(found.gain()), dict(task.tighter)
@@ -180,13 +180,13 @@ def _sources(task, found):
 def _in_bands(task, found):
     """Tabulate the largest source of each band."""
     parts = np.asarray(found.by_band)
-    told = []
+    largest = []
     for centre, column in zip(task.bands.centre, parts.T, strict=True):
         if np.isfinite(column).all() and column.max() > _WORTH:
             k = int(np.argmax(column))
-            told.append((f"{centre:g}", SOURCES[found.sources[k]], column[k]))
+            largest.append((f"{centre:g}", SOURCES[found.sources[k]], column[k]))
     by_source: dict[str, list[str]] = {}
-    for centre, name, part in told:
+    for centre, name, part in largest:
         by_source.setdefault(name, []).append(f"{centre} ({100.0 * part:.0f} %)")
     for name, bands in by_source.items():
         yield f"{name}, the largest part of the bands, Hz: {', '.join(bands)}"

@@ -116,18 +116,20 @@ class NoiseRun:
         return self.result is Result.CONVERGED
 
 
-def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> NoiseRun:
+def run_noise(
+    task: NoiseScene, on_stage: Callable[[str], None] | None = None
+) -> NoiseRun:
     """Simulate and evaluate the vibration of the bearing of a scene.
 
     Args:
         task: From `read_noise`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run with its result code; a failed solve does not raise.
     """
     model = task.model
-    _tell(told, "natural modes")
+    _tell(on_stage, "natural modes")
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
@@ -141,7 +143,7 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         model, line = models
         task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
-    _tell(told, "vibration")
+    _tell(on_stage, "vibration")
     record = vibration(
         model,
         turns=task.turns,
@@ -164,7 +166,7 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
     analysis = analyse(task, record, modes)
     doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
     warned += tuple(doubtful)
-    many = _many(task, steps, told) if task.bearings else None
+    many = _many(task, steps, on_stage) if task.bearings else None
     if many is not None and many.levels.failed:
         warned += (
             f"{many.levels.failed} of {task.bearings} random bearings were not solved",
@@ -174,12 +176,12 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
-def _tell(told, stage):
-    if told is not None:
-        told(stage)
+def _tell(on_stage, stage):
+    if on_stage is not None:
+        on_stage(stage)
 
 
-def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
+def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
@@ -193,7 +195,7 @@ def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
     key = jax.random.key(task.seed)
 
     def progress(words):
-        return lambda done, whole: _tell(told, f"{words}: {done} of {whole}")
+        return lambda done, whole: _tell(on_stage, f"{words}: {done} of {whole}")
 
     levels = monte_carlo(
         *given,

@@ -234,8 +234,8 @@ def _shown(found):
     if measure is found.objective:
         return {}
     ends = {"before": before, "after": after}
-    told = {k: _finite(x) for k, x in ends.items()}
-    return {label_of(measure).replace(" ", "_"): told}
+    finite = {k: _finite(x) for k, x in ends.items()}
+    return {label_of(measure).replace(" ", "_"): finite}
 
 
 def _measured(outcome: Outcome):
@@ -299,7 +299,7 @@ def _told(measure, values):
     """Return the displayed form of a measure, and its (smooth, exact) pairs."""
     if not isinstance(measure, AbstractMeasure) or measure.reported_as is measure:
         return measure, values
-    shown = [tuple(measure.told(x) for x in pair) for pair in values]
+    shown = [tuple(measure.reported_value(x) for x in pair) for pair in values]
     return measure.reported_as, shown
 
 

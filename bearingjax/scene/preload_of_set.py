@@ -228,8 +228,8 @@ def preload_report(found: PreloadOfSet) -> list[Part]:
     ]
     ends = [r for _, r in states.values()]
     if any(ends):
-        told = [" to ".join(map(_newtons, r)) if r else "-" for r in ends]
-        columns.append(Column("over the tolerances", told))
+        texts = [" to ".join(map(_newtons, r)) if r else "-" for r in ends]
+        columns.append(Column("over the tolerances", texts))
     return [Grid(columns, "preload of the set, unloaded")]
 
 

@@ -164,8 +164,8 @@ def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
     """
     if turns is None:
         turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
-    told = scene.installed.speed_warnings(turns)
-    return dataclasses.replace(scene, warnings=(*scene.warnings, *told))
+    texts = scene.installed.speed_warnings(turns)
+    return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
 
 
 def scene_of(

@@ -181,11 +181,11 @@ def roller_row(bearing, head) -> list[str]:
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     ribs = ", ".join(bearing.ribs.present) or "none"
-    told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
+    play = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
         f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
-        f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
+        f"{play}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
     axis, half = _angles(bearing)
     if isinstance(bearing, CrossedRollerRow):

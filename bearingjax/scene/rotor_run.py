@@ -112,17 +112,17 @@ _STAGES = {
 class _Parts:
     """Collected results, failures and warnings of the parts of a run."""
 
-    def __init__(self, told: Callable[[str], None] | None):
+    def __init__(self, on_stage: Callable[[str], None] | None):
         self.found: dict[str, Any] = {}
         self.failures: list[Failure] = []
         self.warnings: list[str] = []
-        self._told = told
+        self._on_stage = on_stage
 
     @contextlib.contextmanager
     def part(self, name: str) -> Iterator[None]:
         """Context that records a SolveError as the failure of this part."""
-        if self._told is not None:
-            self._told(_STAGES[name])
+        if self._on_stage is not None:
+            self._on_stage(_STAGES[name])
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             try:
@@ -136,12 +136,14 @@ class _Parts:
         self.failures.append(Failure(part, result, message))
 
 
-def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> RotorRun:
+def run_rotor(
+    task: RotorScene, on_stage: Callable[[str], None] | None = None
+) -> RotorRun:
     """Run the analyses of a rotor scene.
 
     Args:
         task: From `read_rotor`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run; a part that fails does not raise.
@@ -149,7 +151,7 @@ def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> Ro
     Raises:
         SceneError: For errors found only when the rotor is assembled.
     """
-    parts = _Parts(told)
+    parts = _Parts(on_stage)
     with _naming(task):
         rotor = _rotor(task, parts)
         if rotor is not None:

@@ -141,12 +141,14 @@ class ShaftRun:
         return float(called(system_life, self.task.system, known))
 
 
-def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> ShaftRun:
+def run_shafts(
+    task: ShaftScene, on_stage: Callable[[str], None] | None = None
+) -> ShaftRun:
     """Run the scene of a system of shafts.
 
     Args:
         task: From `read_shafts`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run; a system without equilibrium does not raise.
@@ -154,7 +156,7 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     Raises:
         SceneError: For torques that do not balance.
     """
-    say = told or (lambda name: None)
+    say = on_stage or (lambda name: None)
     system, cases = task.system, task.cases
     state, problem = None, ""
     try:

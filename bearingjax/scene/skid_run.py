@@ -84,11 +84,11 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
     balls = task.model.bearing.is_ball
     state = conditions(task.model, found, speed) if balls else None
     held, state = jax.tree.map(_as_numpy, (found, state))
-    told = (*task.warnings, *(_left_out(task) if task.steady else ()))
+    warned = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
         doubtful = skid_warnings(task.model, held, state)
-        told = (*told, *warnings(found.solution), *doubtful)
-    return SkidRun(task, held, state, told)
+        warned = (*warned, *warnings(found.solution), *doubtful)
+    return SkidRun(task, held, state, warned)
 
 
 def _left_out(task):

@@ -45,10 +45,10 @@ def skid_warnings(
         cases = range(len(held[0].result))
         ones = (jax.tree.map(lambda leaf, k=k: leaf[k], held) for k in cases)
         kinds = zip(*(_doubts(model, *one) for one in ones), strict=True)
-        told = [_counted(kind) for kind in kinds if any(kind)]
+        texts = [_counted(kind) for kind in kinds if any(kind)]
     else:
-        told = [doubt[1] for doubt in _doubts(model, *held) if doubt]
-    return [*_pockets(model), *told]
+        texts = [doubt[1] for doubt in _doubts(model, *held) if doubt]
+    return [*_pockets(model), *texts]
 
 
 def _counted(doubts):

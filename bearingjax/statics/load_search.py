@@ -303,9 +303,9 @@ def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar
     """
     known = 1e-3 * radius
     load = _load_for(model, known)
-    told = load > 0
-    approach = known * (size / jnp.where(told, load, 1.0)) ** 0.8
-    return jnp.where(told, jnp.minimum(approach, 0.1 * radius), 0.0)
+    loaded = load > 0
+    approach = known * (size / jnp.where(loaded, load, 1.0)) ** 0.8
+    return jnp.where(loaded, jnp.minimum(approach, 0.1 * radius), 0.0)
 
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:

@@ -550,7 +550,7 @@ def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
     assert np.allclose(other.lines[0].get_ydata(), x)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["a", "z"]
     assert ax.get_ylim()[1] > 4e-3 * 1.4 and ax.get_xlim() == (0.0, 2.0)
-    bars = [Bars([1e3, 3e3], "b", told="%.0f")]
+    bars = [Bars([1e3, 3e3], "b", labels="%.0f")]
     ax = Panel("", time, force, bars, names="pq", legend=None).draw()
     drawn: Any = ax.patches
     assert [bar.get_height() for bar in drawn] == [1.0, 3.0]

@@ -253,12 +253,12 @@ def _cells(grid, touching):
 def _fits(grid, pressed):
     """Whether the grid holds the contact, and its cells are small enough for it."""
     across, along = _cells(grid, pressed.touching)
-    told = across >= LEAST_CELLS
-    told = told & (along >= min(LEAST_CELLS, grid.shape[1]))
+    resolved = across >= LEAST_CELLS
+    resolved = resolved & (along >= min(LEAST_CELLS, grid.shape[1]))
     loads = jnp.sum(grid.area * pressed.pressure, axis=1)
     sides = loads[-1] if grid.symmetric else loads[0] + loads[-1]
     held = sides <= AT_SIDES * jnp.sum(loads)
-    return (told & held) | ~jnp.any(pressed.touching)
+    return (resolved & held) | ~jnp.any(pressed.touching)
 
 
 def message(solution: ContactSolution) -> str:
