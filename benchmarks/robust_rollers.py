@@ -128,7 +128,7 @@ def run(count, solver, seed=0, names=()):
                 state, _ = solve_element(model, rings, magnitude, minimiser)
                 known = response(model, rings, state.x)
                 d = derivatives(model, rings, state.x, known)
-                loads = jnp.sum(known.beside)
+                loads = jnp.sum(known.aux)
                 out = jnp.sqrt(jnp.sum(d.gradient[-3:] ** 2))
                 # Round-off of the approach in this contact, times its stiffness.
                 eps = jnp.finfo(rings.dtype).eps

@@ -23,7 +23,7 @@ from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
 from .ball import Ball
 from .ball_contacts import GrooveGeometry
-from .ball_inertia import turning
+from .ball_inertia import ball_inertia
 from .ball_speed import AbstractRacewayControl, OuterControl
 from .constants import TETHER, contact_constants
 from .inertia import Speed, inertia_force
@@ -268,7 +268,9 @@ class BallChoices(AbstractChoices):
             diameter = diameter + deviation
             balls = balls._replace(diameter=diameter)
         control, law = self.raceway_control, self.point_law
-        inertia = None if speed is None else turning(bearing, diameter, speed, control)
+        inertia = (
+            None if speed is None else ball_inertia(bearing, diameter, speed, control)
+        )
         centres = jnp.stack([jnp.stack([g.axial, g.radial]) for g in grooves])
         geometry = GrooveGeometry(
             start=-centres,
@@ -286,7 +288,7 @@ class BallChoices(AbstractChoices):
             ball_diameter=diameter,
             # A contact pressed by a ten-thousandth of the ball diameter, E* D^(1/2).
             spring=TETHER * balls.modulus * diameter * 1e-2,
-            turning=inertia,
+            ball_inertia=inertia,
             follows_angle=law.follows_angle,
         )
 

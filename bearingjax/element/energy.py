@@ -82,10 +82,10 @@ def ball_energy(
     # The tether does not pull the rings: it is no part of the bearing.
     off = x - stop(self.geometry.midpoint(rings))
     energy = energy + 0.5 * self.tether * dot(off, off)
-    if self.turning is None or self.has_reaction:
+    if self.ball_inertia is None or self.has_reaction:
         return energy
     (_, outwards), _ = self.geometry.places(rings, x)
-    return energy - self.turning.centrifugal * outwards
+    return energy - self.ball_inertia.centrifugal * outwards
 
 
 class Derivatives(NamedTuple):

@@ -98,15 +98,15 @@ def _of_row(
     bearing: Any, errors: FormErrors, model: NoiseModel, highest: float
 ) -> Iterator[_Cause]:
     """Yield causes in one row, of lines up to a frequency [Hz]."""
-    turning = kinematic_frequencies(bearing, model.speed)
+    frequencies = kinematic_frequencies(bearing, model.speed)
     count = bearing.n_elements
     row = bearing, model.speed
     for ring in ("outer", "inner"):
-        yield from _of_raceway(row, getattr(errors, ring), ring, turning, highest)
+        yield from _of_raceway(row, getattr(errors, ring), ring, frequencies, highest)
     for shape in errors.elements:
-        yield from _of_elements(shape, row, turning, highest)
+        yield from _of_elements(shape, row, frequencies, highest)
     kind = bearing.noun
-    cage = float(turning.cage)
+    cage = float(frequencies.cage)
     pitch = 0.5 * float(bearing.pitch_diameter)
     for name, words, scale in (
         (f"{kind}_deviation", f"differences of {kind} diameter", 1.0),
@@ -123,13 +123,13 @@ def _of_row(
 
 
 def _of_raceway(
-    row, errors: RacewayErrors, ring, turning: KinematicFrequencies, highest: float
+    row, errors: RacewayErrors, ring, frequencies: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     count = row[0].n_elements
     passage, beside = (
-        (turning.outer_passage, turning.outer)
+        (frequencies.outer_passage, frequencies.outer)
         if ring == "outer"
-        else (turning.inner_passage, turning.inner)
+        else (frequencies.inner_passage, frequencies.inner)
     )
     for shape in (*errors.outwards, *errors.axial, *errors.raised):
         if isinstance(shape, Harmonics):
@@ -144,7 +144,7 @@ def _of_raceway(
 
 
 def _of_elements(
-    shape, row, turning: KinematicFrequencies, highest: float
+    shape, row, frequencies: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     if isinstance(shape, Harmonics):
         sizes = np.abs(np.asarray(shape.amplitude)).max(axis=0)
@@ -153,7 +153,7 @@ def _of_elements(
                 words = "waves of the rolling elements"
                 yield from _of_wave(row, "element", order, size, words)
     elif isinstance(shape, Spall):
-        twice, cage = float(turning.twice_rotation), float(turning.cage)
+        twice, cage = float(frequencies.twice_rotation), float(frequencies.cage)
         words = "spall of a rolling element"
         yield from _of_spall(shape, twice, cage, words, highest)
 

@@ -30,7 +30,7 @@ def is_written_out(balls: DynamicElement) -> bool:
     return (
         isinstance(ball, Ball)
         and not (ball.follows_angle or ball.has_reaction or ball.grooves.straight)
-        and ball.turning is None
+        and ball.ball_inertia is None
     )
 
 

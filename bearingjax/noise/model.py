@@ -280,7 +280,7 @@ def _system(model, points) -> NoiseSystem:
         placements=found.placements,
         errors=errors,
         surfaces=found.surfaces,
-        turning=(model.speed.outer, model.speed.inner, found.carried, found.own),
+        speeds=(model.speed.outer, model.speed.inner, found.carried, found.own),
         mass=mass,
         load=model.load[: mass.shape[0]],
         sensor=model.sensor,

@@ -118,7 +118,7 @@ def at_instant(
         time: [s].
     """
     bearing: Any = element.bearing
-    turned = system.turning[2] * time
+    turned = system.speeds[2] * time
     deviations = system.deviations(system.azimuth(time), time)
 
     def rows(tree):

@@ -55,7 +55,7 @@ class NoiseSystem(eqx.Module):
         placements: Positions of the rows of a set; `None`: of a single row.
         errors: Form errors of each row, tabulated; `None`: none.
         surfaces: Contact tracks of each row.
-        turning: Speeds of outer ring, inner ring, orbit and of the elements about
+        speeds: Speeds of outer ring, inner ring, orbit and of the elements about
             their own axes, against the orbit [rad/s]; of a set the latter two of every
             element.
         mass: Of the ring's freedoms (k,) [kg, kg m²].
@@ -73,7 +73,7 @@ class NoiseSystem(eqx.Module):
     placements: RowPlacement | None
     errors: tuple[FormErrors, ...] | None
     surfaces: tuple[Surfaces, ...]
-    turning: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
+    speeds: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
     mass: Float[Array, " k"]
     load: Float[Array, " k"]
     sensor: Sensor | None
@@ -125,7 +125,7 @@ class NoiseSystem(eqx.Module):
             motion: Coordinates (n,) [m, rad], which count where there is a cage;
                 `None`: on the even orbit.
         """
-        even = self.row.azimuth + self.turning[2] * time
+        even = self.row.azimuth + self.speeds[2] * time
         if self.cage is None or motion is None:
             return even
         return even + self.caged(motion)[0] / self.row.pitch_radius
@@ -141,7 +141,7 @@ class NoiseSystem(eqx.Module):
         """
         if self.errors is None:
             return None
-        outer, inner, _, spin = self.turning
+        outer, inner, _, spin = self.speeds
         rolled = jnp.full_like(azimuth, 1.0) * spin * time
         turns = outer * time, inner * time
         cut = np.cumsum(self.counts)[:-1]
@@ -333,7 +333,7 @@ class NoiseSystem(eqx.Module):
             motion, velocity: [m, rad], [m/s, rad/s].
             positions: Those of the rolling elements.
         """
-        outer, inner, even, _ = self.turning
+        outer, inner, even, _ = self.speeds
         radius = self.row.pitch_radius
 
         def one(element, rings, place):

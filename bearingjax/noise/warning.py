@@ -10,7 +10,7 @@ import numpy as np
 
 from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
-from ..element.ball_inertia import carried, turning
+from ..element.ball_inertia import ball_inertia, carried
 from ..element.ball_speed import CentrifugalOnly, OuterControl
 from ..element.choices import BallChoices
 from ..numerics.result import Result
@@ -281,7 +281,7 @@ def _gyroscopic(model, load) -> Iterator[str]:
         sine = abs(float(model.load[2])) / (each * own.shape[1])
         cosine = min(float(bearing.free_cosine), math.sqrt(max(0.0, 1.0 - sine**2)))
         normal = jnp.array([math.sqrt(1.0 - cosine**2), cosine])
-        ball = turning(bearing, bearing.ball_diameter, model.speed, OuterControl())
+        ball = ball_inertia(bearing, bearing.ball_diameter, model.speed, OuterControl())
         found = carried(ball, jnp.stack([normal] * 2), jnp.full(2, each))
         share = float(jnp.max(jnp.abs(found.traction))) / each
         if share > _GYROSCOPIC:

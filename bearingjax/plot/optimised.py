@@ -228,15 +228,15 @@ def _history(found) -> Panel:
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
     over, of = Axis("step of the search"), Axis(f"{smooth}{name} over its start")
     marks = [Curve(steps, values / size, name, ROLLER, "o-", look)]
-    beside = None
+    twin = None
     if history.violation.any():
         label, colour = "miss of the worst constraint", COLOURS["inner"]
         missed = [Curve(steps, history.violation, label, colour, "s:", look)]
-        beside = Panel("", over, Axis("miss over the bound"), missed, floor=True)
+        twin = Panel("", over, Axis("miss over the bound"), missed, floor=True)
 
     title = f"The search: {found.n_evaluations} designs evaluated"
     return Panel(
-        title, over, of, marks, beside=beside, legend=None if beside is None else {},
+        title, over, of, marks, twin=twin, legend=None if twin is None else {},
         also=lambda ax: ax.xaxis.get_major_locator().set_params(integer=True),
     )  # fmt: skip
 

@@ -142,7 +142,7 @@ class Panel:
         names: Names of the places along the horizontal axis.
         legend: Keywords of Matplotlib's `legend`, which is drawn if marks have labels;
             `None`: none.
-        beside: Panel on a vertical axis of its own at the right.
+        twin: Panel on a vertical axis of its own at the right.
         also: Draws on the axes what is special.
         size: Of a new figure [inch].
     """
@@ -157,7 +157,7 @@ class Panel:
     room: float = 0.0
     names: Sequence[str] | None = None
     legend: Mapping[str, Any] | None = dataclasses.field(default_factory=dict)
-    beside: "Panel | None" = None
+    twin: "Panel | None" = None
     also: Callable[[Any], Any] = lambda ax: None
     size: tuple[float, float] = (7.0, 5.0)
 
@@ -169,12 +169,12 @@ class Panel:
         """
         ax = axes_or_new(ax, self.size)
         pairs: list[tuple[Panel, Any]] = [(self, ax)]
-        if self.beside is not None:
-            pairs.append((self.beside, without_offset(ax.twinx())))
+        if self.twin is not None:
+            pairs.append((self.twin, without_offset(ax.twinx())))
         for panel, own in pairs:
             panel._fill(own)
-        if self.beside is not None:  # told apart by its colour
-            pairs[1][1].yaxis.label.set_color(self.beside.marks[0].colour)
+        if self.twin is not None:  # told apart by its colour
+            pairs[1][1].yaxis.label.set_color(self.twin.marks[0].colour)
         if self.span is not None:
             ax.set_xlim(*(self.over.scale * float(end) for end in self.span))
         if self.names is not None:

@@ -228,8 +228,8 @@ def sliding_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     slip = Curve(*_closed(found, found.slip), "orbit slip", GREY, ":")
     title = "Sliding in the middle of the contacts"
     marks = _both(found, found.sliding_speed)
-    beside = _over_orbit(found, "", _SLIP, [slip])
-    return _over_orbit(found, title, _SLIDING, marks, beside=beside, floor=True)
+    twin = _over_orbit(found, "", _SLIP, [slip])
+    return _over_orbit(found, title, _SLIDING, marks, twin=twin, floor=True)
 
 
 @chart
@@ -278,8 +278,8 @@ def _closed(found, values):
 
 def _over_orbit(found, title, of, marks, *, note="", **more: Any) -> Panel:
     """Return a panel whose zones are shaded and named."""
-    beside = more.get("beside")
-    count = len(marks) + (0 if beside is None else len(beside.marks))
+    twin = more.get("beside")
+    count = len(marks) + (0 if twin is None else len(twin.marks))
 
     def shaded(ax):
         parts = zones(found)

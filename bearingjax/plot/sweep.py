@@ -27,7 +27,7 @@ class _Curve(NamedTuple):
 
 def sweep_overview(
     solved: Sweep,
-    beside: Mapping[str, np.ndarray] | None = None,
+    extra: Mapping[str, np.ndarray] | None = None,
     title: str = "",
 ) -> Figure:
     """Plot the first nine results that differ from case to case.
@@ -39,13 +39,13 @@ def sweep_overview(
 
     Args:
         solved: From `sweep`, with a case solved.
-        beside: Inputs that make the designs, as in `columns`.
+        extra: Inputs that make the designs, as in `columns`.
         title: Head of the page; "Sweep" if empty.
 
     Returns:
         The figure, 5 inches wide for each of at most three columns.
     """
-    found = columns(solved, beside)
+    found = columns(solved, extra)
     names = list(found)
     split = names.index("result")
     good = solved.converged

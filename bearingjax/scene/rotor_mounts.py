@@ -12,7 +12,7 @@ from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
 from .catalogue_entry import FromCatalogue
-from .fit_table import Fits, fit_warnings, installed, turning
+from .fit_table import Fits, fit_warnings, fits_at_speed, installed
 from .placed_bearing import check_seat, echoed, placed_bearing
 from .quantity import SceneError
 from .read import Scene, scene_of
@@ -212,7 +212,7 @@ def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bear
 
 def _in_rotor(scene: Scene, speed: float) -> _Bearing:
     """Return the bearing of a scene with its fits at the speed of the rotor."""
-    fits, taken = turning(scene.fits, speed), scene.catalogue
+    fits, taken = fits_at_speed(scene.fits, speed), scene.catalogue
     running = installed(scene.element, scene.preload_force, fits, taken)
     return _Bearing(scene.name, running, fits, taken, scene)
 

@@ -30,7 +30,7 @@ from ..rotor import (
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
-from .fit_table import turning
+from .fit_table import fits_at_speed
 from .life_table import life_conditions
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
@@ -308,7 +308,7 @@ def held_fits(task: RotorScene) -> Iterator[str]:
         left = {
             speed: float(fits.facts.operating.radial_clearance)
             for speed in (task.speed, *_ends(task))
-            if (fits := turning(mount.fits, speed)) is not None
+            if (fits := fits_at_speed(mount.fits, speed)) is not None
         }
         far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
         if abs(left[far] - left[task.speed]) > _DRIFT:

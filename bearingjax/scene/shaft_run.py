@@ -33,7 +33,7 @@ from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
-from .fit_table import turning
+from .fit_table import fits_at_speed
 from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
@@ -292,7 +292,7 @@ def _in_place(
         scene = dataclasses.replace(
             scene,
             speed=None if system.inertia is None else speed,
-            fits=turning(scene.fits, float(speed.inner)),
+            fits=fits_at_speed(scene.fits, float(speed.inner)),
         )
         try:
             life = jax.device_get(life_of(solution.element, solution, conditions))

@@ -110,7 +110,7 @@ def test_in_time_without_form_errors_stays_at_rest():
 
 
 def test_lines_of_waves_and_of_a_large_ball():
-    z, carried = 7, float(AXIAL.system(8).turning[2])
+    z, carried = 7, float(AXIAL.system(8).speeds[2])
     wavy = in_time(with_waves(outer=(1e-8, 0.0)), **SHORT)
     # Outer order z - 1: radial, at z times the cage, which no whole turns hold: the
     # motion of the ring's centre turns, so that z A cos and sin of z ω_c t remain.

@@ -542,7 +542,7 @@ def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
         *curves(x, [[1, 2]] * 3, "a"),
     ]
     time, force = Axis("time", "s"), Axis("force", "N")
-    ax = Panel("title", time, force, marks, (0, 2), room=0.5, beside=beside).draw()
+    ax = Panel("title", time, force, marks, (0, 2), room=0.5, twin=beside).draw()
     other = ax.figure.axes[1]
     assert [line.get_label() for line in ax.lines] == ["a", "_curve 1"]
     assert np.allclose(ax.lines[1].get_ydata(), 2e-3) and len(ax.collections) == 1
