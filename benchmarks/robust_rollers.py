@@ -55,7 +55,7 @@ class PlainNewton(AbstractMinimiser):
         there = problem.at(x, True, now.memory)
         return state._replace(x=x, now=there, steps=state.steps + 1)
 
-    def settled(self, problem, state):
+    def converged(self, problem, state):
         return jnp.asarray(False)
 
     def finish(self, problem, state):

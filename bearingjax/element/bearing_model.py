@@ -273,7 +273,7 @@ class BearingModel(eqx.Module):
     def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
         """Return `force`, or NaN if a rolling element did not converge [N, N m]."""
         q, solved = self._at(q, solved)
-        converged = self.settled(solved)[0] == Result.CONVERGED
+        converged = self.convergence(solved)[0] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
         return self.force(q, solved) * jnp.where(converged, 1.0, jnp.nan)
 
@@ -291,11 +291,11 @@ class BearingModel(eqx.Module):
     ) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
-        Args: as in `energy` and `settled`.
+        Args: as in `energy` and `convergence`.
         """
         q, solved = self._at(q, solved)
         stiffness, energy, force = self._second(q, solved)
-        result, steps, residual = self.settled(solved, least)
+        result, steps, residual = self.convergence(solved, least)
         return Evaluated(
             energy=energy,
             force=force,
@@ -343,7 +343,7 @@ class BearingModel(eqx.Module):
         ]
         return self.in_order(found)
 
-    def settled(
+    def convergence(
         self, solved: Solved, least: Scalar | float = 0.0
     ) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
         """Worst `Result` code, most steps and largest residual of the elements.

@@ -60,7 +60,7 @@ def line_causes(
     known = sorted(_known(model, highest), key=lambda one: -one.size)
     rows = len(rows_of(model.element.bearing))
     return tuple(
-        _told(
+        _named_lines(
             [one for one in known if abs(one.frequency - line.frequency) <= tolerance],
             rows,
         )
@@ -68,7 +68,7 @@ def line_causes(
     )
 
 
-def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
+def _named_lines(causes: list[_Cause], rows: int) -> tuple[str, ...]:
     """Return each cause once, with the orders of its waves and its rows in a set."""
     found: dict[str, dict[int, set[int]]] = {}
     for one in causes:

@@ -202,10 +202,10 @@ class AbstractMinimiser(eqx.Module):
 
     def terminate(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether to stop: at the goal, stalled, out of steps or beyond the limit."""
-        ended = self.settled(problem, state) | self.spent(problem, state)
+        ended = self.converged(problem, state) | self.spent(problem, state)
         return ended & (state.steps >= 0)
 
-    def settled(self, problem: Problem, state: State) -> Bool[Array, ""]:
+    def converged(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether further steps cannot improve the result."""
         now = problem.pulled(state.x, state.now)
         goal = self.goal(problem) * now.scale + now.noise
@@ -360,11 +360,11 @@ class TrustRegionNewton(AbstractMinimiser):
                 jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
             )
         # Steps of round-off that no longer help.
-        settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
+        still = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
         stayed = state._replace(
             radius=jnp.where(first, state.radius, radius),
             steps=state.steps + 1,
-            stalled=settled & ~first & ~searching,
+            stalled=still & ~first & ~searching,
             own=reach,
         )
         return Either(accept, stayed._replace(x=x, now=there), stayed)
@@ -407,7 +407,7 @@ def continuation(
 
     def step(given, carry):
         (state, factor), problem = carry, problem_of(given)
-        near = (factor > 1.0) & minimiser.settled(larger(problem, factor), state)
+        near = (factor > 1.0) & minimiser.converged(larger(problem, factor), state)
         near = near & (state.steps >= 0)
         factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
         state = state._replace(
@@ -418,8 +418,10 @@ def continuation(
 
     def terminate(given, carry):
         (state, factor), problem = carry, problem_of(given)
-        settled = (factor <= 1.0) & minimiser.settled(larger(problem, factor), state)
-        return (settled | minimiser.spent(problem, state)) & (state.steps >= 0)
+        converged = (factor <= 1.0) & minimiser.converged(
+            larger(problem, factor), state
+        )
+        return (converged | minimiser.spent(problem, state)) & (state.steps >= 0)
 
     def finish(given, carry):
         (state, factor), problem = carry, problem_of(given)

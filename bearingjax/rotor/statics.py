@@ -104,7 +104,7 @@ def static_equilibrium(
     loads = checked_loads("static_equilibrium", rotor, loads)
     speed = as_real(speed)
     number("static_equilibrium", "speed", speed, "rad/s")
-    found, place = settled_at(rotor, loads, speed)
+    found, place = equilibrium_at(rotor, loads, speed)
     if throw:
         found = raise_unless_converged(
             found, found.result, lambda: unsettled(rotor, found, place)
@@ -203,7 +203,7 @@ def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]
 
 
 @program(quick=True)
-def settled_at(
+def equilibrium_at(
     rotor, loads, speed
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
     """Return the result, and the end point of the search even if it failed (motion,).
@@ -217,13 +217,13 @@ def settled_at(
     solved = found.result == Result.CONVERGED
 
     def there(*given):
-        return _settled(found, *given)
+        return _equilibrium(found, *given)
 
-    settled = unless_failed(there, (rotor, parts, speed), solved)
-    return settled, stop(parts).motion(found.x)
+    equilibrium = unless_failed(there, (rotor, parts, speed), solved)
+    return equilibrium, stop(parts).motion(found.x)
 
 
-def _settled(found, rotor, parts, speed) -> StaticEquilibrium:
+def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
     """Return the result of the search with derivatives; NaN if it failed."""
     y, load, stiffness, damping = at_equilibrium(found, parts)
     motion = parts.motion(y)

@@ -27,7 +27,7 @@ from ..noise import (
 from ..noise.reference_levels import NORM
 from .deviations_table import read_deviations
 from .noise_scene import AXES, NoiseScene
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -163,7 +163,7 @@ def read_noise(
     path = find_scene(source)
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
-    scene = with_speed_told(scene_of(data, path))
+    scene = with_speed_warnings(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
     row = rows_of(scene.element.bearing)[0].bearing

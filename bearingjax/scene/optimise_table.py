@@ -27,7 +27,7 @@ from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table, not_among
@@ -243,7 +243,7 @@ def read_bearing_optimisation(
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
-    scene = with_speed_told(scene, turns_of(cases))
+    scene = with_speed_warnings(scene, turns_of(cases))
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases, set(begun))
     table.finish()

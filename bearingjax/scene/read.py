@@ -151,10 +151,10 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         SceneError: One line that names file, key, fault and what is allowed.
     """
     path = find_scene(source)
-    return with_speed_told(scene_of(parse_bearing(path, settings), path))
+    return with_speed_warnings(scene_of(parse_bearing(path, settings), path))
 
 
-def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
+def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
     """Add warnings of speeds above those of the catalogue to a scene.
 
     Args:

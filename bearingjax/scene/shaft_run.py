@@ -38,7 +38,7 @@ from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
-from .read import Scene, with_speed_told
+from .read import Scene, with_speed_warnings
 from .shaft_table import ShaftScene
 from .solved import solved_warnings
 
@@ -301,7 +301,7 @@ def _in_place(
         oil = None
         if scene.oil is not None:
             oil = oil_facts(scene.oil, solution, scene.catalogue)
-        scene = with_speed_told(scene, speeds[:, system.station(seat)[0]])
+        scene = with_speed_warnings(scene, speeds[:, system.station(seat)[0]])
         yield InPlace(seat.name, with_set_preload(scene), solution, life, oil)
 
 

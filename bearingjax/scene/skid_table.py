@@ -18,7 +18,7 @@ from ..element import Speed
 from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from .dynamics_table import CageKeys, DynamicsKeys
 from .lubricant_table import LubricantKeys
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import read_keys
 from .table import Table
@@ -128,7 +128,7 @@ def read_skid(
         dynamics.speeds(scene.speed),
         None if steady else dynamics.duration,
     )
-    scene = with_speed_told(scene, _fastest(speeds, duration))
+    scene = with_speed_warnings(scene, _fastest(speeds, duration))
     found = SkidScene(
         scene=scene,
         model=model,
