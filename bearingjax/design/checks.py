@@ -34,7 +34,7 @@ def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
     """Raise unless `ok`.
 
     Args:
-        owner: Instance, class or name of what is being checked.
+        owner: Instance, class or name of the checked object.
         name: Parameter.
         ok: Whether its value is allowed; skipped if traced.
         allowed: What is allowed, ending the sentence "it must be ...".

@@ -102,7 +102,7 @@ class Harmonics(AbstractShape):
         """See the class.
 
         Raises:
-            TypeError: For what are no numbers.
+            TypeError: For values that are not numbers.
             ValueError: For orders that are not whole and positive, or another number
                 of amplitudes or phases.
         """
@@ -155,7 +155,7 @@ class Harmonics(AbstractShape):
                 the points.
 
         Raises:
-            TypeError: For what are no numbers.
+            TypeError: For values that are not numbers.
             ValueError: For fewer than 4 points, or an order that they do not show.
         """
         if not is_real(points):
@@ -358,7 +358,7 @@ class FormErrors(eqx.Module):
         return bool(self.outer.raised or self.inner.raised or self.elements)
 
     def check(self, bearing: Any) -> None:
-        """Raise if an error is larger than the bearing allows; what is traced is not.
+        """Raise if an error is larger than the bearing allows; traced ones pass.
 
         Args:
             bearing: A single row.

@@ -245,7 +245,7 @@ class BallSearchHints(SearchHints):
         return True
 
     def corrected(self, rings, x, step, size):
-        """Along the groove that carries most, and no deeper into others than needed.
+        """Step along the groove that carries most, no deeper into others than needed.
 
         Straight, a step along a groove would press the ball into it by step²/(2l);
         and a step across a gap would end where the force is decades too large.
@@ -255,7 +255,7 @@ class BallSearchHints(SearchHints):
         constant = element.constants(c)
         load = constant * positive_power(c.approach, _N, _D)
         turned = bent(c, load, step)
-        # An open contact is entered so far that it carries what is out of balance.
+        # An open contact is entered so far that it carries the unbalanced force.
         wanted = positive_power(size, _D, _N) / positive_power(constant, _D, _N)
         reached = element.contacts(rings, x + turned).approach
         entered = (c.approach < 0.0) & (reached > wanted)

@@ -79,7 +79,7 @@ class AbstractChoices(eqx.Module):
         """Return the given choices, with defaults for the rest.
 
         Args:
-            rows: The rows, of a kind of bearing that this class is for.
+            rows: The rows, of a kind of bearing that the class supports.
             **given: Choices by `names`; `None`: the default.
 
         Raises:

@@ -293,7 +293,7 @@ def _problem(given: _Inputs, shapes) -> Problem:
         contacts = response(element, rings, x)
         d = derivatives(element, rings, x, contacts, of_own=True)
         scale = _load(element, contacts)
-        # Round-off of positions, and what is small against the tether's own force.
+        # Round-off of positions, and forces small against that of the tether.
         noise = eps * hints.spread * trace(d.hessian) + 1e-6 * element.tether
         noise = _size(element, x, magnitude) * noise
         # A loose element need not be placed: its solve is over.

@@ -45,7 +45,7 @@ class AbstractRollerGeometry(eqx.Module):
 
     @abc.abstractmethod
     def coordinates(self, rings: RingMotion, x: Unknowns) -> Approaches:
-        """Approaches of all contacts, or what they follow from.
+        """Approaches of all contacts, or coordinates from which they follow.
 
         Args:
             rings: Motions of the rings in roller axes [m, rad].

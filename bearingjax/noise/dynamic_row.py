@@ -52,7 +52,8 @@ class DynamicRow(NamedTuple):
         placements: Placement of its row for each element, numbers (element,); `None`:
             the row is the bearing.
         carried: Speed of the orbit; of a set for every element [rad/s].
-        own: Speed of the elements about their own axes against the orbit, likewise.
+        own: Speed of the elements about their own axes against the orbit; of a set for
+            every element [rad/s].
         surfaces: Contact tracks of each row.
     """
 

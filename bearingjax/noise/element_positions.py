@@ -29,7 +29,7 @@ class Section(NamedTuple):
 
 
 class ElementPositions(NamedTuple):
-    """Raceway deviations at every rolling element.
+    """Positions of the rolling elements, and the raceway deviations there.
 
     The axis of the elements is the last one: a compiler works on neighbours at once.
 
@@ -38,7 +38,7 @@ class ElementPositions(NamedTuple):
         cosine, sine: Of the azimuth (element,) [1].
         axial: Axial deviation of outer and inner raceway there, (2, element) [m];
             `None`: none.
-        outwards: Radial deviation, away from the axis, likewise.
+        outwards: Radial deviation, away from the axis, (2, element) [m]; `None`: none.
         heights: Height of their surfaces towards the element (2, element) [m]; `None`:
             none.
     """

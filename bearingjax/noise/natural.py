@@ -100,7 +100,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 
     Returns:
         Modes. First derivatives of frequencies are exact, also where some coincide (of
-        their mixture); those of shapes are not there.
+        their mixture); derivatives of shapes are not available.
 
     Fails: as `solve_load`; the frequencies are then those of no balance.
     """

@@ -261,7 +261,7 @@ class Tolerances(eqx.Module):
                 program as it is.
 
         Raises:
-            ValueError: For a source that is not there.
+            ValueError: For an unknown source.
         """
         for name in factors:
             if name not in self.sources:

@@ -2,7 +2,8 @@
 
 The motion follows small form errors in proportion: the mean square of the acceleration
 is then P₀ + Σ s² P over the sources of scale s, once it is averaged over bearings,
-since sources are independent of each other. P₀ is what a perfect bearing has. A share P
+since sources are independent of each other. P₀ is the mean square of a perfect bearing.
+A share P
 is found in two ways that agree for small errors: from the same bearings with the source
 smaller or switched off, and from the derivative, P = (s/2) ∂/∂s.
 

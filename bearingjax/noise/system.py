@@ -301,7 +301,7 @@ class NoiseSystem(eqx.Module):
     def _cage_places(self, motion):
         """Places of the cage [m, rad], of the elements along the pitch circle [m]
         and of the guiding ring [m]; and the pitch radius [m]."""
-        assert self.cage is not None  # asked by those who know
+        assert self.cage is not None  # callers check it
         arcs, place = self.caged(motion)
         guided = RINGS.index(self.cage.guiding_ring) == self.moving
         guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
@@ -329,7 +329,7 @@ class NoiseSystem(eqx.Module):
         without delay.
 
         Args:
-            cage: Of the bearing.
+            cage: Cage of the bearing.
             motion, velocity: [m, rad], [m/s, rad/s].
             positions: Those of the rolling elements.
         """

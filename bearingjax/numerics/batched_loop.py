@@ -400,9 +400,9 @@ def _queued(task, given, own, count):
         out = [a.at[to].set(b, mode="drop") for a, b in zip(out, found, strict=True)]
         return out, *refilled(taken, place, state, going)
 
-    nobody = jnp.zeros((width,), bool)
+    at_work = jnp.zeros((width,), bool)
     none = jnp.zeros_like(waiting), jnp.zeros((width,), queue.dtype)
-    begin = refilled(*none, _blank(pack, begin, width), nobody)
+    begin = refilled(*none, _blank(pack, begin, width), at_work)
     carry = lax.while_loop(lambda c: jnp.any(c[2] < count), turn, (out, *begin))
     return jax.vmap(unpack_end)(carry[0])
 

@@ -48,7 +48,7 @@ class BFGS(AbstractMinimiser):
         )
         s = jnp.where(first, 0.0, fraction * direction)
         there = problem.at(state.x + s, False, now.memory)
-        # Nothing is asked of a Hessian.
+        # No Hessian is evaluated.
         there = there._replace(hessian=now.hessian)
         new = problem.pulled(state.x + s, there)
         accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (

@@ -90,7 +90,7 @@ class Problem(NamedTuple):
         return self.function(x, with_hessian, *remembered)
 
     def pulled(self, x: Array, now: Evaluation) -> Evaluation:
-        """The evaluation of value - force·x, from that of the function at x."""
+        """The evaluation of value - force·x, from the one of the function at x."""
         if self.force is None:
             return now
         size = norm(self.force)
@@ -258,7 +258,7 @@ class AbstractMinimiser(eqx.Module):
 
 
 def first_state(problem: Problem, hessian: Array, own: Any) -> State:
-    """State of which nothing is evaluated yet.
+    """State before the first evaluation.
 
     Args:
         problem: Problem to be minimised.

@@ -48,8 +48,8 @@ class AbstractMeasure(eqx.Module):
 
     @property
     def as_objective(self) -> "AbstractMeasure":
-        """Measure that is minimised if this is an objective: itself, or one that falls
-        as it rises."""
+        """Measure to minimise if this is an objective: itself, or one that falls as it
+        rises."""
         return self
 
     @property
@@ -63,7 +63,7 @@ class AbstractMeasure(eqx.Module):
 
     @property
     def maximised(self) -> bool:
-        """Whether it is made least so that what reports show becomes largest."""
+        """Whether minimising it maximises `reported_as`."""
         return False
 
     @property

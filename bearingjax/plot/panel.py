@@ -82,7 +82,7 @@ class Curve:
     to: Any = None
 
     def draw(self, ax, across: float, up: float) -> None:
-        """Draw it, in the units displayed."""
+        """Draw the curve, in the units displayed."""
         x, y = across * np.asarray(self.x, float), up * np.asarray(self.y, float)
         if self.to is not None:
             other = up * np.asarray(self.to, float)
@@ -115,7 +115,7 @@ class Bars:
     look: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
     def draw(self, ax, across: float, up: float) -> None:
-        """Draw them, in the unit displayed."""
+        """Draw the bars, in the unit displayed."""
         heights = up * np.asarray(self.heights, float)
         places = np.arange(len(heights)) + self.away
         more = {"label": self.label} if self.label else {}
@@ -143,7 +143,7 @@ class Panel:
         legend: Keywords of Matplotlib's `legend`, which is drawn if marks have labels;
             `None`: none.
         twin: Panel on a vertical axis of its own at the right.
-        also: Draws on the axes what is special.
+        also: Function of the axes that draws further parts.
         size: Of a new figure [inch].
     """
 
@@ -162,7 +162,7 @@ class Panel:
     size: tuple[float, float] = (7.0, 5.0)
 
     def draw(self, ax: Ax = None) -> Axes:
-        """Draw it on axes, or on those of a new figure.
+        """Draw the panel on given axes, or on those of a new figure.
 
         Returns:
             The axes.
@@ -237,7 +237,7 @@ def finish(ax: Any, title: str, across: str, up: str = "", axis: str = "both") -
 
 
 def chart(panel: Callable[P, Panel]) -> "Callable[P, Axes]":
-    """Return a function that draws what a function returns.
+    """Return a function that draws the panel that a function returns.
 
     Args:
         panel: Function of results and of the axes `ax`; a new figure if they are

@@ -32,7 +32,7 @@ def harmonic_response(
         respect to every number.
 
     Raises:
-        ValueError: If a loaded station is not there.
+        ValueError: If the rotor lacks a loaded station.
     """
     frequencies = speed_list("harmonic_response", frequencies)
     speeds = frequencies

@@ -4,7 +4,7 @@ Eigenvalues λ of λ² M + λ (C + Ω G) + K come from LAPACK's eigenvalues of t
 matrix, which JAX has on the CPU only. One Newton step with left and right eigenvectors
 that count as fixed, λ - wᵀP(λ)v / wᵀP'(λ)v, then takes away their round-off; its
 derivative is that of the eigenvalue, -wᵀ dP v / wᵀP'v. First derivatives are exact,
-second ones are not; those of mode shapes are not there.
+second ones are not; derivatives of mode shapes are not available.
 
 Source: Lancaster, On eigenvalues of matrices dependent on a parameter, Numer. Math. 6
     (1964) 377-387.
@@ -56,7 +56,7 @@ def is_axial(shape: Any) -> np.ndarray:
     """Return whether modes move almost only along the axis.
 
     Args:
-        shape: (..., node, 5) [m, rad], as of `Modes`.
+        shape: Mode shapes (..., node, 5) [m, rad], as in `Modes`.
     """
     squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
     return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)

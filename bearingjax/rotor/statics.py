@@ -94,7 +94,7 @@ def static_equilibrium(
     Raises:
         SolveError: If it was not found and `throw`; it says where the rotor went.
         TypeError: If `rotor` or `loads` is something else.
-        ValueError: If the rotor has no support, or a loaded station is not there.
+        ValueError: If the rotor has no support, or lacks a loaded station.
 
     Warns:
         UserWarning: If a bearing bears nothing or loses its preload because the shaft

@@ -295,7 +295,7 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)

@@ -275,7 +275,7 @@ def read_deviations(
         folder: Folder of the scene and of its profile files.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     keys = read_keys(DeviationsKeys, table)
     found = [_Gathered(count) for count in counts]

@@ -45,7 +45,7 @@ MOST_SAMPLES = 200_000
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class VibrationKeys(Keys):
-    """[vibration]: the rig of a bearing whose noise is wanted, and how it is heard."""
+    """[vibration]: the test rig of a bearing, the record and its evaluation."""
 
     mass: float = scene_key("mass of the moving ring", "mass")
     moving_ring: str | None = scene_key(
@@ -158,7 +158,7 @@ def read_noise(
         bearings: Number of additional random bearings.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)

@@ -62,7 +62,7 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
         table: `[lubricant]`.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     keys = read_keys(LubricantKeys, table)
     known = keys.temperature, keys.supply, keys.roughness

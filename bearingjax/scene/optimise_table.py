@@ -165,7 +165,7 @@ class ConstraintKeys(BoundKeys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SearchKeys(Keys):
-    """[optimise]: what is free, and how the best is sought."""
+    """[optimise]: variables and the search for the best design."""
 
     objective: str
     exponent: float = scene_key(
@@ -194,7 +194,7 @@ class SearchKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class OptimiseKeys(SearchKeys):
-    """[optimise]: what is free, what is made least, and what is kept."""
+    """[optimise]: variables, objective and constraints."""
 
     objective: str = scene_key(
         "what is made least; a life in hours is made largest", choices=OBJECTIVES
@@ -221,7 +221,7 @@ def read_bearing_optimisation(
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     settings = tuple(settings)
     path = find_scene(source)
@@ -385,7 +385,7 @@ def read_variables(
         begun: Keys that start in the middle of their range unless a start is given.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     variables = []
     for key in table.keys():

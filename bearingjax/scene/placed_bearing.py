@@ -49,8 +49,8 @@ def placed_bearing(
         known: Scenes read before, by what was read; added to.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed; the message names the
-            keys of the machine.
+        SceneError: For keys that are missing, unknown or not allowed; the message names
+            the keys of the machine.
     """
     known = {} if known is None else known
     own = {k: v for k, v in table.keys_given().items() if k not in beside}

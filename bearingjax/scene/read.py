@@ -148,7 +148,7 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         The scene, validated.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     return with_speed_warnings(scene_of(parse_bearing(path, settings), path))

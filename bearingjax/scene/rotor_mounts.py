@@ -111,7 +111,7 @@ class HousingKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class MountKeys(Keys):
-    """[[rotor.bearings]]: what holds the shaft, a bearing or springs each."""
+    """[[rotor.bearings]]: supports of the shaft, each a bearing or springs."""
 
     station: int = scene_key("station of the shaft", least=0)
     bearing: str | None = scene_key(
@@ -181,7 +181,7 @@ def read_mounts(
         path: Path of the scene, to which names of other scenes are relative.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     for key in ("fit", "temperature"):
         if key in top:

@@ -388,7 +388,7 @@ def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) 
             required.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     given = table.table_or_word(name, tuple(kinds))
     if given is None and default and isinstance(default[0], str):

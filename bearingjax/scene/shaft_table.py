@@ -272,7 +272,7 @@ class HousingKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SystemKeys(Keys):
-    """[system]: what acts on all shafts."""
+    """[system]: numbers and settings common to all shafts."""
 
     gravity: str = scene_key(
         "direction of the weight of the shafts in global axes",
@@ -322,7 +322,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)

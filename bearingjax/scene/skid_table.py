@@ -90,7 +90,7 @@ def read_skid(
             then optional, but checked.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)

@@ -184,7 +184,7 @@ def _check_balances(systems: Sequence[ShaftSystem], found: dict[str, Any]) -> No
 
 
 def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
-    """Return function(one) of all, stacked in NumPy; what they share is not copied."""
+    """Return function(one) of all, stacked in NumPy; shared leaves are not copied."""
     trees = [jax.tree.structure(one) for one in given]
     if any(tree != trees[0] for tree in trees):
         raise ValueError("solve_duty: the cases differ in more than numbers.")

@@ -37,7 +37,7 @@ class BalancedLoads(eqx.Module):
         load: Function of time [s] that returns the load on the ring (6,) [N, N m];
             a pytree.
         unit: Of the unknowns [m].
-        force: Of what is not balanced [N].
+        force: Scale of the unbalanced force [N].
     """
 
     skid: SkidModel

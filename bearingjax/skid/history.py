@@ -38,7 +38,7 @@ class SkidMotion(eqx.Module):
         work: Their integrals since the beginning (time,).
         kinetic_energy: Of balls and cage (time,) [J].
         potential_energy: Of pockets and weights (time,) [J].
-        steps: Steps in time, with those that were rejected.
+        steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
     """
@@ -84,7 +84,7 @@ class SkidMotion(eqx.Module):
         """Mean friction torque over the last orbits of the cage [N m], and their
         number: half of all orbits, at least one; NaN and 0 without a full orbit.
 
-        Of a motion that is concrete, as far as it was reached.
+        The motion must be concrete; the part that was reached is used.
         """
         reached = np.isfinite(np.asarray(self.cage_speed))
         time, torque, turn = (
@@ -193,7 +193,7 @@ def sliding_spectrum(
         begin: Time from which on [s]; default: a third of all.
 
     Returns:
-        Amplitudes as of `hann_lines`.
+        Amplitudes as returned by `hann_lines`.
 
     Raises:
         ValueError: For times that are not even, or too few of them.

@@ -29,7 +29,7 @@ class Integrated(NamedTuple):
     Attributes:
         state: The motion.
         work: Work done since the beginning.
-        steps: Steps in time, with those that were rejected.
+        steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
     """
@@ -53,7 +53,7 @@ def integrated(
     Args:
         environment: Surroundings of the balls.
         start: The motion at time zero.
-        times: When it is wanted, rising [s].
+        times: Times of the output, rising [s].
         duration: The last time [s].
         options: Settings.
     """

@@ -234,7 +234,7 @@ class AbstractOrbit(eqx.Module):
         own, common, ring = self.parts(y)
         (places, k), c = own.shape, common.size
 
-        # What happens at a place hangs on its own unknowns and on those that all share:
+        # Forces at a place depend on its own unknowns and on the shared ones:
         # all places are moved at once.
         def moved(way):
             here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
@@ -265,7 +265,7 @@ class AbstractOrbit(eqx.Module):
         turned = -jnp.sum(of_ring[:, :, 2 * k :], axis=0)
         turned = turned.at[:, c:].add(-jnp.diag(1.0 - self.balance.free))
         last = jnp.concatenate([stand.reshape(_RING, -1), turned], axis=1)
-        # Tractions of which no contact would tell are none.
+        # Tractions below `NO_TRACTION` of the loads count as none.
         loads = jnp.maximum(sizes[1], self.least)
         most = jnp.maximum(sizes[0], NO_TRACTION * loads)
         largest = jnp.full(y.size - _RING, most)

@@ -299,7 +299,7 @@ def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar
     """About the approach of one raceway contact under a load of that size [m].
 
     Between the powers 2/3 of points and 9/10 of lines; at most a tenth of the radius,
-    and zero where the elements do not tell their loads.
+    and zero where the elements do not estimate their loads.
     """
     known = 1e-3 * radius
     load = _load_for(model, known)

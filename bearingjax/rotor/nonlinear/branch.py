@@ -63,7 +63,7 @@ class Branch(NamedTuple):
         amplitude: Half of peak to peak over the period (point, n) [m, rad].
         displacement: At even phases from 0 on (point, sample, n) [m, rad].
         multipliers: Floquet multipliers (point, 2n) [1].
-        stable: Whether none is beyond the unit circle (point,).
+        stable: Whether all multipliers lie within the unit circle (point,).
         unknowns: Unknowns of the method (point, m) [1].
         residual: Of its equations, largest (point,) [1].
         newton: Newton steps (point,).

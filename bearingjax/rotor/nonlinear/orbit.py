@@ -39,7 +39,7 @@ class PeriodicOrbit(eqx.Module):
         velocity: Likewise (sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak over the period (n,) [m, rad].
         multipliers: Floquet multipliers (2n,) [1].
-        stable: Whether none is beyond the unit circle.
+        stable: Whether all multipliers lie within the unit circle.
         unknowns: Unknowns of the method (m,) [1].
         residual: Of its equations, largest [1].
         steps: Newton steps.

@@ -42,7 +42,7 @@ class History(eqx.Module):
         phase: Of the excitation since time zero (time,) [rad].
         displacement: (time, n) [m, rad].
         velocity: (time, n) [m/s, rad/s].
-        steps: Steps of the integration, with those that were rejected.
+        steps: Steps of the integration, rejected ones included.
         result: `Result` code.
     """
 

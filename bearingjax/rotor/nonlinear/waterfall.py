@@ -47,9 +47,9 @@ def waterfall(
 ) -> Waterfall:
     """Return spectra of the vibration that remains after some periods.
 
-    Every frequency begins anew, all are integrated at once. Lines are at whole
-    multiples of 1/`periods` of the excitation: subharmonics of up to that many periods
-    have lines of their own; almost periodic motion spreads over its neighbours.
+    Every frequency starts from the same motion; all are integrated at once. Lines are
+    at whole multiples of 1/`periods` of the excitation: subharmonics of up to that many
+    periods have lines of their own; almost periodic motion spreads over its neighbours.
 
     Args:
         system: The system.
@@ -125,7 +125,7 @@ def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Sp
         count: Windows.
 
     Returns:
-        Amplitudes as of `hann_lines`.
+        Amplitudes as returned by `hann_lines`.
 
     Raises:
         ValueError: For times that are not even, or too few of them.
