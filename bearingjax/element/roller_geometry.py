@@ -229,7 +229,7 @@ class _Point(eqx.Module):
     Attributes:
         gap: At rest (k,) [m].
         normal: Unit vectors n of the drawing, in (z, r) (k, 2).
-        share: Of the displacement at O: 1, or 0 for a difference of points (k,).
+        share: Share of the displacement at O: 1, or 0 for a difference of points (k,).
         point, own: Points of ring and roller at rest, or differences (k, 2) [m].
     """
 
@@ -251,8 +251,8 @@ class _Arc(eqx.Module):
         gap: At rest [m].
         normal, middle, along: In (z, r) at rest: unit vector from the roller to the
             raceway, middle of the generator [m], unit vector along it (2,).
-        curvature: Of the arc [1/m].
-        half_length: Of the roller [m].
+        curvature: Curvature of the arc [1/m].
+        half_length: Half length of the roller [m].
     """
 
     gap: Array

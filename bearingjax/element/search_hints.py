@@ -114,7 +114,7 @@ class SearchHints(eqx.Module):
         """Load that elements pass from ring to ring (…,) [N]; `None`: not known.
 
         Args:
-            load: Of their contacts [N].
+            load: Load of their contacts [N].
         """
         return None
 

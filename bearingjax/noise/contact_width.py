@@ -69,7 +69,7 @@ def contact_half_width(bearing: Any, load: np.ndarray) -> float:
 
     Args:
         bearing: A single row.
-        load: Of its contacts; those that carry count (..., contact) [N].
+        load: Load of its contacts; those that carry count (..., contact) [N].
 
     Returns:
         That of the raceway where it is larger; 0 where nothing carries.

@@ -46,7 +46,7 @@ def ball_forces(
     Args:
         balls: One ball, or balls with a leading axis.
         outer, inner: Motions of the rings at every ball [m, rad].
-        places: Of the balls (z, r) [m].
+        places: Places of the balls (z, r) [m].
         heights: Material added in the contacts of the raceways [m], or `None`.
 
     Returns:

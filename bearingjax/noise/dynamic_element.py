@@ -30,8 +30,8 @@ class DynamicElement(eqx.Module):
 
     Attributes:
         element: The rolling element.
-        mass: Of each coordinate of its place (n,) [kg, kg m²].
-        force: Of inertia, from its orbit, at the drawing's place (n,) [N, N m].
+        mass: Mass of each coordinate of its place (n,) [kg, kg m²].
+        force: Force of inertia, from its orbit, at the drawing's place (n,) [N, N m].
         scale: x per unit of p (n,) [1, m].
         own: Motion of a ring in the element's axes, from that in the axial section
             (h, 3) [1, m, 1/m].
@@ -110,9 +110,9 @@ def dynamic_element(
 
     Args:
         element: The rolling element, made without speed.
-        material: Of the rolling elements.
-        pitch_radius: Of the circle of their centres [m].
-        speed: Of the rings.
+        material: Material of the rolling elements.
+        pitch_radius: Radius of the circle of their centres [m].
+        speed: Speed of the rings.
         orbit: Speed of their orbit [rad/s].
 
     Raises:

@@ -69,7 +69,7 @@ class DynamicRow(NamedTuple):
 
         Args:
             element: The bearing, with linearised kinematics.
-            speed: Of the rings.
+            speed: Speed of the rings.
 
         Raises:
             ValueError: If its rows are of unlike structure.

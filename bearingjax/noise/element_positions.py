@@ -108,7 +108,7 @@ class ElementPositions(NamedTuple):
 
         Args:
             forces: On every element's section [N, N m].
-            freedoms: Of the ring, three or five. Static.
+            freedoms: Number of freedoms of the ring, three or five. Static.
             placements: As in `motion`.
         """
         axial, outwards, moment = forces

@@ -36,8 +36,8 @@ class LinearModel(NamedTuple):
 
     Attributes:
         mass: (n,) [kg, kg m²].
-        stiffness: Of contacts and sensor (n, n) [N/m, N, N m].
-        damping: Of both (n, n) [N s/m, N s, N m s].
+        stiffness: Stiffness of contacts and sensor (n, n) [N/m, N, N m].
+        damping: Damping of both (n, n) [N s/m, N s, N m s].
         push: Loads on the coordinates for deviations of the raceways as in
             `Deviation.raceway` (n, element, 2, 3) [N/m, N].
         retardation: τ, by which the rate of deviations counts too [s].

@@ -45,10 +45,10 @@ class NoiseModel(eqx.Module):
             with `Finite()`. Whatever its raceway control, balls are carried as with
             `CentrifugalOnly()`: they orbit at the free contact angle, and have no
             gyroscopic moment; `record_warnings` warns where that moment matters.
-        mass: Of the moving ring, and of what moves with it [kg].
+        mass: Mass of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
             if it tilts.
-        speed: Of the rings.
+        speed: Speed of the rings.
         errors: Form errors; of a set those of each row, in that row's own axes, or one
             that all rows have.
         tilting_inertia: Moment of inertia about a diameter of the moving ring and of
@@ -239,7 +239,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
 
     Args:
         bearing: A single row or a set.
-        mass: Of the ring [kg].
+        mass: Mass of the ring [kg].
         moving_ring: "outer" or "inner". Static.
 
     Source: m (3 (R₁² + R₂²) + b²)/12 of a hollow cylinder, with the radii R ± b/2 and

@@ -34,7 +34,7 @@ class MonteCarlo(eqx.Module):
     """Levels of many bearings; NaN for those that failed.
 
     Attributes:
-        level: Of all frequencies, along x, y, z (bearing, 3) [dB].
+        level: Level of all frequencies, along x, y, z (bearing, 3) [dB].
         bands: Of each band (bearing, band, 3) [dB]; NaN too for bands that the record
             does not hold.
         centre: Nominal centres of the bands (band,) [Hz].
@@ -68,7 +68,7 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
     Args:
         model: The bearing as on the drawing, or with errors that all have.
         tolerances: How bearings scatter.
-        key: Of `jax.random`.
+        key: Key of `jax.random`.
     """
     bearing: Any = model.element.bearing
     parts = rows_of(bearing)
@@ -115,11 +115,11 @@ def monte_carlo(
         model: The bearing as on the drawing, or with errors that all have.
         tolerances: How bearings scatter.
         n: Number of bearings.
-        key: Of `jax.random`; the same gives the same bearings.
+        key: Key of `jax.random`; the same gives the same bearings.
         turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
         batch: Number of bearings at once.
         bands: `None`: `octave_bands()`.
-        window: Of the spectra; `None`: `Hann()`, since a record does not repeat
+        window: Window of the spectra; `None`: `Hann()`, since a record does not repeat
             itself: the cage turns by no whole number.
         reference: Acceleration of 0 dB [m/s²].
         progress: Called after each batch.

@@ -38,12 +38,12 @@ class Excitation(eqx.Module):
 
     Attributes:
         time: (sample,) [s].
-        force: Of the contacts on the moving ring, less the reaction to its load
+        force: Force of the contacts on the moving ring, less the reaction to its load
             (sample, 6) [N, N m]. Of a free ring it is zero in its freedoms.
         displacement: Of the moving ring from its position without form errors
             (sample, 6) [m, rad]. Of a held ring it is zero.
-        azimuth: Of every rolling element (sample, element) [rad].
-        shaft_frequency: Of the ring that turns faster [Hz].
+        azimuth: Azimuth of every rolling element (sample, element) [rad].
+        shaft_frequency: Frequency of the ring that turns faster [Hz].
         result: `Result` code of each instant (sample,).
     """
 
@@ -71,7 +71,7 @@ def excitation(
 
     Args:
         model: The bearing.
-        turns: Of the shaft. Static.
+        turns: Turns of the shaft. Static.
         samples: Per turn. Static.
         held: Whether the ring is held at its equilibrium without form errors at time
             zero, or may move under its load. Static.
@@ -113,7 +113,7 @@ def at_instant(
     """Return the bearing at a time, with element positions and raceway deviations.
 
     Args:
-        element: Of the model.
+        element: Element of the model.
         system: Its equations of motion.
         time: [s].
     """

@@ -99,7 +99,7 @@ class RandomWaves(eqx.Module):
         """Draw random waves.
 
         Args:
-            key: Of `jax.random`.
+            key: Key of `jax.random`.
             shape: Of the surfaces that are drawn.
         """
         sized, turned = jax.random.split(key)
@@ -210,7 +210,7 @@ class Tolerances(eqx.Module):
             spacing: See the class [rad].
             highest: Last order of the raceways.
             highest_of_elements: Last order of the rolling elements.
-            slope: Of all waves [1].
+            slope: Slope of all waves [1].
 
         Raises:
             TypeError: For another bearing.
@@ -312,8 +312,8 @@ def sample_errors(
 
     Args:
         tolerances: How bearings scatter.
-        bearing: Of one row.
-        key: Of `jax.random`. Each source draws with a key of its own: what another
+        bearing: Bearing of one row.
+        key: Key of `jax.random`. Each source draws with a key of its own: what another
             source is like does not change it.
 
     Returns:

@@ -145,7 +145,7 @@ def source_contributions(
             `monte_carlo`.
         direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
             `None`: all directions together.
-        bands: Of which the parts are wanted too; `None`: none.
+        bands: Bands of which the parts are wanted too; `None`: none.
         factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
             gives the exact effect of halving.
         gradient: Whether shares by derivatives are wanted: about the time of five more

@@ -58,7 +58,7 @@ class NoiseSystem(eqx.Module):
         speeds: Speeds of outer ring, inner ring, orbit and of the elements about
             their own axes, against the orbit [rad/s]; of a set the latter two of every
             element.
-        mass: Of the ring's freedoms (k,) [kg, kg m²].
+        mass: Mass of the ring's freedoms (k,) [kg, kg m²].
         load: On them (k,) [N, N m].
         growth: Time in which form errors grow from zero, so that their onset excites
             no vibration; `None`: they are present from the start [s].

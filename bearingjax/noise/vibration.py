@@ -60,13 +60,13 @@ class Vibration(eqx.Module):
             freedoms (time, k) [m, rad].
         acceleration: Likewise, of frequencies up to `bandwidth` (time, k)
             [m/s², rad/s²].
-        contact_load: Of every contact (time, element, contact) [N].
-        azimuth: Of every rolling element (time, element) [rad].
-        shaft_frequency: Of the ring that turns faster [Hz].
+        contact_load: Load of every contact (time, element, contact) [N].
+        azimuth: Azimuth of every rolling element (time, element) [rad].
+        shaft_frequency: Frequency of the ring that turns faster [Hz].
         result: `Result` code: `NON_FINITE` where it ran away, `STEP_LIMIT` where its
             steps are too long for the contacts under their largest load.
         cage: Motion of the cage, or `None`.
-        steps: Of the integration, per sample.
+        steps: Steps of the integration, per sample.
 
     Static: turns, steps.
     """

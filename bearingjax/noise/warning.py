@@ -52,7 +52,7 @@ def model_warnings(
     Args:
         model: The bearing; concrete.
         samples: Per turn of the shaft.
-        steps: Of the integration, per sample; `None`: as many as are needed.
+        steps: Steps of the integration, per sample; `None`: as many as are needed.
         tolerances: How random bearings scatter, if they are wanted.
 
     Returns:
@@ -79,7 +79,7 @@ def record_warnings(
         model: The bearing; concrete.
         record: From `vibration`, converged.
         found: Spectrum of its acceleration, amplitudes (line, direction) [m/s²].
-        bands: Of the levels.
+        bands: Bands of the levels.
         tolerances: How random bearings scatter, if they are wanted.
 
     Returns:

@@ -37,7 +37,7 @@ def centre_pressure(
     those off the scale.
 
     Args:
-        solutions: Of one roller.
+        solutions: Solutions of one roller.
         slices: Results of slices under each load, dashed.
     """
     ax = axes_or_new(ax, (8.0, 5.0))

@@ -62,7 +62,7 @@ class _Strip(NamedTuple):
     """Views over the width of the page, or text.
 
     Attributes:
-        height: Of the strip [inch].
+        height: Height of the strip [inch].
         views: Its views.
         words: In its middle.
         bold: How they are written.

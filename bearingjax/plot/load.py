@@ -106,8 +106,9 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
 
     Args:
         ax: Polar axes.
-        azimuth: Of the rollers [rad].
-        loads: Of each on both raceways (roller, 2), in the unit of the axes.
+        azimuth: Azimuth of the rollers [rad].
+        loads: Loads of each roller on both raceways (roller, 2), in the unit of the
+            axes.
         limit: End of the radial axis.
         bars: Angle that the bars of a roller take [rad].
 
@@ -217,8 +218,8 @@ def stiffness_over_speed(
     """Plot axial and radial stiffness of a ring against speed.
 
     Args:
-        speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
-        stiffness: Of both rings (case, 12, 12) [N/m, N, N m].
+        speed: Speed of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
+        stiffness: Stiffness of both rings (case, 12, 12) [N/m, N, N m].
         moving_ring: Ring whose stiffness is shown, "outer" or "inner".
 
     Raises:

@@ -67,7 +67,7 @@ def noise_spectrum(
     """Plot the level of every line of a spectrum, summed over directions.
 
     Args:
-        spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
+        spectrum: Spectrum of the acceleration, amplitudes (line, ...) [m/s²].
         lines: From `name_lines`; the largest have their names.
         reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
     """

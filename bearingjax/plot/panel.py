@@ -67,7 +67,7 @@ class Curve:
 
     Attributes:
         x, y: Coordinates (point,) [SI].
-        label: Of the legend; empty or with a leading underscore: not there.
+        label: Label of the legend; empty or with a leading underscore: none.
         colour, style: As Matplotlib takes them.
         look: Further keywords of Matplotlib's `plot`, or `fill_between`.
         to: Other edge of a band (point,) [SI]; `None`: a line.
@@ -98,10 +98,10 @@ class Bars:
 
     Attributes:
         heights: (place,) [SI].
-        label: Of the legend.
+        label: Label of the legend.
         colour: As Matplotlib takes it, one or one for each.
         away: Distance of their middles from the places [1].
-        width: Of each [1].
+        width: Width of each [1].
         told: Format of the number above each, or the words; `None`: none.
         look: Further keywords of Matplotlib's `bar_label`.
     """
@@ -144,7 +144,7 @@ class Panel:
             `None`: none.
         twin: Panel on a vertical axis of its own at the right.
         also: Function of the axes that draws further parts.
-        size: Of a new figure [inch].
+        size: Size of a new figure [inch].
     """
 
     title: str

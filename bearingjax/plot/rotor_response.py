@@ -53,7 +53,7 @@ def response_curve(
         branch: From `follow`.
         amplitude: Of its points, such as a column of `branch.amplitude` (point,) [m,
             rad].
-        unit: Of the amplitude: "um", or "mrad" for a tilt.
+        unit: Unit of the amplitude: "um", or "mrad" for a tilt.
         linear: Frequencies [rad/s] and amplitudes [m, rad] of the linear response.
     """
     frequency, marks = np.asarray(branch.frequency), []
@@ -89,9 +89,9 @@ def linear_curve(
     """Plot the amplitude of a linear response over the frequency [Hz].
 
     Args:
-        frequency: Of the excitation (point,) [rad/s].
+        frequency: Frequency of the excitation (point,) [rad/s].
         amplitude: (point,) [m, rad].
-        unit: Of the amplitude: "um", or "mrad" for a tilt.
+        unit: Unit of the amplitude: "um", or "mrad" for a tilt.
     """
     marks = [Curve(frequency, amplitude, "_linear")]
     return _panel("Response", _EXCITATION, marks, unit, frequency)
@@ -122,9 +122,9 @@ def speed_curve(
     Args:
         speed: (point,) [rad/s].
         amplitude: (point,) or (point, curve) [m, rad].
-        unit: Of the amplitude: "um", or "mrad" for tilts.
+        unit: Unit of the amplitude: "um", or "mrad" for tilts.
         names: Of the curves.
-        title: Of the axes.
+        title: Title of the axes.
     """
     values = np.asarray(amplitude, dtype=float)
     values = values[:, None] if values.ndim == 1 else values

@@ -426,7 +426,7 @@ def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
     """Count the modes that can resonate above a frequency.
 
     Args:
-        matrices: Of the rotor.
+        matrices: Matrices of the rotor.
         frequency: ω [rad/s].
     """
     *_, state = _state(matrices)
@@ -462,8 +462,8 @@ def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
 
     Args:
         pairs: Eigenvalues and vectors.
-        matrices: Of the rotor; only what its freedoms move is read.
-        speed: Of the rotor, whose sense is called forward [rad/s].
+        matrices: Matrices of the rotor; only what its freedoms move is read.
+        speed: Speed of the rotor, whose sense is called forward [rad/s].
     """
     matrices = stop(matrices)
     moved = pairs.right @ to_complex(matrices.motions).T
@@ -501,7 +501,7 @@ def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mod
 
     Args:
         shape: Complex motion of all nodes [m, rad].
-        length: Of the shaft, by which tilts are compared with displacements [m].
+        length: Length of the shaft, by which tilts are compared with displacements [m].
     """
     length = to_complex(length)
     x = jnp.concatenate([shape[..., 0], length * shape[..., 3]], axis=-1)

@@ -23,7 +23,7 @@ class Onset(NamedTuple):
         mode: Its number in the Campbell diagram, from 0.
         speed: From which on it grows; the first speed of the diagram if it does so
             there [rad/s].
-        frequency: Of the mode there [Hz].
+        frequency: Frequency of the mode there [Hz].
     """
 
     mode: int

@@ -126,7 +126,7 @@ def steady(
         rotor: The rotor.
         moments, forces: On all motions [kg m], [N, N m].
         frequencies: ω of the excitation [rad/s].
-        speeds: Of the rotor at each of them [rad/s].
+        speeds: Speeds of the rotor at each of them [rad/s].
 
     Returns:
         UnbalanceResponse; its `speed` is that of the excitation.

@@ -44,7 +44,7 @@ class StaticEquilibrium(eqx.Module):
         displacement: (ux uy uz gx gy) of every node (node, 5) [m, rad].
         housing: (ux uy uz) of every housing (housing, 3) [m].
         support_load: Load of the shaft on every support (support, 5) [N, N m].
-        stiffness: Of every support there (support, 5, 5) [N/m, N, N m].
+        stiffness: Stiffness of every support there (support, 5, 5) [N/m, N, N m].
         damping: Likewise (support, 5, 5) [N s/m, N s, N m s].
         rotor: The rotor on springs and dampers of that stiffness and damping, for all
             linear analyses about this place.
@@ -82,7 +82,7 @@ def static_equilibrium(
     Args:
         rotor: `Rotor`: shaft, discs, supports; one support at least.
         loads: `RotorLoads`; the constant ones count; `None`: nothing but preload.
-        speed: Of the rotor, for supports that follow it [rad/s].
+        speed: Speed of the rotor, for supports that follow it [rad/s].
         throw: Raise if there is none. Static.
 
     Returns:

@@ -45,7 +45,7 @@ def placed_bearing(
         name: NAME.
         path: Path of the scene.
         beside: Keys of the table that the machine reads itself.
-        speed: Of the inner ring [rad/s]; lives and fits take that of the machine.
+        speed: Speed of the inner ring [rad/s]; lives and fits take that of the machine.
         known: Scenes read before, by what was read; added to.
 
     Raises:

@@ -36,7 +36,7 @@ class BalancedLoads(eqx.Module):
         balance: Balance of the ring, with its free freedoms.
         load: Function of time [s] that returns the load on the ring (6,) [N, N m];
             a pytree.
-        unit: Of the unknowns [m].
+        unit: Unit of the unknowns [m].
         force: Scale of the unbalanced force [N].
     """
 
@@ -70,7 +70,7 @@ class BalancedLoads(eqx.Module):
 
         Args:
             azimuth: Its azimuth [rad].
-            speed: Of the rings.
+            speed: Speed of the rings.
             centre: Its centre (z, r) relative to its position between the rings [m].
             ring: Unknowns of the ring's balance [m].
         """

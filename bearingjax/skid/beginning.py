@@ -69,7 +69,7 @@ def surroundings(
         load_speed: Ring speeds of that solution.
         speed: Ring speeds over time.
         gravity: Against y [m/s²].
-        places: Of the table. Static.
+        places: Places of the table. Static.
     """
     table = tabulated(model, solution, load_speed, places)
     centre = jnp.zeros((*solution.azimuth.shape, 0))

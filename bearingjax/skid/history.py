@@ -23,12 +23,12 @@ class SkidMotion(eqx.Module):
     Attributes:
         time: Times (time,) [s].
         state: The motion, leading axis time; `SkidState`.
-        azimuth: Of the balls (time, ball) [rad].
+        azimuth: Azimuth of the balls (time, ball) [rad].
         contact_load: Loads (time, ball, contact) [N].
         rolling_orbit_speed: That of pure rolling (time, ball) [rad/s].
         displacement: Ring freedoms, outer ring first (time, 12) [m, rad].
         film: Central films (time, ball, contact) [m].
-        heat: Of each contact (time, ball, contact) [W].
+        heat: Heat of each contact (time, ball, contact) [W].
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
         friction_torque: On the ring that drives, the one that turns faster, of the
@@ -36,8 +36,8 @@ class SkidMotion(eqx.Module):
         ring_torque: On outer and inner ring (time, 2) [N m].
         power: Momentary powers (time,).
         work: Their integrals since the beginning (time,).
-        kinetic_energy: Of balls and cage (time,) [J].
-        potential_energy: Of pockets and weights (time,) [J].
+        kinetic_energy: Kinetic energy of balls and cage (time,) [J].
+        potential_energy: Potential energy of pockets and weights (time,) [J].
         steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
@@ -168,7 +168,7 @@ class SlidingSpectrum(NamedTuple):
 
     Attributes:
         frequency: Frequencies (line,) [Hz].
-        amplitude: Of the sliding speed (line,) [m/s].
+        amplitude: Amplitude of the sliding speed (line,) [m/s].
         cage: Mean frequency of the cage over the time that was transformed [Hz].
     """
 

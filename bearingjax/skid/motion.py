@@ -58,9 +58,9 @@ class SkidState(NamedTuple):
         orbit: Orbital speeds (ball,) [rad/s].
         lead: Angle by which each ball is ahead of the middle of its pocket (ball,)
             [rad].
-        cage_speed: Of the cage [rad/s].
+        cage_speed: Speed of the cage [rad/s].
         cage_turn: Angle by which the cage has turned [rad].
-        centre: Of each ball (z, r) from where the rings take it (ball, 2) [m].
+        centre: Centre of each ball (z, r) from where the rings take it (ball, 2) [m].
         ring: Unknowns of the ring's balance (6,) [m].
 
     Where the loads are tabulated there is nothing in centre (ball, 0) and ring (0,).
@@ -81,9 +81,9 @@ class Surroundings(eqx.Module):
     Attributes:
         model: Traction law, drag, cage.
         loads: Contact loads of the balls.
-        speed: Of the rings, over time.
+        speed: Speed of the rings, over time.
         place: Azimuths of the pockets at rest (ball,) [rad].
-        density: Of the oil [kg/m³].
+        density: Density of the oil [kg/m³].
         gravity: Acceleration against y [m/s²].
     """
 
@@ -144,7 +144,7 @@ def one_ball(
         environment: Surroundings of the balls.
         time: Time [s].
         place: Azimuth of its pocket at rest [rad].
-        state: Of this ball alone, with cage and ring.
+        state: State of this ball alone, with cage and ring.
     """
     model, azimuth = environment.model, place + state.cage_turn + state.lead
     speed = environment.speed.at(time)

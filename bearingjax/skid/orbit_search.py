@@ -59,7 +59,7 @@ class AbstractOrbit(eqx.Module):
             nothing would hold the ring in its place [1].
         balance: Of the ring.
         azimuth: The places, spread evenly (place,) [rad].
-        density: Of the oil [kg/m³].
+        density: Density of the oil [kg/m³].
         along: Matrix of derivatives along the orbit (place, place) [1].
         least: Sum of the contact loads in pure rolling, the scale of contact loads
             that vanish [N].
@@ -284,7 +284,7 @@ class Evaluated(NamedTuple):
     Attributes:
         out: Forces out of balance (unknown,) [N].
         sizes: Scale of each (unknown,) [N].
-        jacobian: Of the forces (unknown, unknown) [N s/rad, N/m].
+        jacobian: Jacobian of the forces (unknown, unknown) [N s/rad, N/m].
         solved: The row in equilibrium there.
     """
 

@@ -90,8 +90,8 @@ def simulate(
         load: On the moving ring, as in `solve_load` (6,) [N, N m]; or over time:
             `LoadHistory`, `SinusoidalLoad`, or another pytree that is a function of
             time [s] and returns such a load.
-        speed: Of the rings: constant, or over time.
-        duration: Of the motion [s].
+        speed: Speed of the rings: constant, or over time.
+        duration: Duration of the motion [s].
         times: When to report, rising, from 0 to `duration` (time,) [s]. Default:
             `n_times` of them, evenly spaced. Between its steps the motion is
             interpolated by cubics.
@@ -104,7 +104,7 @@ def simulate(
             along the orbits only, as its radial part is small against contact loads.
         balanced: Whether the ring is balanced at every time; of balls alone. Static.
             Default: if the load is a function of time.
-        places: Of the table, 1 where all loads are equal, or at least 6; static.
+        places: Places of the table, 1 where all loads are equal, or at least 6; static.
             Default: 1 if they are, else 96 (also if the load is traced).
         tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
             relative to the kinetic energy of rolling balls. The error of a step is held

@@ -56,7 +56,7 @@ class Backbone(eqx.Module):
             (point, sample, n) [m, rad].
         velocity: Likewise (point, sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak (point, n) [m, rad].
-        residual: Of the method's equations, largest (point,) [1].
+        residual: Residual of the method's equations, largest (point,) [1].
         steps: Newton steps (point,).
         result: `Result` codes (point,).
     """

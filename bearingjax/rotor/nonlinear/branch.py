@@ -65,7 +65,7 @@ class Branch(NamedTuple):
         multipliers: Floquet multipliers (point, 2n) [1].
         stable: Whether all multipliers lie within the unit circle (point,).
         unknowns: Unknowns of the method (point, m) [1].
-        residual: Of its equations, largest (point,) [1].
+        residual: Residual of its equations, largest (point,) [1].
         newton: Newton steps (point,).
         events: Marked points, in order.
         refused: Steps that were tried in vain.

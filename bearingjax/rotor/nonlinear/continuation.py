@@ -59,7 +59,7 @@ class Arclength(eqx.Module):
         """Return the unit vector of prediction and the normal of the correction plane.
 
         Args:
-            tangent: Of the branch at the last point, a unit vector.
+            tangent: Tangent of the branch at the last point, a unit vector.
             before: From the last point but one to the last, a unit vector.
         """
         return tangent, tangent

@@ -34,14 +34,14 @@ class PeriodicOrbit(eqx.Module):
     """Periodic orbit: a motion with the period of its excitation.
 
     Attributes:
-        frequency: Of the excitation [rad/s].
+        frequency: Frequency of the excitation [rad/s].
         displacement: At even phases from 0 on (sample, n) [m, rad].
         velocity: Likewise (sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak over the period (n,) [m, rad].
         multipliers: Floquet multipliers (2n,) [1].
         stable: Whether all multipliers lie within the unit circle.
         unknowns: Unknowns of the method (m,) [1].
-        residual: Of its equations, largest [1].
+        residual: Residual of its equations, largest [1].
         steps: Newton steps.
         result: `Result` code.
     """
@@ -64,7 +64,7 @@ class Corrected(NamedTuple):
     Attributes:
         x: Unknowns, the frequency ratio last [1].
         left: Residual of the equations [1].
-        jacobian: Of them, in x [1].
+        jacobian: Jacobian of them, in x [1].
         steps: Newton steps.
         result: `Result` code.
     """
@@ -188,7 +188,7 @@ def solve_orbit(
 
     Args:
         system: The system.
-        frequency: Of the excitation [rad/s].
+        frequency: Frequency of the excitation [rad/s].
         method: `Shooting` or `HarmonicBalance`.
         start: Displacements to begin with, at even phases from 0 on, such as an
             orbit's by any method (sample, n) [m, rad]; `None`: rest.

@@ -114,7 +114,7 @@ def as_frequency_table(
 
     Args:
         owner: Function that was called.
-        frequency: Of the excitation [rad/s], or a table.
+        frequency: Frequency of the excitation [rad/s], or a table.
         duration: [s].
         end_frequency: At its end [rad/s]; `None`: as at its beginning.
     """
