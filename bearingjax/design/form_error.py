@@ -66,7 +66,7 @@ class AbstractShape(eqx.Module):
 
         Args:
             angle: From the part's own mark (...) [rad]; any number of turns.
-            surface: Where the contact runs.
+            surface: Contact track.
         """
 
 
@@ -400,7 +400,7 @@ class FormErrors(eqx.Module):
         """Deviations of both raceways at each rolling element, `Deviation.raceway` [m].
 
         Args:
-            surfaces: Where the contacts run.
+            surfaces: Contact tracks.
             azimuth: Azimuth of each element [rad].
             outer: Turn of the outer ring [rad].
             inner: Turn of the inner ring [rad].
@@ -428,7 +428,7 @@ class FormErrors(eqx.Module):
         """Return the errors as tables, for many evaluations.
 
         Args:
-            surfaces: Where the contacts run.
+            surfaces: Contact tracks.
             points: Number of angles around each part, of elements an eighth. Static.
         """
 

@@ -96,7 +96,7 @@ class Row(eqx.Module):
 
         Args:
             q: Ring freedoms at the node [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
             minimiser: Local solver. Static.
             near: `SolvedRow.near` at ring freedoms near by, or `None`.
 
@@ -191,7 +191,7 @@ class Row(eqx.Module):
 
         Args:
             q: Ring freedoms at the node [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
             solved: The row solved there.
         """
         local = self.local(q)
@@ -247,7 +247,7 @@ class Row(eqx.Module):
 
         Args:
             local: Ring freedoms in the row's own axes [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
         """
 
         def one(element, azimuth, *shift):

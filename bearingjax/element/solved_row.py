@@ -65,7 +65,7 @@ class RowResults(NamedTuple):
     Attributes:
         row: The `Row`.
         local: Ring freedoms in its own axes, its spring's travel included [m, rad].
-        azimuth: Where its elements are [rad].
+        azimuth: Azimuths of its elements [rad].
         rings: Ring motions in the elements' axes (element, r) [m, rad].
         x: Own unknowns (element, n) [m].
         contact_load: Load of each contact (element, contact) [N].

@@ -67,7 +67,7 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
 
     Args:
         model: The bearing as on the drawing, or with errors that all have.
-        tolerances: How bearings scatter.
+        tolerances: Scatter of the bearings.
         key: Key of `jax.random`.
     """
     bearing: Any = model.element.bearing
@@ -113,7 +113,7 @@ def monte_carlo(
 
     Args:
         model: The bearing as on the drawing, or with errors that all have.
-        tolerances: How bearings scatter.
+        tolerances: Scatter of the bearings.
         n: Number of bearings.
         key: Key of `jax.random`; the same gives the same bearings.
         turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.

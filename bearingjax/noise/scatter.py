@@ -311,7 +311,7 @@ def sample_errors(
     """Draw the random errors of one bearing.
 
     Args:
-        tolerances: How bearings scatter.
+        tolerances: Scatter of the bearings.
         bearing: Bearing of one row.
         key: Key of `jax.random`. Each source draws with a key of its own: what another
             source is like does not change it.

@@ -53,7 +53,7 @@ def model_warnings(
         model: The bearing; concrete.
         samples: Per turn of the shaft.
         steps: Steps of the integration, per sample; `None`: as many as are needed.
-        tolerances: How random bearings scatter, if they are wanted.
+        tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
         A sentence each; empty if there are none.
@@ -80,7 +80,7 @@ def record_warnings(
         record: From `vibration`, converged.
         found: Spectrum of its acceleration, amplitudes (line, direction) [m/s²].
         bands: Bands of the levels.
-        tolerances: How random bearings scatter, if they are wanted.
+        tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
         A sentence each; empty if there are none.

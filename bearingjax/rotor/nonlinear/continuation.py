@@ -177,7 +177,7 @@ def place(
 
     Args:
         system: The system.
-        method: How orbits are sought.
+        method: Method that finds the orbits.
         x: Predicted unknowns and frequency ratio [1].
         direction: Normal of the plane.
         towards: The tangent points to its side.
@@ -213,7 +213,7 @@ def trace(
 
     Args:
         system: The system.
-        method: How orbits are sought.
+        method: Method that finds the orbits.
         begin: Unknowns and frequency ratio to begin with (m + 1,) [1].
         end: Frequency ratio to go to [1].
         parameter: Quantity held between points.

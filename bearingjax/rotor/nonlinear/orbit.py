@@ -91,7 +91,7 @@ def correct(
 
     Args:
         system: The system.
-        method: How the orbit is sought.
+        method: Method that finds the orbit.
         x: Unknowns and frequency ratio to begin with (m + 1,) [1].
         direction: Normal of the plane (m + 1,) [1].
         limit: Most Newton steps.
@@ -268,7 +268,7 @@ def reported(
 
     Args:
         system: The system.
-        method: How it was sought.
+        method: Method that found it.
         x: Unknowns and frequency ratio (m + 1,) [1].
         residual, steps, result: As in `PeriodicOrbit`.
     """
