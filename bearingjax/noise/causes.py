@@ -75,7 +75,7 @@ def _named_lines(causes: list[_Cause], rows: int) -> tuple[str, ...]:
         found.setdefault(one.words, {}).setdefault(one.row, set()).add(one.order)
     texts = []
     for words, by_row in found.items():
-        # Rows with the same orders are told together.
+        # Rows with the same orders are named together.
         together: dict[tuple[int, ...], list[int]] = {}
         for row, orders in by_row.items():
             together.setdefault(tuple(sorted(orders)), []).append(row)

@@ -174,7 +174,8 @@ def composed(outer: Expansion, inner: Expansion) -> Expansion:
 
     Args:
         outer: Functions of (..., k).
-        inner: Those k as functions of (..., m), with one more axis in all arrays.
+        inner: The k arguments as functions of (..., m), with one more axis in all
+            arrays.
     """
 
     # Sums over an axis: what they are of, XLA does not work out anew for each use.

@@ -92,7 +92,7 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
     are; what your own `jax.jit` compiles, JAX's cache of compiled programs may keep.
 
     Args:
-        folder: Where they are kept; `None`: `bearingjax/programs` in the user's cache
+        folder: Their folder; `None`: `bearingjax/programs` in the user's cache
             (`XDG_CACHE_HOME`, or `~/.cache`). It is made if there is none; if others
             can write there, nothing is read or kept. 512 MB at most, those that were
             not used for longest go first.

@@ -80,7 +80,7 @@ class Problem:
 
     Args:
         element, cases, variables, objective, constraints: As in `optimise`, checked.
-        options: How cases are solved.
+        options: Settings of the solves.
         build: As in `optimise`.
     """
 

@@ -249,7 +249,7 @@ def verdict(
 
     Args:
         trials: Designs that were tried.
-        ending: How the search ended.
+        ending: Outcome of the search.
         best: The best design; with gradients if the search uses them or has settled.
         slopes: Whether the search uses gradients.
         max_steps, tolerance: As in `optimise`.

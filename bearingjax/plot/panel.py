@@ -134,7 +134,7 @@ class Panel:
         title: Title.
         over: Quantity along the horizontal axis.
         of: Quantity along the vertical axis.
-        marks: What is drawn, in order.
+        marks: Curves and bars, in the order of drawing.
         span: Ends of the horizontal axis [SI]; default: Matplotlib's.
         floor: Whether the vertical axis begins at 0.
         most: Magnitude beyond which values are cut off [displayed unit].

@@ -78,7 +78,7 @@ def sweep_overview(
         if number:
             ax.locator_params(axis="x", integer=True)
         if k == 0 and any(curve.name for curve in curves):
-            # Curves of one colour are told once.
+            # Curves of one colour are listed once.
             handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
             figure.legend(
                 handles.values(),

@@ -88,7 +88,7 @@ def _head(run: ShaftRun) -> list[Part]:
 def _shafts(run: ShaftRun) -> Grid:
     states = run.solution.shafts
     bent = [np.linalg.norm(s.displacement[:, :2], axis=1).max() for s in states]
-    # Rounded to 1 µN m, so that a shaft without load does not tell round-off.
+    # Rounded to 1 µN m, so that a shaft without load does not show round-off.
     moment = [np.linalg.norm(s.moment, axis=1).max().round(6) for s in states]
     where = [s.position[np.linalg.norm(s.moment, axis=1).argmax()] for s in states]
     return Grid(

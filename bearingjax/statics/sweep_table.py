@@ -130,7 +130,7 @@ def check_writable(path: Path, rows: int = 0) -> None:
 
     Args:
         path: Path of the table.
-        rows: How many it will have, if that is known.
+        rows: Number of rows that it will have, if known.
 
     Raises:
         ValueError: For an ending other than .csv, .parquet and .xlsx; for more rows
