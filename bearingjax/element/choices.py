@@ -189,7 +189,7 @@ class RollerChoices(AbstractChoices):
                 )
 
     def rolling_element(self, part, speed, deviation):
-        # Coupled slices ask for a rule as all laws do, and do without.
+        # Coupled slices take a rule as all laws do, and do not use it.
         quadrature = self.quadrature or ContactMapped()
         bearing: Any = part.bearing
         exact = self.kinematics.keeps_arcs

@@ -139,8 +139,8 @@ def newton(
         return x, left, jacobian, jnp.max(jnp.abs(left)), step
 
     def solved(here):
-        # Of a stiff shaft the forces that cancel leave more than the tolerance in
-        # round-off; how far that is from the orbit the step tells.
+        # Forces of a stiff shaft cancel to more than the tolerance of round-off; the
+        # step shows how far that is from the orbit.
         x, _, jacobian, size, step = here
         cancels = round_off * jnp.max(jnp.abs(jacobian) @ jnp.abs(x))
         near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
