@@ -278,7 +278,7 @@ def _closed(found, values):
 
 def _over_orbit(found, title, of, marks, *, note="", **more: Any) -> Panel:
     """Return a panel whose zones are shaded and named."""
-    twin = more.get("beside")
+    twin = more.get("twin")
     count = len(marks) + (0 if twin is None else len(twin.marks))
 
     def shaded(ax):
