@@ -146,7 +146,7 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
     ]
     if changes:
         yield (
-            "natural modes are told of where the rolling elements stand at time zero;"
+            "natural modes are those of the element positions at time zero;"
             f" as these orbit, they change: {'; '.join(changes)}"
         )
 

@@ -170,7 +170,7 @@ def _sources(task, found):
     yield Grid(columns, f"what makes the noise {where}, of {found.used} bearings")
     yield "the rest is what all bearings of the scene have: load, `waves`, `spalls`"
     if doubt.any():
-        yield "no gain is told (-) where the part may be chance: take more bearings"
+        yield "no gain is given (-) where the part may be chance: take more bearings"
     for name, ratio in factors.items():
         much = ", ".join(f"{SOURCES[k]} x {v:.2g}" for k, v in ratio.items())
         yield f"{name}: {-float(found.gain_together(ratio)):.2g} dB ({much})"

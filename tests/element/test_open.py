@@ -1,4 +1,4 @@
-"""Rollers that are told to be open before they are solved."""
+"""Rollers that are known to be open before they are solved."""
 
 import jax
 import jax.numpy as jnp
@@ -27,7 +27,7 @@ def taper(profile):
 
 
 class MaybeProtrudingCrown(bj.CircularCrown):
-    """Of rollers with this profile nothing is told: all are evaluated."""
+    """Rollers with this profile are never known to be open: all are evaluated."""
 
     protruding = True
 
@@ -41,7 +41,7 @@ def nup(profile):
     return cylindrical(roller_profile=profile, ribs=ribs)
 
 
-# A bearing, with its roller profile and with one of which nothing is told.
+# A bearing, with its roller profile and with one never known to be open.
 DESIGNS = {
     "crowned": (
         lambda profile: cylindrical(roller_profile=profile),

@@ -25,7 +25,7 @@ MODEL = NoiseModel(
 
 
 def test_forces_of_balls_are_derivatives_of_their_energy(monkeypatch):
-    """With their own derivatives, of which the damping is made."""
+    """Their own derivatives too, from which the damping follows."""
     system = MODEL.system(8)
 
     def own(system):

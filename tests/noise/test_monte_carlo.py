@@ -192,7 +192,7 @@ def test_source_contributions_along_a_line_and_by_band():
         source_contributions(MODEL, SMALL, 3, KEY, direction=3, **HOW)
 
 
-def test_products_of_sources_are_told():
+def test_contribution_warnings_for_products_of_sources():
     """Mean square 1 of a product of two sources: nothing goes without either."""
     parts = {"outer_axial": 0.0, "inner_axial": 0.0, "diameter": 1.0}
     found = SourceContributions(

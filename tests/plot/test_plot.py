@@ -457,7 +457,7 @@ def test_ellipses_have_their_true_shape(of_balls, name):
     shapes = {round(p.width / p.height / scale_of(ax), 9) for p in drawn}
     assert shapes == {0.1}  # as made
     assert max(p.height for p in drawn) == pytest.approx(2.0, rel=0.05)
-    # The scale that is told: mm of the drawing for a mm on the raceway.
+    # The stated scale: mm of the drawing for a mm on the raceway.
     turn = np.pi * (52.0 + 9.5 * (name != "thrust"))
     told = scale_of(ax) * turn / 360.0
     assert f"{told:.2g} times" in ax.get_xlabel() and "true shape" in ax.get_xlabel()

@@ -99,7 +99,7 @@ def test_disc_size_recovers_dimensions(width):
     found = disc_size(disc, 0.05, STEEL)
     assert found is not None
     assert np.allclose(found, [200.0, 25.0, MM * width], rtol=1e3 * ROUNDING)
-    # A thin disc, as of the paper: its mass tells its width.
+    # A thin disc, as in the paper: its width follows from its mass.
     thin = disc_size(bj.rotor.Disc(0, 10.0, 0.2, 0.1), 0.025, STEEL)
     assert thin is not None
     solid = 7810.0 * np.pi * 1e-9 * (thin.outer**2 - thin.bore**2) * thin.width

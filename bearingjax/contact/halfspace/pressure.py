@@ -289,7 +289,7 @@ def _misfit(solution):
     across, along = (int(count) for count in solution.cells)
     if min(across, along) < min(LEAST_CELLS, solution.grid.shape[1]):
         return (
-            f"The contact is {across} by {along} cells, too few to tell its pressure:"
+            f"The contact is {across} by {along} cells, too few for its pressure:"
             f" at least {LEAST_CELLS} across it and along. Take a narrower grid, or"
             " more cells; if it is short beside the roller, even ones (`grading` 1)."
         )
