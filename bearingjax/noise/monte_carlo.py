@@ -227,7 +227,7 @@ class Records:
 
     def batches(self, keys, batch, progress=None, factors=None):
         """Yield the number of bearings, accelerations and result codes by batch."""
-        # All sources always: one program.
+        # Factors of all sources, so that one program serves all calls.
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
         for part, at in self.parts(len(keys), batch):

@@ -104,7 +104,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 
     Fails: as `solve_load`; the frequencies are then those of no balance.
     """
-    # Form errors alone feel the width of contacts: one program with it and without.
+    # Only form errors depend on the contact width: one program with it and without.
     return _natural_modes(dataclasses.replace(model, half_width=None), model.orbits)
 
 

@@ -107,7 +107,7 @@ def contribution_warnings(found: SourceContributions) -> list[str]:
     """
     together = float(found.together)
     error = float(np.linalg.norm(found.error) / found.mean_square)
-    # Of a single bearing there is no error.
+    # A single bearing has no standard error.
     if together <= 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0):
         return []
     return [

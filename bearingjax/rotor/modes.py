@@ -394,7 +394,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
     real = to_complex(values.real)
     values = jnp.where(jnp.abs(values.imag) <= floor, real, values)
-    # First what oscillates, then what does not, then the conjugates of the first.
+    # Oscillating modes first, then the others, then conjugates of the first.
     last = 1.0 + jnp.max(jnp.abs(values))
     behind = jnp.where(values.imag < 0, 2.0 * last, last + jnp.abs(values))
     chosen = jnp.argsort(jnp.where(values.imag > 0, values.imag, behind))

@@ -75,7 +75,7 @@ def _crossing(rotor, ends, before):
         ends: Two speeds [rad/s].
         before: Eigenvalue of the mode at the first [rad/s].
     """
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from scipy.optimize import brentq
 
     level = 0.0 if _ratio(before) > 0 else _UNSTABLE

@@ -139,7 +139,7 @@ def steady(
         force = to_complex(frequency**2) * moments + forces
         matrices = rotor.linearised(speed)
         stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * frequency, frequency))
-        # What nothing holds would make it singular at rest.
+        # Motions without stiffness would make it singular at rest.
         little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
         stiffness = stiffness + to_complex(little)
         return motions @ solve_any(stiffness, force)

@@ -98,7 +98,7 @@ class Unsupported(NamedTuple):
     """Matrices on all motions (motion, motion) of a rotor without its supports.
 
     Attributes:
-        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as of
+        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as in
             `RotorMatrices`.
         shaft_mass, shaft_stiffness: Of the shaft alone.
     """

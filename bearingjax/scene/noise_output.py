@@ -124,7 +124,7 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
         run: From `run_noise`, converged.
     """
     analysis = run.analysis
-    assert analysis is not None  # asked for of what is solved alone
+    assert analysis is not None  # callers have solved it
     columns = {"time [s]": np.asarray(analysis.record.time)}
     for name, unit, values in (
         ("acceleration", "m/s²", analysis.acceleration),

@@ -130,9 +130,9 @@ def respond(
         modes: Its modes, of which the lowest sets the unit of frequency.
     """
     asked = task.response
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     if asked.method == "linear":
-        assert linear is not None  # asked for by the caller
+        assert linear is not None  # callers check it
         return _linear(task, linear)
     if asked.reduction is not None:
         _warn_of_reduction(task, settled.rotor)
@@ -217,7 +217,7 @@ def _half_ranges(every):
 
 def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
     asked = task.response
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     frequency = np.linspace(asked.begin, asked.end, asked.points)
     found = harmonic_response(linear, task.loads, frequency, asked.speed)
     motion = np.asarray(found.motion)[:, _stations(task)]
@@ -239,7 +239,7 @@ def run_in_time(
         task, rotor, settled, modes: As in `respond`.
     """
     asked = task.transient
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     if asked.passage:
         turning = tuple(with_passage(support) for support in rotor.supports)
         rotor = dataclasses.replace(rotor, supports=turning)

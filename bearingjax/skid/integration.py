@@ -57,7 +57,7 @@ def integrated(
         duration: The last time [s].
         options: Settings.
     """
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from .rosenbrock import Rodas
 
     system = _system(environment, start)

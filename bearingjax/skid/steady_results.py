@@ -120,7 +120,7 @@ class SteadyMotion(eqx.Module):
     def raceway_heat(self) -> np.ndarray:
         """Mean heat of all contacts of the outer and of the inner raceway (2,) [W]."""
         heat = np.asarray(self.heat)
-        # At even places a ball is for longer where it is slow.
+        # Places are even in angle; a ball spends longer where it is slow.
         orbit = np.abs(np.asarray(self.orbit_speed))
         time = 1.0 / orbit if orbit.all() else np.ones_like(orbit)
         count = len(self.solution.azimuth)  # type: ignore[attr-defined]

@@ -62,7 +62,7 @@ def _counted(doubts):
 def _doubts(model, found, state):
     """Return size and sentence of each kind of warning, or `None`."""
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
-    # Before the rings turn there is no film, and slip means nothing.
+    # Before the rings turn there is no film, and slip has no meaning.
     rolling = np.abs(found.rolling_orbit_speed)
     turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
     turning &= rolling > 0

@@ -268,8 +268,8 @@ _without_limit.defjvp(_rule, symbolic_zeros=True)
 def _residual(y, args):
     """Zero in balance."""
     model, balance, solved, _ = args
-    # A held freedom follows what is prescribed for it, not `y`: between it and the
-    # free ones the Jacobian would not be symmetric.
+    # Held freedoms take their prescribed values, not those of `y`, which would make the
+    # Jacobian between held and free ones unsymmetric.
     held = balance.held
     q = balance.ring_freedoms(balance.free * y + held)
     # gz may be prescribed: the answer follows it through the azimuths.

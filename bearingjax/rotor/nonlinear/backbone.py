@@ -189,7 +189,7 @@ def _at_rest(system):
         return left(u, stop(system)), jax.jacfwd(left)(u, stop(system))
 
     def correction(of_u, u, change, _):
-        # What nothing holds stays where it is.
+        # Motions without stiffness stay where they are.
         return -pseudoinverse(jax.jacfwd(of_u)(u)) @ change
 
     found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)

@@ -225,7 +225,7 @@ def _events(system, method, points: BranchPoint) -> tuple[Event, ...]:
 
 def _located(system, method, every, k, kind, test):
     """Locate an event: return its position along the branch, in points, and itself."""
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from scipy.optimize import brentq
 
     here, there = every[k], every[k + 1]

@@ -154,7 +154,7 @@ def newton(
     def step(state):
         here, move, steps = state
         there = evaluated(here[0] + move)
-        # Half a step where a whole one leads away; a number that is none does.
+        # Half a step where a whole one leads away or to NaN.
         better = (there[3] <= 2.0 * here[3]) | (steps < 0)
         kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
         return kept, jnp.where(better, there[4], 0.5 * move), steps + 1

@@ -126,7 +126,7 @@ class FixedAngle(AbstractSupportLaw):
 
         Args:
             element: The bearing, one row of balls; ball 0 is taken to stand at +x.
-            offset: Axial displacement of its inner ring under the preload, as of
+            offset: Axial displacement of its inner ring under the preload, as in
                 `preload_offset` [m].
         """
         constant, angle, approach = _preloaded(element, offset)

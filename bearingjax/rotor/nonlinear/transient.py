@@ -231,7 +231,7 @@ def moved(
     options: Options,
 ) -> History:
     """`simulate`, compiled by the caller."""
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     import diffrax
 
     fast = system.reference_frequency
