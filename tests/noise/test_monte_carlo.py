@@ -182,8 +182,9 @@ def test_source_contributions_along_a_line_and_by_band():
     assert axial.by_band is None
     every = [sampled_model(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
     counts = {"turns": 4, "settle": 3, "samples": 128, "steps": 6}
-    square = [np.var(vibration(m, **counts).acceleration[:, 2]) for m in every]
-    np.testing.assert_allclose(found.mean_square, np.mean(square), rtol=1e-9)
+    heard = np.array([vibration(m, **counts).acceleration[:, 2] for m in every])
+    square = heard.var(axis=1)
+    np.testing.assert_allclose(found.mean_square, square.mean(), rtol=1e-9)
     parts = np.asarray(found.by_band)
     assert parts.shape == (len(found.sources), len(bands.centre))
     held = np.isfinite(parts[0])
