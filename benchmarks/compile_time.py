@@ -142,7 +142,7 @@ import bearingjax as bj
 
 def inner(equation):
     params = dict(equation.params)
-    if equation.primitive.name == "lanes":  # not traced before it is lowered
+    if equation.primitive.name == "batched_loop":  # not traced before it is lowered
         program = functools.partial(params.pop("task").program, **params)
         shapes = [(v.aval.shape, v.aval.dtype) for v in equation.invars]
         given = [jax.ShapeDtypeStruct(*shape) for shape in shapes]

@@ -5,9 +5,9 @@ float64: force and stiffness at random ring motions; displacement under random r
 loads with moments, from first contact; the sag under such a load and its gradient by
 clearance, roller length and crown radius. The processor runs chunks of 64 cases in one
 call, which uses few of its cores; the GPU runs all cases at once, and where the steps
-that they need differ, `bearingjax.numerics.lanes.WIDER` times as many at a time as the
-processor. Times are those of hot calls, medians of three, results left on the device.
-Errors are relative to the largest result of the processor.
+that they need differ, `bearingjax.numerics.batched_loop.WIDER` times as many at a time
+as the processor. Times are those of hot calls, medians of three, results left on the
+device. Errors are relative to the largest result of the processor.
 
 README: H200: force and stiffness 0.30 µs a case, load solves 3.8, with gradient 5.4;
 one call on its host's processor 23, 454, 567 |  |

@@ -39,10 +39,10 @@ from bearingjax.noise import (
     NoiseModel,
     RandomWaves,
     Tolerances,
-    drawn,
     monte_carlo,
     needed_steps,
-    standing,
+    sampled_model,
+    static_start,
     vibration,
 )
 from bearingjax.noise.stepping import REACH, step_weights
@@ -182,7 +182,7 @@ def many(turns, steps, batch, bearings):
 def by_scipy(model, turns, method, tolerance):
     """Record of the last turn by a solver of SciPy, its seconds and evaluations."""
     equations = Equations(model)
-    start = np.array(standing(model, model.system())[0])
+    start = np.array(static_start(model, model.system())[0])
     # SciPy's equations have the coordinates ball by ball.
     start[3:] = start[3:].reshape(2, 14).T.ravel()
     begin = np.concatenate([start, np.zeros_like(start)])
@@ -208,7 +208,7 @@ def by_scipy(model, turns, method, tolerance):
 def main(smoke, turns=8, batch=[16, 64], bearings=64):  # noqa: B006
     if smoke:
         turns, batch, bearings = 1, [2], 2
-    one = drawn(plain(), SCATTER, jax.random.key(0))
+    one = sampled_model(plain(), SCATTER, jax.random.key(0))
     needed = needed_steps(one, SAMPLES)
     print(f"{turns} turns, {needed} steps a sample needed")
     reference = ours(one, turns, (2 if smoke else 8) * needed)[0]

@@ -48,7 +48,7 @@ from bench import benchmark, subplots
 
 import bearingjax as bj
 from bearingjax.optimise.design_problem import Problem
-from bearingjax.optimise.search import Ending
+from bearingjax.optimise.search import SearchOutcome
 from bearingjax.statics import SolveOptions
 
 REFERENCE = (1.0, 0.6, 8e-6)
@@ -139,9 +139,9 @@ def rosenbrock(attempt, start, max_steps, tolerance, step):
                     lost[k] = True
         step(x)
         if np.linalg.norm(x - begin) <= tolerance:
-            return Ending(x, True, "the last stage got nowhere")
+            return SearchOutcome(x, True, "the last stage got nowhere")
         axes = turned(axes, gone)
-    return Ending(x, False, "stages used up")
+    return SearchOutcome(x, False, "stages used up")
 
 
 def turned(axes, gone):

@@ -50,7 +50,7 @@ class PlainNewton(AbstractMinimiser):
         there = problem.at(x, True, now.memory)
         return state._replace(x=x, now=there, steps=state.steps + 1)
 
-    def settled(self, problem, state):
+    def converged(self, problem, state):
         return jnp.asarray(False)
 
     def finish(self, problem, state):
@@ -123,7 +123,7 @@ def run(count, solver, seed=0, names=()):
                 state, _ = solve_element(model, rings, magnitude, minimiser)
                 known = response(model, rings, state.x)
                 d = derivatives(model, rings, state.x, known)
-                loads = jnp.sum(known.beside)
+                loads = jnp.sum(known.aux)
                 out = jnp.sqrt(jnp.sum(d.gradient[-3:] ** 2))
                 # Round-off of the approach in this contact, times its stiffness.
                 eps = jnp.finfo(rings.dtype).eps

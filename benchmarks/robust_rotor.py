@@ -45,7 +45,7 @@ from bench import benchmark, verdict
 from vibrations import ROTOR, grooves
 
 from bearingjax.rotor.nonlinear import (
-    Ending,
+    BranchEnd,
     FixedAngle,
     HarmonicBalance,
     OpposedPair,
@@ -136,7 +136,7 @@ def one(rng, method, points):
     begun = time.perf_counter()
     given = RANGE[0] * unit, RANGE[1] * unit, method
     branch = follow(system, *given, steps=steps, points=points)
-    begun_anew = branch.ending == Ending.NO_START
+    begun_anew = branch.ending == BranchEnd.NO_START
     if begun_anew:
         last = settled(system, RANGE[0] * unit)
         branch = follow(system, *given, last, steps=steps, points=points)

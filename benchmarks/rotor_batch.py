@@ -32,7 +32,7 @@ from vibrations import ROTOR, grooves
 
 from bearingjax.rotor.nonlinear import (
     Arclength,
-    Ending,
+    BranchEnd,
     FixedAngle,
     HarmonicBalance,
     Steps,
@@ -124,7 +124,7 @@ def main(smoke):
         "singly": lambda: [one(given) for given in preloads],
     }
     peak = np.nanmax(batch["amplitude"], axis=1)
-    endings = Counter(Ending(int(e)).label for e in batch["ending"])
+    endings = Counter(BranchEnd(int(e)).label for e in batch["ending"])
     return {
         "rotors": count,
         "points": int(batch["count"].sum()),

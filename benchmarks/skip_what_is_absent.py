@@ -179,7 +179,7 @@ class Case:
         """Most steps, loaded rollers, and how the solve ended."""
         _, q, speed = self.arguments
         row = self.element.model(speed).solve(q).groups[0]
-        loads = np.asarray(row.energies.beside.contact_load[:, :2]).max(axis=1)
+        loads = np.asarray(row.energies.aux.contact_load[:, :2]).max(axis=1)
         result = bj.Result(int(row.state.result.max())).label
         return int(row.state.steps.max()), int(np.sum(loads > 0)), result
 

@@ -3,7 +3,7 @@
 import gc
 import os
 
-# Every operation with the calls that led to it: slow to write, read by nobody here.
+# Every operation with the calls that led to it: slow to write, and not read here.
 # Processes that the tests start do without too.
 os.environ.setdefault("JAX_INCLUDE_FULL_TRACEBACKS_IN_LOCATIONS", "false")
 

@@ -152,7 +152,7 @@ def test_unit_of_a_named_tuple():
     found = Example(1.0, 2.0, 3.0, 4.0)
     assert [unit_of(found, name) for name in ("life", "ratio")] == ["rev", ""]
     assert unit_of(Example, "force", (1,)) == "N m" and unit_of(Example, "force") == ""
-    with pytest.raises(KeyError, match="nothing is said of count"):
+    with pytest.raises(KeyError, match="does not state count"):
         unit_of(Example, "count")
 
 

@@ -120,11 +120,11 @@ def execute(command: Any, options: Any) -> int:
         finally:
             if stage is not None:
                 stage.end()
-        told: list[str] = []
-        failed = _write(found, options, origin, told)
+        messages: list[str] = []
+        failed = _write(found, options, origin, messages)
         ended = found.interrupted()
     if found.report is not None:
-        print("\n".join([str(found.report), *told]), flush=True)
+        print("\n".join([str(found.report), *messages]), flush=True)
     if ended is not None:
         complain(ended[0])
         return ended[1]
@@ -133,7 +133,7 @@ def execute(command: Any, options: Any) -> int:
     return NOT_SOLVED if found.problems else BAD_INPUT if failed else SOLVED
 
 
-def _write(found: Outcome, options, origin, told: list[str]) -> bool:
+def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
     from ..scene import write_numbers
     from ..statics.sweep_table import write_columns
@@ -144,7 +144,7 @@ def _write(found: Outcome, options, origin, told: list[str]) -> bool:
 
     def sound(path):
         assert found.sound is not None
-        told.append(found.sound(path))
+        messages.append(found.sound(path))
 
     def picture(draw):
         return None if draw is None else lambda path: save(draw(), path)

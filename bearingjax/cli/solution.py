@@ -15,7 +15,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
 
     found = solve_scene(scene)
     solution = found.solution
-    told = report(found) if found.converged else None
+    full_report = report(found) if found.converged else None
 
     def draw():
         from ..plot import overview
@@ -33,8 +33,10 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
         scene.name,
         scene.inputs,
         lambda: (numbers or as_dict)(found),
-        told if brief is None or told is None else told.only(brief),
-        page=None if told is None else lambda: told,
+        full_report
+        if brief is None or full_report is None
+        else full_report.only(brief),
+        page=None if full_report is None else lambda: full_report,
         pictures={"Section, load zone, contacts": draw} if found.converged else {},
         drawing=draw_bearing,
         problems=[] if found.converged else [why_unsolved(found)],

@@ -210,7 +210,7 @@ class LineContact(AbstractLineContact):
             return a + b * xi - self.drop(xi)
         arc = _Arc.of(self, a, b)
         beyond = arc.first + arc.end(self) * xi - _hidden((self, arc.lift), xi)
-        return arc.met(beyond, _points(self, xi)[2])[0]
+        return arc.approach(beyond, _points(self, xi)[2])[0]
 
     def kinks(self) -> tuple[Scalar, ...]:
         """Interior positions ξ where a derivative of the drop jumps, ascending."""
@@ -256,8 +256,8 @@ class LineContact(AbstractLineContact):
         middle = 0.25 * self.length * (ends[:-1] + ends[1:])[:, None]
         local = dataclasses.replace(
             self,
-            roller_profile=self.roller_profile.around(middle),
-            raceway_profile=self.raceway_profile.around(middle),
+            roller_profile=self.roller_profile.between_knots(middle),
+            raceway_profile=self.raceway_profile.between_knots(middle),
         )
         rule = of_intervals(quadrature, ends.shape[0] - 1)
         return local, rule.table(partial(_offset, local), ends, ends.dtype), rule
@@ -410,7 +410,7 @@ class _Arc(NamedTuple):
         """Slope times L/2 [m]."""
         return 0.5 * line.length * self.grown * self.sine
 
-    def met(self, beyond: Array, raceway: Array) -> tuple[Array, Array]:
+    def approach(self, beyond: Array, raceway: Array) -> tuple[Array, Array]:
         """Approach [m] and sqrt(u² + 2 κ g) from g and ρ."""
         up = 1.0 + self.curvature * raceway
         distance = jnp.sqrt(up * up + 2.0 * self.curvature * beyond)
@@ -442,7 +442,7 @@ def _exact_integrals(line, quadrature, a, b) -> Response:
     tau, weight = (jnp.asarray(x, a.dtype) for x in quadrature.reference())
     xi = nodes.middle[:, None] + nodes.half[:, None] * tau[None]
     s, lost, raceway = _points(line, xi)
-    x, distance = arc.met(nodes.argument, raceway)
+    x, distance = arc.approach(nodes.argument, raceway)
     scale = half_length * line.constant * nodes.half[:, None] * weight[None]
     energy, load, stiffness = (
         factor * density * scale

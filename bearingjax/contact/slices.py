@@ -57,7 +57,7 @@ def slices(
         contact: Roller and raceway.
         load: Load, zero or more [N].
         tilt: Tilt, positive where it closes the gap at y > 0 [rad].
-        position: Where along the roller, y (n,) [m].
+        position: Positions along the roller, y (n,) [m].
         law: Line law of independent slices; default `Palmgren()`.
 
     Fails: NaN if the approach is not found.

@@ -66,7 +66,7 @@ class AbstractBallBearing(AbstractBearing):
             `None`: all equal.
         azimuth_deviation: Azimuth of each ball less that of even spacing (ball,)
             [rad]; `None`: evenly spaced.
-        raceway_deviation: How each ball finds the outer and the inner raceway
+        raceway_deviation: Deviation of outer and inner raceway at each ball
             (ball, 2, 3) [m]: the groove so much further along z and from the axis, the
             contact so much raised along its normal; `None`: as on the drawing.
         outer_shoulder: Height of the outer shoulders above the groove bottom [m];

@@ -210,7 +210,7 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
         Args:
             travel: Axial displacement of the rings against each other from where their
                 raceways stand opposite [m].
-            tilt: Of ring against ring [rad].
+            tilt: Tilt of ring against ring [rad].
 
         Returns:
             Diametral, in the plane of the tilt; below zero where the tilt gives more

@@ -290,7 +290,7 @@ def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
 
 
 def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
-    """Whether its rows run on the same two rings, as of self-aligning, spherical and
+    """Whether its rows run on the same two rings, as in self-aligning, spherical and
     crossed roller bearings; a row of such a bearing counts too.
 
     More than two rows of crossed rollers are several bearings.

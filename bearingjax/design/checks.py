@@ -34,10 +34,10 @@ def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
     """Raise unless `ok`.
 
     Args:
-        owner: Instance, class or name of what is being checked.
+        owner: Instance, class or name of the checked object.
         name: Parameter.
         ok: Whether its value is allowed; skipped if traced.
-        allowed: What is allowed, ending the sentence "it must be ...".
+        allowed: Allowed values, ending the sentence "it must be ...".
         given: Value and unit (empty for a pure number), if not a field of `owner`.
 
     Raises:

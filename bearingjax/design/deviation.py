@@ -41,7 +41,7 @@ def deviation_of(bearing: Any) -> Deviation:
 
 
 def with_raceways(bearing: Any, deviation: Float[Array, "element 2 3"]) -> Any:
-    """A single row whose elements find its raceways elsewhere, also under `jit`.
+    """A single row with further deviations of its raceways, also under `jit`.
 
     Args:
         bearing: The design.

@@ -305,7 +305,7 @@ def toroidal_roller_clearance(name: str, bore: Any, tapered: bool = False) -> Li
 
     With rings that are not shifted along the axis.
 
-    Args: as of `spherical_roller_clearance`.
+    Args: as in `spherical_roller_clearance`.
 
     Raises:
         ValueError: If there is no such class, or for other bores.

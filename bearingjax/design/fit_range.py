@@ -89,7 +89,7 @@ def mounting_at(
     outside_diameter: Limits,
     conditions: FitConditions | None = None,
 ) -> Mounting:
-    """A mounting with the sizes that it has somewhere in their tolerances.
+    """A mounting with sizes at given places within their tolerances.
 
     Args:
         mounting: The bearing and its seats; its clearance and interferences do not
@@ -154,7 +154,7 @@ class _Cases(NamedTuple):
     limits: dict[str, Limits]
 
     def mounting(self, places) -> Mounting:
-        """The mounting with each size at its place."""
+        """The mounting with each size at its place within its limits."""
         sizes = {}
         for name, (lower, upper) in self.limits.items():
             # Large shafts and outside diameters take clearance, the others give it.
@@ -177,7 +177,7 @@ class _Cases(NamedTuple):
         )
 
     def clearance(self, place, conditions, **others):
-        """Radial clearance with all sizes at one place, but for others."""
+        """Radial clearance with all sizes at one place but for `others`."""
         places = {**dict.fromkeys(self.limits, place), **others}
         return fit_state(self.mounting(places), conditions).radial_clearance
 

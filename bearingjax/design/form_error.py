@@ -66,7 +66,7 @@ class AbstractShape(eqx.Module):
 
         Args:
             angle: From the part's own mark (...) [rad]; any number of turns.
-            surface: Where the contact runs.
+            surface: Contact track.
         """
 
 
@@ -102,7 +102,7 @@ class Harmonics(AbstractShape):
         """See the class.
 
         Raises:
-            TypeError: For what are no numbers.
+            TypeError: For values that are not numbers.
             ValueError: For orders that are not whole and positive, or another number
                 of amplitudes or phases.
         """
@@ -155,7 +155,7 @@ class Harmonics(AbstractShape):
                 the points.
 
         Raises:
-            TypeError: For what are no numbers.
+            TypeError: For values that are not numbers.
             ValueError: For fewer than 4 points, or an order that they do not show.
         """
         if not is_real(points):
@@ -358,7 +358,7 @@ class FormErrors(eqx.Module):
         return bool(self.outer.raised or self.inner.raised or self.elements)
 
     def check(self, bearing: Any) -> None:
-        """Raise if an error is larger than the bearing allows; what is traced is not.
+        """Raise if an error is larger than the bearing allows; traced ones pass.
 
         Args:
             bearing: A single row.
@@ -389,7 +389,7 @@ class FormErrors(eqx.Module):
                     allowed = f"below {most:.4g} m in size together on the {part}"
                     check("Harmonics", "amplitude", high < most, allowed, high, "m")
 
-    def met(
+    def deviations(
         self,
         surfaces: "Surfaces",
         azimuth: Float[Array, " element"],
@@ -400,7 +400,7 @@ class FormErrors(eqx.Module):
         """Deviations of both raceways at each rolling element, `Deviation.raceway` [m].
 
         Args:
-            surfaces: Where the contacts run.
+            surfaces: Contact tracks.
             azimuth: Azimuth of each element [rad].
             outer: Turn of the outer ring [rad].
             inner: Turn of the inner ring [rad].
@@ -428,7 +428,7 @@ class FormErrors(eqx.Module):
         """Return the errors as tables, for many evaluations.
 
         Args:
-            surfaces: Where the contacts run.
+            surfaces: Contact tracks.
             points: Number of angles around each part, of elements an eighth. Static.
         """
 

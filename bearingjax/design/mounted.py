@@ -200,7 +200,7 @@ def mounted(
         Bearing of the same type.
 
     Raises:
-        TypeError: For thrust bearings and what is no bearing.
+        TypeError: For thrust bearings and values that are not bearings.
         ValueError: If the rings are not thicker than the raceways, or as
             `with_radial_clearance` and `row_shifts`.
     """

@@ -59,7 +59,7 @@ class AbstractProfile(eqx.Module):
         """Positions of measured points, ascending [m]; `None` for a formula."""
         return None
 
-    def around(self, position: Float[Array, "..."]) -> "AbstractProfile":
+    def between_knots(self, position: Float[Array, "..."]) -> "AbstractProfile":
         """The profile between the two knots around each position [m].
 
         Its `drop` takes positions that broadcast with `position`.

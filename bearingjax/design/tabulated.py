@@ -56,12 +56,12 @@ class Tabulated(AbstractProfile):
         check(self, "drops", drops >= 0, "at least 0 m")
 
     def drop(self, position, length, diameter):
-        return self.around(position).drop(position, length, diameter)
+        return self.between_knots(position).drop(position, length, diameter)
 
     def knots(self):
         return self.positions
 
-    def around(self, position):
+    def between_knots(self, position):
         s, d = self.positions, self.drops
         last = s.shape[0] - 1
         k = jnp.clip(jnp.searchsorted(s, position, side="right") - 1, 0, last - 1)

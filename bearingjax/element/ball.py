@@ -15,7 +15,7 @@ from ..numerics.power import positive_power
 from ..numerics.types import Scalar
 from .ball_contacts import Contacts, GrooveGeometry, along_normals, angles, bent
 from .ball_geometry import AbstractBallGeometry
-from .ball_inertia import Carried, Turning, carried
+from .ball_inertia import BallInertia, Carried, carried
 from .ball_speed import BallKinematics
 from .energy import ball_energy
 from .rolling_element import AbstractRollingElement, RingMotion, Unknowns
@@ -42,7 +42,7 @@ class Ball(AbstractRollingElement):
         constant: Constants of the point law (contact, ...).
         ball_diameter: Ball diameter [m].
         spring: Spring constant of the tether [N/m].
-        turning: Speeds, or `None`.
+        ball_inertia: Its inertia and speeds; `None`: at rest.
         follows_angle: Whether the constants follow the operating angle.
 
     Static: follows_angle.
@@ -53,7 +53,7 @@ class Ball(AbstractRollingElement):
     constant: Float[Array, "contact ..."]
     ball_diameter: Scalar
     spring: Scalar
-    turning: Turning | None
+    ball_inertia: BallInertia | None
     follows_angle: bool = eqx.field(static=True)
 
     n_unknowns: ClassVar[int] = 2
@@ -71,7 +71,7 @@ class Ball(AbstractRollingElement):
     def axes(self, azimuth):
         return self.geometry.axes(azimuth)
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         of_contacts = jnp.repeat(heights, len(self.grooves.on_outer) // 2)
         reach = self.grooves.reach - of_contacts
         grooves = dataclasses.replace(self.grooves, reach=reach)
@@ -118,7 +118,7 @@ class Ball(AbstractRollingElement):
     @property
     def has_reaction(self) -> bool:
         """Whether orbit and gyroscopic moment follow the operating angles. Static."""
-        return self.turning is not None and self.turning.control.has_reaction
+        return self.ball_inertia is not None and self.ball_inertia.control.has_reaction
 
     def reaction(self, rings, x):
         if not self.has_reaction:
@@ -133,17 +133,17 @@ class Ball(AbstractRollingElement):
         return self._carried(self.contacts(rings, x)).kinematics
 
     def _carried(self, contacts) -> Carried:
-        assert self.turning is not None
+        assert self.ball_inertia is not None
         power = positive_power(contacts.approach, _N, _D)
         load = self.constants(contacts) * power
         directions = self.grooves.directions(contacts, load, self.diameter)
-        return carried(self.turning, *directions)
+        return carried(self.ball_inertia, *directions)
 
     def motion(self, rings, x):
         return self.geometry.motion(rings, x)
 
     def inertia(self, rings, x):
-        t = self.turning
+        t = self.ball_inertia
         if t is None:
             return None
         force, moment = t.centrifugal, jnp.zeros_like(t.centrifugal)
@@ -165,7 +165,7 @@ class Ball(AbstractRollingElement):
     @property
     def sees_difference(self):
         # Inertia does work on the motion of both rings.
-        return self.geometry.is_linear and self.turning is None
+        return self.geometry.is_linear and self.ball_inertia is None
 
     @property
     def places_itself(self):
@@ -199,9 +199,9 @@ class BallSearchHints(SearchHints):
         constant = self.element.constants(free)
         return jnp.max(constant) * positive_power(approach, _N, _D)
 
-    def inertia_size(self):
-        turning = self.element.turning
-        return None if turning is None else turning.centrifugal
+    def inertia_scale(self):
+        inertia = self.element.ball_inertia
+        return None if inertia is None else inertia.centrifugal
 
     def midpoint(self, rings):
         return self.element.geometry.midpoint(rings)
@@ -213,14 +213,14 @@ class BallSearchHints(SearchHints):
         length.
         """
         element, midway = self.element, self.midpoint(rings)
-        if element.turning is None:
+        if element.ball_inertia is None:
             return midway
         start, reach = element.grooves.start, element.grooves.reach
         outer = [k for k, on_outer in enumerate(element.grooves.on_outer) if on_outer]
         centre = sum((start[k] for k in outer[1:]), start=start[outer[0]])
         aside = (start[outer[0]] - centre / len(outer))[0]
         pressed = (
-            element.turning.centrifugal
+            element.ball_inertia.centrifugal
             / len(outer)
             / self.pressed(jnp.ones_like(aside))
         )
@@ -245,7 +245,7 @@ class BallSearchHints(SearchHints):
         return True
 
     def corrected(self, rings, x, step, size):
-        """Along the groove that carries most, and no deeper into others than needed.
+        """Step along the groove that carries most, no deeper into others than needed.
 
         Straight, a step along a groove would press the ball into it by step²/(2l);
         and a step across a gap would end where the force is decades too large.
@@ -255,7 +255,7 @@ class BallSearchHints(SearchHints):
         constant = element.constants(c)
         load = constant * positive_power(c.approach, _N, _D)
         turned = bent(c, load, step)
-        # An open contact is entered so far that it carries what is out of balance.
+        # An open contact is entered so far that it carries the unbalanced force.
         wanted = positive_power(size, _D, _N) / positive_power(constant, _D, _N)
         reached = element.contacts(rings, x + turned).approach
         entered = (c.approach < 0.0) & (reached > wanted)

@@ -22,7 +22,7 @@ from .frame import orbit, roll_ratio
 from .inertia import Speed
 
 
-class Turning(NamedTuple):
+class BallInertia(NamedTuple):
     """Speeds, raceway control and inertia of a turning ball.
 
     Attributes:
@@ -66,12 +66,12 @@ class Carried(NamedTuple):
     on_rings: Float[Array, "2 3"]
 
 
-def turning(
+def ball_inertia(
     bearing: AbstractBallBearing,
     diameter: Scalar,
     speed: Speed,
     control: AbstractRacewayControl,
-) -> Turning:
+) -> BallInertia:
     """Inertia of one ball at given ring speeds.
 
     Args:
@@ -85,10 +85,12 @@ def turning(
     radius = 0.5 * bearing.pitch_diameter
     centrifugal = radius * mass * orbit(ratio, speed.outer, speed.inner) ** 2
     gamma = diameter / bearing.pitch_diameter
-    return Turning(speed, control, gamma, centrifugal, mass, moment, radius, diameter)
+    return BallInertia(
+        speed, control, gamma, centrifugal, mass, moment, radius, diameter
+    )
 
 
-def carried(t: Turning, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
+def carried(t: BallInertia, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
     """Orbit, rotation and tractions of a ball at given contact angles.
 
     Args:

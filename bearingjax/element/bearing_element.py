@@ -25,14 +25,14 @@ from .azimuth import azimuths, orbit_ratio
 from .ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, Evaluated, RowGroup
 from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
-from .equilibrium import Near
+from .equilibrium import ElementStart
 from .function import FunctionParameters, RingFunction, as_function
 from .inertia import Speed
 from .kinematics import AbstractKinematics
-from .row import Place, Row
+from .row import Row, RowPlacement
 from .solved_row import RowResults
 
-State = tuple[Near, ...]
+State = tuple[ElementStart, ...]
 """Rolling elements solved at ring freedoms near by."""
 
 
@@ -426,10 +426,10 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         def one(deviation):
             found = self.choices.rolling_element(part, speed, deviation.diameter)
             raceway = deviation.raceway
-            return found if raceway is None else found.raised(raceway[:, 2])
+            return found if raceway is None else found.with_heights(raceway[:, 2])
 
-        unlike = deviation.makes_unlike
-        element = jax.vmap(one)(deviation) if unlike else one(deviation)
+        per_element = deviation.makes_unlike
+        element = jax.vmap(one)(deviation) if per_element else one(deviation)
         raceway = deviation.raceway
         shift = None if raceway is None else raceway[:, :, :2]
         place = None
@@ -438,7 +438,11 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             sign = none + (-1.0 if part.mirrored else 1.0)
             itself = element.places_itself
             position, offset = part.position, sign * part.inner_offset
-            place = Place(*((none, sign, none) if itself else (position, sign, offset)))
+            place = RowPlacement(
+                *((none, sign, none) if itself else (position, sign, offset))
+            )
         radius = 0.5 * bearing.pitch_diameter
         azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
-        return Row(element, azimuth, shift, ratio, radius, place, part.spring, unlike)
+        return Row(
+            element, azimuth, shift, ratio, radius, place, part.spring, per_element
+        )

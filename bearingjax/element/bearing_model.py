@@ -23,7 +23,7 @@ from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .constants import TETHER
-from .equilibrium import Near, accept_small
+from .equilibrium import ElementStart, accept_small
 from .rolling_element import split
 from .row import Row
 from .solved_row import RowResults, SolvedRow
@@ -123,7 +123,7 @@ class Evaluated(NamedTuple):
     steps: Int[Array, ""]
     residual: Scalar
     magnitude: Scalar
-    near: tuple[Near, ...]
+    near: tuple[ElementStart, ...]
 
 
 class BearingModel(eqx.Module):
@@ -188,7 +188,7 @@ class BearingModel(eqx.Module):
     def solve(
         self,
         q: Ring,
-        near: tuple[Near, ...] | None = None,
+        near: tuple[ElementStart, ...] | None = None,
         azimuths: Azimuths | None = None,
     ) -> Solved:
         """Solve every rolling element at given ring freedoms.
@@ -209,7 +209,7 @@ class BearingModel(eqx.Module):
         if azimuths is None:
             # Only the turn is held: the azimuths are numbers of the design too.
             azimuths = self.azimuths(q if self.cage_torque else stop(q))
-        known = [None] * len(self.groups) if near is None else near
+        starts = [None] * len(self.groups) if near is None else near
 
         def one(row, azimuth, *near):
             before = near[0] if near else None
@@ -217,7 +217,7 @@ class BearingModel(eqx.Module):
 
         solved = (
             group.each(one, at, *(() if before is None else (before,)))
-            for group, at, before in zip(self.groups, azimuths, known, strict=True)
+            for group, at, before in zip(self.groups, azimuths, starts, strict=True)
         )
         solved = tuple(solved)
         if self.cage_torque:
@@ -273,7 +273,7 @@ class BearingModel(eqx.Module):
     def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
         """Return `force`, or NaN if a rolling element did not converge [N, N m]."""
         q, solved = self._at(q, solved)
-        converged = self.settled(solved)[0] == Result.CONVERGED
+        converged = self.convergence(solved)[0] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
         return self.force(q, solved) * jnp.where(converged, 1.0, jnp.nan)
 
@@ -291,11 +291,11 @@ class BearingModel(eqx.Module):
     ) -> Evaluated:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
-        Args: as in `energy` and `settled`.
+        Args: as in `energy` and `convergence`.
         """
         q, solved = self._at(q, solved)
         stiffness, energy, force = self._second(q, solved)
-        result, steps, residual = self.settled(solved, least)
+        result, steps, residual = self.convergence(solved, least)
         return Evaluated(
             energy=energy,
             force=force,
@@ -343,7 +343,7 @@ class BearingModel(eqx.Module):
         ]
         return self.in_order(found)
 
-    def settled(
+    def convergence(
         self, solved: Solved, least: Scalar | float = 0.0
     ) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
         """Worst `Result` code, most steps and largest residual of the elements.
@@ -353,7 +353,7 @@ class BearingModel(eqx.Module):
             least: Load below which none is meant, for idle elements (`accept_small`)
                 [N].
         """
-        loads = [s.energies.beside.contact_load for s in solved.groups]
+        loads = [s.energies.aux.contact_load for s in solved.groups]
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
         largest = jnp.maximum(largest, least)
         states = [
@@ -371,7 +371,7 @@ class BearingModel(eqx.Module):
             jnp.max(jnp.concatenate([s.residual.reshape(-1) for s in states])),
         )
 
-    def near(self, solved: Solved) -> tuple[Near, ...]:
+    def near(self, solved: Solved) -> tuple[ElementStart, ...]:
         """Return the state from which a solve near by may start."""
         return tuple(
             group.each(lambda row, s: s.near(row), state)

@@ -23,7 +23,7 @@ from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
 from .ball import Ball
 from .ball_contacts import GrooveGeometry
-from .ball_inertia import turning
+from .ball_inertia import ball_inertia
 from .ball_speed import AbstractRacewayControl, OuterControl
 from .constants import TETHER, contact_constants
 from .inertia import Speed, inertia_force
@@ -79,7 +79,7 @@ class AbstractChoices(eqx.Module):
         """Return the given choices, with defaults for the rest.
 
         Args:
-            rows: The rows, of a kind of bearing that this class is for.
+            rows: The rows, of a kind of bearing that the class supports.
             **given: Choices by `names`; `None`: the default.
 
         Raises:
@@ -189,7 +189,7 @@ class RollerChoices(AbstractChoices):
                 )
 
     def rolling_element(self, part, speed, deviation):
-        # Coupled slices ask for a rule as all laws do, and do without.
+        # Coupled slices take a rule as all laws do, and do not use it.
         quadrature = self.quadrature or ContactMapped()
         bearing: Any = part.bearing
         exact = self.kinematics.keeps_arcs
@@ -268,7 +268,9 @@ class BallChoices(AbstractChoices):
             diameter = diameter + deviation
             balls = balls._replace(diameter=diameter)
         control, law = self.raceway_control, self.point_law
-        inertia = None if speed is None else turning(bearing, diameter, speed, control)
+        inertia = (
+            None if speed is None else ball_inertia(bearing, diameter, speed, control)
+        )
         centres = jnp.stack([jnp.stack([g.axial, g.radial]) for g in grooves])
         geometry = GrooveGeometry(
             start=-centres,
@@ -286,7 +288,7 @@ class BallChoices(AbstractChoices):
             ball_diameter=diameter,
             # A contact pressed by a ten-thousandth of the ball diameter, E* D^(1/2).
             spring=TETHER * balls.modulus * diameter * 1e-2,
-            turning=inertia,
+            ball_inertia=inertia,
             follows_angle=law.follows_angle,
         )
 

@@ -41,7 +41,7 @@ def roller_energy(
     self: "Roller",
     rings: RingMotion,
     x: Unknowns,
-    known: Expansion | None = None,
+    contact_response: Expansion | None = None,
 ) -> Scalar:
     """Energy U - F·y of one roller [J].
 
@@ -52,9 +52,9 @@ def roller_energy(
         self: The roller.
         rings: Motions of the rings in roller axes, (t, m, θ) each [m, rad].
         x: Place of the roller from the mean of the rings, tilt times L/2 (3,) [m].
-        known: Contact response there, if available.
+        contact_response: Contact response there, if available.
     """
-    energy = contact_energy(self, self.coordinates(rings, x), known)
+    energy = contact_energy(self, self.coordinates(rings, x), contact_response)
     energy = energy + 0.5 * self.tether * dot(x, x)
     if self.body_force is None:
         return energy
@@ -65,7 +65,7 @@ def ball_energy(
     self: "Ball",
     rings: RingMotion,
     x: Unknowns,
-    known: Expansion | None = None,
+    contact_response: Expansion | None = None,
 ) -> Scalar:
     """Energy U - F·y of one ball [J].
 
@@ -76,16 +76,16 @@ def ball_energy(
         self: The ball.
         rings: Motions of the rings in the ball's axes [m, rad].
         x: Place of the ball's centre (z, r), from where the rings take it (2,) [m].
-        known: Contact response there, if available.
+        contact_response: Contact response there, if available.
     """
-    energy = contact_energy(self, self.coordinates(rings, x), known)
+    energy = contact_energy(self, self.coordinates(rings, x), contact_response)
     # The tether does not pull the rings: it is no part of the bearing.
     off = x - stop(self.geometry.midpoint(rings))
     energy = energy + 0.5 * self.tether * dot(off, off)
-    if self.turning is None or self.has_reaction:
+    if self.ball_inertia is None or self.has_reaction:
         return energy
     (_, outwards), _ = self.geometry.places(rings, x)
-    return energy - self.turning.centrifugal * outwards
+    return energy - self.ball_inertia.centrifugal * outwards
 
 
 class Derivatives(NamedTuple):
@@ -107,7 +107,7 @@ def derivatives(
     element: AbstractRollingElement,
     rings: Float[Array, " r"],
     x: Unknowns,
-    known: Expansion | None = None,
+    contact_response: Expansion | None = None,
     *,
     of_own: bool = False,
     with_hessian: bool = True,
@@ -118,7 +118,7 @@ def derivatives(
         element: The rolling element.
         rings: Motions of the rings in its axes, see `unpacked` (r,) [m, rad].
         x: Own unknowns (n,) [m].
-        known: Its `respond` at this place, if it is at hand.
+        contact_response: Its `respond` at this place, if it is at hand.
         of_own: Derivatives with respect to x alone. Static.
         with_hessian: Whether stiffness is wanted. Static.
     """
@@ -128,7 +128,7 @@ def derivatives(
         return unpacked(element, rings if of_own else y[:n]), y[n:]
 
     def energy(y):
-        return element.energy(*motions(y), known)
+        return element.energy(*motions(y), contact_response)
 
     def forces(y):
         value, gradient = jax.value_and_grad(energy)(y)

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.expansion import Expansion
 from ..numerics.implicit import attach, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
@@ -43,7 +43,7 @@ class LocalState(NamedTuple):
         unbalanced: Force out of balance, for unknowns in metres [N].
         steps: Evaluations that the solve took.
         result: `Result` code.
-        known: Contact response there, `AbstractRollingElement.respond`.
+        contact_response: Contact response there, `AbstractRollingElement.respond`.
     """
 
     x: Unknowns
@@ -51,10 +51,10 @@ class LocalState(NamedTuple):
     unbalanced: Scalar
     steps: Int[Array, ""]
     result: Int[Array, ""]
-    known: Expansion
+    contact_response: Expansion
 
 
-class Near(NamedTuple):
+class ElementStart(NamedTuple):
     """Rolling element solved at nearby ring positions, as a starting point.
 
     Attributes:
@@ -68,7 +68,7 @@ class Near(NamedTuple):
     rings: Rings
 
 
-class Placed(NamedTuple):
+class SolvedElement(NamedTuple):
     """Rolling element in equilibrium, with all data for its condensed energy.
 
     Attributes:
@@ -87,7 +87,7 @@ def solve_element(
     rings: Rings,
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
-    near: Near | None = None,
+    near: ElementStart | None = None,
 ) -> tuple[LocalState, Expansion]:
     """Equilibrium of one rolling element in its own unknowns.
 
@@ -120,42 +120,42 @@ def solve_element(
     frozen = stop((element, rings, magnitude, near))
     if element.n_unknowns == 0:
         state = _without_unknowns(*frozen[:2])
-        return state, condensed(frozen[1], Placed(frozen[0], state, frozen[2]))
+        return state, condensed(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
     given = _prepare(*frozen)
-    known = jax.eval_shape(response, element, rings, given.start)
-    loop = _loop(minimiser, known, given.is_open is not None)
-    return lanes.run(loop, given, *element.hints.slots)
+    contacts = jax.eval_shape(response, element, rings, given.start)
+    loop = _loop(minimiser, contacts, given.is_open is not None)
+    return batched_loop.run(loop, given, *element.hints.slots)
 
 
 def _without_unknowns(element, rings) -> LocalState:
-    known = response(element, rings, rings[:0])
+    contacts = response(element, rings, rings[:0])
     finite = jnp.all(jnp.isfinite(rings))
     result = jnp.where(finite, int(Result.CONVERGED), int(Result.NON_FINITE))
     zero = jnp.zeros((), rings.dtype)
     steps = jnp.zeros((), jnp.int32)
-    return LocalState(rings[:0], zero, zero, steps, result.astype(jnp.int32), known)
+    return LocalState(rings[:0], zero, zero, steps, result.astype(jnp.int32), contacts)
 
 
-def own_unknowns(placed: Placed, rings: Rings) -> Unknowns:
+def own_unknowns(solved: SolvedElement, rings: Rings) -> Unknowns:
     """Own unknowns of a solved rolling element, with their derivatives [m].
 
     Args:
-        placed: The element and its equilibrium.
+        solved: The element and its equilibrium.
         rings: Motions of the rings there (r,) [m, rad].
 
     Returns:
         (n,), differentiable to any order with respect to the element (design and
         speeds) and the ring motions.
     """
-    element = placed.element
+    element = solved.element
     if element.n_unknowns == 0:
-        return placed.state.x
+        return solved.state.x
 
     def residual(x, args):
         element, rings = args
         return derivatives(element, rings, x, of_own=True, with_hessian=False).gradient
 
-    return attach(residual, placed.state.x, (element, rings), element.has_potential)
+    return attach(residual, solved.state.x, (element, rings), element.has_potential)
 
 
 def is_loose(
@@ -193,13 +193,13 @@ def _size(element, x, magnitude):
     return magnitude + element.hints.gap + norm(x)
 
 
-def _load(element, known):
-    load = jnp.sum(known.beside)
-    inertia = element.hints.inertia_size()
+def _load(element, contacts):
+    load = jnp.sum(contacts.aux)
+    inertia = element.hints.inertia_scale()
     return load if inertia is None else load + inertia
 
 
-class Beside(NamedTuple):
+class CondensedAux(NamedTuple):
     """Results of a condensed rolling element in addition to its energy.
 
     Attributes:
@@ -211,7 +211,7 @@ class Beside(NamedTuple):
     follow: Float[Array, "n r"]
 
 
-def condensed(rings: Rings, placed: Placed, order: int = 2) -> Expansion:
+def condensed(rings: Rings, solved: SolvedElement, order: int = 2) -> Expansion:
     """min_x U(rings, x) of a solved rolling element, its forces and stiffness.
 
     All zero if it is loose. Without this an element that the tether leans on two rings
@@ -220,29 +220,31 @@ def condensed(rings: Rings, placed: Placed, order: int = 2) -> Expansion:
 
     Args:
         rings: Motions of the rings where it was solved (r,) [m, rad].
-        placed: The element and its equilibrium.
-        order: 1 if forces are wanted, without stiffness and `Beside`. Static.
+        solved: The element and its equilibrium.
+        order: 1 if forces are wanted, without stiffness and `CondensedAux`. Static.
 
     Returns:
-        Energy [J], forces on the rings (r,) [N, N m], stiffness (r, r), and `Beside`.
-        The stiffness is K_rr - K_rx K_xx⁻¹ K_xr; symmetric to round-off if there is a
-        potential.
+        Energy [J], forces on the rings (r,) [N, N m], stiffness (r, r), and
+        `CondensedAux`. The stiffness is K_rr - K_rx K_xx⁻¹ K_xr; symmetric to
+        round-off if there is a potential.
 
     Source: static condensation 9 to 6, Sorokin, Zhang, Ivannikov (2018).
     """
-    element, known = placed.element, placed.state.known
+    element, contacts = solved.element, solved.state.contact_response
     n, r = element.n_unknowns, rings.shape[0]
-    x = own_unknowns(placed, rings)
-    d = derivatives(element, rings, x, known, with_hessian=order > 1)
+    x = own_unknowns(solved, rings)
+    d = derivatives(element, rings, x, contacts, with_hessian=order > 1)
     found = Expansion(d.energy, d.gradient[:r], ())
     if order > 1:
         stiffness, follow = _condensed_stiffness(element, d.hessian, r)
-        found = found._replace(hessian=stiffness, beside=Beside(known.beside, follow))
+        found = found._replace(
+            hessian=stiffness, aux=CondensedAux(contacts.aux, follow)
+        )
     if n == 0:
         return found
     off = x - element.hints.midpoint(unpacked(element, rings))
-    size = _load(element, known)
-    given = element, off, placed.magnitude, size, d.gradient[r:]
+    size = _load(element, contacts)
+    given = element, off, solved.magnitude, size, d.gradient[r:]
     loose = is_loose(*stop(given))
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), found)
 
@@ -259,7 +261,7 @@ def _condensed_stiffness(element, hessian, r):
     return (0.5 * (k + k.T) if symmetric else k), -moved
 
 
-class _Given(NamedTuple):
+class _Inputs(NamedTuple):
     """Inputs of a solve, and quantities that are constant over its steps."""
 
     element: AbstractRollingElement
@@ -271,7 +273,7 @@ class _Given(NamedTuple):
     is_open: Bool[Array, ""] | None
 
 
-def _prepare(element, rings, magnitude, near) -> _Given:
+def _prepare(element, rings, magnitude, near) -> _Inputs:
     hints, motions = element.hints, unpacked(element, rings)
     start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
@@ -280,18 +282,18 @@ def _prepare(element, rings, magnitude, near) -> _Given:
     if is_open is not None:
         start = jnp.where(is_open, centre, start)
     radius = hints.reach(motions) + hints.gap + 1e-6 * element.diameter
-    return _Given(element, rings, magnitude, centre, start, radius, is_open)
+    return _Inputs(element, rings, magnitude, centre, start, radius, is_open)
 
 
-def _problem(given: _Given, shapes) -> Problem:
+def _problem(given: _Inputs, shapes) -> Problem:
     element, rings, magnitude = given.element, given.rings, given.magnitude
     eps, hints = jnp.finfo(rings.dtype).eps, element.hints
 
     def function(x, with_hessian, *_):
-        known = response(element, rings, x)
-        d = derivatives(element, rings, x, known, of_own=True)
-        scale = _load(element, known)
-        # Round-off of positions, and what is small against the tether's own force.
+        contacts = response(element, rings, x)
+        d = derivatives(element, rings, x, contacts, of_own=True)
+        scale = _load(element, contacts)
+        # Round-off of positions, and forces small against that of the tether.
         noise = eps * hints.spread * trace(d.hessian) + 1e-6 * element.tether
         noise = _size(element, x, magnitude) * noise
         # A loose element need not be placed: its solve is over.
@@ -300,7 +302,7 @@ def _problem(given: _Given, shapes) -> Problem:
         scale = jnp.where(loose, jnp.inf, scale)
         value = d.energy if element.has_potential else jnp.full_like(d.energy, jnp.nan)
         hessian = d.hessian if with_hessian else d.hessian[:0]
-        kept = known if hints.keeps_response else ()
+        kept = contacts if hints.keeps_response else ()
         return Evaluation(value, d.gradient, hessian, scale, noise, kept)
 
     def corrected(x, step, size):
@@ -311,46 +313,48 @@ def _problem(given: _Given, shapes) -> Problem:
     return Problem(function, given.start, given.radius, correction, memory)
 
 
-def _loop(minimiser: AbstractMinimiser, known, may_be_open) -> lanes.Loop:
+def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> batched_loop.Loop:
     """Iteration for one element, skipped for an open one.
 
     Args:
         minimiser: Local solver.
-        known: Contact response, of which only the shapes count.
+        contacts: Contact response, of which only the shapes count.
         may_be_open: Whether `is_open` of the element is known.
     """
 
     def problem_of(given):
-        return _problem(given, known if given.element.hints.keeps_response else ())
+        return _problem(given, contacts if given.element.hints.keeps_response else ())
 
     def finish(given, state):
         element, rings = given.element, given.rings
         state = _solved(element, rings, loop.finish(given, state))
-        return state, condensed(rings, Placed(element, state, given.magnitude))
+        return state, condensed(rings, SolvedElement(element, state, given.magnitude))
 
-    def blank(given):
-        return unloaded(given.rings, given.centre, known)
+    def trivial_result(given):
+        return unloaded(given.rings, given.centre, contacts)
 
-    rests = (lambda given: given.is_open) if may_be_open else None
+    is_trivial = (lambda given: given.is_open) if may_be_open else None
     loop = minimiser.loop(problem_of)
-    return loop._replace(finish=finish, blank=blank, rests=rests)
+    return loop._replace(
+        finish=finish, trivial_result=trivial_result, is_trivial=is_trivial
+    )
 
 
-def unloaded(rings: Rings, x: Unknowns, known: Any) -> tuple[LocalState, Expansion]:
+def unloaded(rings: Rings, x: Unknowns, contacts: Any) -> tuple[LocalState, Expansion]:
     """Return the result of `solve_element` for an element that carries no load.
 
     Args:
         rings: Motions of the rings in its axes (r,) [m, rad].
         x: Its unknowns (n,) [m].
-        known: Contact response, of which only the shapes count.
+        contacts: Contact response, of which only the shapes count.
     """
     n, r = x.shape[0], rings.shape[0]
     zero, none = jnp.zeros((), rings.dtype), jnp.zeros((), jnp.int32)
-    nothing = _zeros(known)
+    nothing = _zeros(contacts)
     state = LocalState(x, zero, zero, none, none, nothing)
-    beside = Beside(nothing.beside, jnp.zeros((n, r), rings.dtype))
+    aux = CondensedAux(nothing.aux, jnp.zeros((n, r), rings.dtype))
     return state, Expansion(
-        zero, jnp.zeros_like(rings), jnp.zeros((r, r), rings.dtype), beside
+        zero, jnp.zeros_like(rings), jnp.zeros((r, r), rings.dtype), aux
     )
 
 
@@ -360,10 +364,10 @@ def _zeros(shapes):
 
 def _solved(element, rings, minimum) -> LocalState:
     result = minimum.result
-    known = minimum.memory or response(element, rings, minimum.x)
+    contacts = minimum.memory or response(element, rings, minimum.x)
     # Where part of the forces has no potential a pivot says nothing.
     if element.has_potential and not element.is_convex:
-        h = derivatives(element, rings, minimum.x, known, of_own=True).hessian
+        h = derivatives(element, rings, minimum.x, contacts, of_own=True).hessian
         saddle = (smallest_pivot(h) < -1e-9) & (result == Result.CONVERGED)
         result = jnp.where(saddle, int(Result.SADDLE), result)
     if element.hints.may_be_ejected:
@@ -378,7 +382,7 @@ def _solved(element, rings, minimum) -> LocalState:
         minimum.unbalanced,
         minimum.steps,
         result.astype(jnp.int32),
-        known,
+        contacts,
     )
 
 
@@ -394,19 +398,21 @@ def _followed(element, near, rings, otherwise):
     return jnp.where(jnp.all(jnp.isfinite(x)), x, otherwise)
 
 
-def near_by(placed: Placed, rings: Rings, beside: Beside) -> Near:
+def element_start(
+    solved: SolvedElement, rings: Rings, aux: CondensedAux
+) -> ElementStart:
     """Starting point for a solve with the rings at a nearby position.
 
     Args:
-        placed: The element and its equilibrium.
+        solved: The element and its equilibrium.
         rings: Motions of the rings there (r,) [m, rad].
-        beside: `Beside` of its `condensed` energy.
+        aux: `CondensedAux` of its `condensed` energy.
     """
-    element = placed.element
-    held = jnp.any(beside.contact_load > 0)
-    off = placed.state.x - element.hints.midpoint(unpacked(element, rings))
-    follow = jnp.where(held, beside.follow, 0.0)
-    return stop(Near(jnp.where(held, off, jnp.nan), follow, rings))
+    element = solved.element
+    held = jnp.any(aux.contact_load > 0)
+    off = solved.state.x - element.hints.midpoint(unpacked(element, rings))
+    follow = jnp.where(held, aux.follow, 0.0)
+    return stop(ElementStart(jnp.where(held, off, jnp.nan), follow, rings))
 
 
 def accept_small(

@@ -56,10 +56,10 @@ class Roller(AbstractRollingElement):
     def axes(self, azimuth):
         return self.constants.to_axes @ section_matrix(azimuth)
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         constants = self.constants
         constants = dataclasses.replace(constants, gap=constants.gap - heights)
-        geometry = self.geometry.raised(heights)
+        geometry = self.geometry.with_heights(heights)
         return dataclasses.replace(self, constants=constants, geometry=geometry)
 
     def coordinates(self, rings, x):
@@ -85,7 +85,7 @@ class Roller(AbstractRollingElement):
             value=Approaches(raceway.value, rib.value),
             gradient=Approaches(raceway.gradient, rib.gradient),
             hessian=Approaches(raceway.hessian, rib.hessian),
-            beside=load,
+            aux=load,
         )
         return found if met is None else composed(found, met)
 
@@ -162,7 +162,7 @@ class RollerSearchHints(SearchHints):
         # A roller that is turned over meets no raceway.
         return gone | (jnp.abs(x[2]) > _TURNED * self.element.constants.half_length)
 
-    def inertia_size(self):
+    def inertia_scale(self):
         return None if self.element.body_force is None else norm(self._on_unknowns())
 
     def is_open(self, rings):

@@ -45,7 +45,7 @@ class AbstractRollerGeometry(eqx.Module):
 
     @abc.abstractmethod
     def coordinates(self, rings: RingMotion, x: Unknowns) -> Approaches:
-        """Approaches of all contacts, or what they follow from.
+        """Approaches of all contacts, or coordinates from which they follow.
 
         Args:
             rings: Motions of the rings in roller axes [m, rad].
@@ -69,7 +69,7 @@ class AbstractRollerGeometry(eqx.Module):
         raise NotImplementedError
 
     @abc.abstractmethod
-    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
         """Return the geometry with material added along the normals of both raceways.
 
         Args:
@@ -111,7 +111,7 @@ class LinearisedRoller(AbstractRollerGeometry):
     def is_linear(self):
         return True
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         more = jnp.ravel(jnp.stack([heights, 0.0 * heights], axis=1))
         return dataclasses.replace(self, start=self.start.at[:4].add(more))
 
@@ -195,7 +195,7 @@ class FiniteRoller(AbstractRollerGeometry):
     def is_linear(self):
         return False
 
-    def raised(self, heights):
+    def with_heights(self, heights):
         gap = self.raceways.gap
         # Of the points, the first is the middle.
         gap = gap - heights if gap.ndim == 1 else gap.at[:, 0].add(-heights)
@@ -229,7 +229,7 @@ class _Point(eqx.Module):
     Attributes:
         gap: At rest (k,) [m].
         normal: Unit vectors n of the drawing, in (z, r) (k, 2).
-        share: Of the displacement at O: 1, or 0 for a difference of points (k,).
+        share: Share of the displacement at O: 1, or 0 for a difference of points (k,).
         point, own: Points of ring and roller at rest, or differences (k, 2) [m].
     """
 
@@ -251,8 +251,8 @@ class _Arc(eqx.Module):
         gap: At rest [m].
         normal, middle, along: In (z, r) at rest: unit vector from the roller to the
             raceway, middle of the generator [m], unit vector along it (2,).
-        curvature: Of the arc [1/m].
-        half_length: Of the roller [m].
+        curvature: Curvature of the arc [1/m].
+        half_length: Half length of the roller [m].
     """
 
     gap: Array

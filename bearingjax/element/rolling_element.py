@@ -80,7 +80,7 @@ class AbstractRollingElement(eqx.Module):
             azimuth: Azimuth of the rolling element [rad].
         """
 
-    def raised(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
         """Return the element with material added in its contacts, along their normals.
 
         Args:
@@ -90,8 +90,8 @@ class AbstractRollingElement(eqx.Module):
             TypeError: If the class does not say how.
         """
         raise TypeError(
-            f"{type(self).__name__} has no method `raised`, which `raceway_deviation`"
-            " needs."
+            f"{type(self).__name__} has no method `with_heights`, which"
+            " `raceway_deviation` needs."
         )
 
     @abc.abstractmethod
@@ -111,19 +111,19 @@ class AbstractRollingElement(eqx.Module):
             coordinates: From `coordinates`.
 
         Returns:
-            Expansion whose `beside` is the load of each contact (contact,) [N].
+            Expansion whose `aux` is the load of each contact (contact,) [N].
         """
 
     @abc.abstractmethod
     def energy(
-        self, rings: RingMotion, x: Unknowns, known: Expansion | None = None
+        self, rings: RingMotion, x: Unknowns, contact_response: Expansion | None = None
     ) -> Scalar:
         """Strain energy less the potential of inertia, U - F·y [J].
 
         Args:
             rings: Motions of the rings in the element's axes [m, rad].
             x: Own unknowns (n,) [m].
-            known: `respond` at this place, if available.
+            contact_response: `respond` at this place, if available.
         """
 
     @abc.abstractmethod
@@ -188,16 +188,18 @@ class AbstractRollingElement(eqx.Module):
 
 
 def contact_energy(
-    element: AbstractRollingElement, coordinates: Any, known: Expansion | None
+    element: AbstractRollingElement,
+    coordinates: Any,
+    contact_response: Expansion | None,
 ) -> Scalar:
     """Energy of all contacts, with force and stiffness as its derivatives [J].
 
     Args:
         element: The rolling element.
         coordinates: Its `coordinates`.
-        known: Its `respond` there, if it is at hand.
+        contact_response: Its `respond` there, if it is at hand.
     """
-    energies = expanded(_respond, coordinates, element, known)
+    energies = expanded(_respond, coordinates, element, contact_response)
     parts = [jnp.sum(energy) for energy in jax.tree.leaves(energies)]
     return sum(parts[1:], start=parts[0])
 

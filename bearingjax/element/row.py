@@ -15,7 +15,7 @@ from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
 from .azimuth import Azimuth, turn
 from .energy import response
-from .equilibrium import Near, condensed, own_unknowns, solve_element, unloaded
+from .equilibrium import ElementStart, condensed, own_unknowns, solve_element, unloaded
 from .frame import FREEDOMS, placement
 from .rolling_element import RingMotion, split
 from .solved_row import RowResults, SolvedRow
@@ -24,19 +24,19 @@ _UZ = FREEDOMS.index("uz")
 _TRANSLATIONS, _TILTS = slice(0, 3), slice(3, 5)
 
 
-class Place(NamedTuple):
-    """Position of a row in its set.
+class RowPlacement(NamedTuple):
+    """Position of a row in its set; of several rows, with an axis.
 
     Attributes:
         position: z of the origin of the row's elements [m].
-        sign: -1 for a reversed row, else 1.
-        offset: Axial place of the inner ring against the outer one, in the row's own
-            axes [m].
+        sign: -1 for a mirrored row, else 1 [1].
+        offset: Axial position of the inner ring relative to the outer one, in the
+            row's own axes [m].
     """
 
-    position: Scalar
-    sign: Scalar
-    offset: Scalar
+    position: Float[Array, "..."]
+    sign: Float[Array, "..."]
+    offset: Float[Array, "..."]
 
 
 class Row(eqx.Module):
@@ -52,7 +52,7 @@ class Row(eqx.Module):
         pitch_radius: Radius of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
         spring: Preload spring, or `None`.
-        unlike: Whether `element` has a leading axis. Static.
+        per_element: Whether `element` has a leading axis. Static.
     """
 
     element: Any
@@ -60,9 +60,9 @@ class Row(eqx.Module):
     shift: Float[Array, "element 2 2"] | None
     ratio: Scalar
     pitch_radius: Scalar
-    place: Place | None
+    place: RowPlacement | None
     spring: PreloadSpring | None
-    unlike: bool = eqx.field(static=True)
+    per_element: bool = eqx.field(static=True)
 
     def each(self, function: Callable, *arrays) -> Any:
         """Apply function(element, *arrays) to every rolling element.
@@ -72,9 +72,9 @@ class Row(eqx.Module):
             *arrays: More arguments, with leading axis element. Without any, like
                 elements are one element.
         """
-        if not (self.unlike or arrays):
+        if not (self.per_element or arrays):
             return function(self.element)
-        axes = (0 if self.unlike else None,) + (0,) * len(arrays)
+        axes = (0 if self.per_element else None,) + (0,) * len(arrays)
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
 
     def turn(self, q: Ring) -> Scalar:
@@ -90,13 +90,13 @@ class Row(eqx.Module):
         q: Ring,
         azimuth: Azimuth,
         minimiser: AbstractMinimiser,
-        near: Near | None,
+        near: ElementStart | None,
     ) -> SolvedRow:
         """Equilibrium of every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms at the node [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
             minimiser: Local solver. Static.
             near: `SolvedRow.near` at ring freedoms near by, or `None`.
 
@@ -115,14 +115,14 @@ class Row(eqx.Module):
         tilt = jnp.concatenate([r[_TILTS] for r in local])
         magnitude = jnp.max(jnp.abs(shift))
         magnitude = magnitude + self.pitch_radius * jnp.max(jnp.abs(tilt))
-        rings = self.seen(local, azimuth)
+        rings = self.in_element_axes(local, azimuth)
 
         def one(element, rings, *near):
             found = solve_element(element, rings, magnitude, minimiser, *near)
             return *found, magnitude
 
-        known = () if near is None else (near,)
-        state, energies, magnitudes = self.each(one, rings, *known)
+        starts = () if near is None else (near,)
+        state, energies, magnitudes = self.each(one, rings, *starts)
         return SolvedRow(rings, magnitudes, state, energies)
 
     def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
@@ -178,10 +178,10 @@ class Row(eqx.Module):
     def _sum(self, local, azimuth, solved):
         """Energy of all elements at freedoms in the row's own axes."""
 
-        def one(placed, rings, energies):
-            return expanded(condensed, rings, placed, energies)
+        def one(solved_element, rings, energies):
+            return expanded(condensed, rings, solved_element, energies)
 
-        return jnp.sum(solved.each(self, one, self.seen(local, azimuth)))
+        return jnp.sum(solved.each(self, one, self.in_element_axes(local, azimuth)))
 
     def energy(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].
@@ -191,7 +191,7 @@ class Row(eqx.Module):
 
         Args:
             q: Ring freedoms at the node [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
             solved: The row solved there.
         """
         local = self.local(q)
@@ -210,18 +210,18 @@ class Row(eqx.Module):
         if self.spring is not None:
             travel = _travel(jnp.concatenate(local), (self, azimuth, solved))
             local = _closed(local, travel)
-        rings = self.seen(local, azimuth)
+        rings = self.in_element_axes(local, azimuth)
 
-        def one(placed, rings, energies):
-            x = own_unknowns(placed, rings)
+        def one(solved_element, rings, energies):
+            x = own_unknowns(solved_element, rings)
 
             def loads(element, rings, x):
-                return response(element, rings, x).beside
+                return response(element, rings, x).aux
 
-            args = placed.element, rings, x
-            load = recall(loads, placed.state.known.beside, args)
+            args = solved_element.element, rings, x
+            load = recall(loads, solved_element.state.contact_response.aux, args)
             # A loose one carries nothing.
-            nothing = energies.beside.contact_load == 0.0
+            nothing = energies.aux.contact_load == 0.0
             return x, jnp.where(nothing, 0.0, load)
 
         x, load = solved.each(self, one, rings)
@@ -240,12 +240,14 @@ class Row(eqx.Module):
         outer, inner = (moved @ ring for ring in both)
         return _closed(RingMotion(outer, inner), self.place.offset)
 
-    def seen(self, local: RingMotion, azimuth: Azimuth) -> Float[Array, "element r"]:
+    def in_element_axes(
+        self, local: RingMotion, azimuth: Azimuth
+    ) -> Float[Array, "element r"]:
         """Ring motions in the elements' axes, as their solves take them.
 
         Args:
             local: Ring freedoms in the row's own axes [m, rad].
-            azimuth: Where its elements are.
+            azimuth: Azimuths of its elements [rad].
         """
 
         def one(element, azimuth, *shift):
@@ -260,13 +262,13 @@ class Row(eqx.Module):
     def unsolved(self) -> SolvedRow:
         """Return an unsolved row in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
-        rings = jnp.zeros_like(self.seen(local, self.azimuth))
+        rings = jnp.zeros_like(self.in_element_axes(local, self.azimuth))
         n, zero = self.element.n_unknowns, jnp.zeros((), rings.dtype)
 
         def one(element, rings):
             x = jnp.zeros((n,), rings.dtype)
-            known = jax.eval_shape(lambda: response(element, rings, x))
-            return *unloaded(rings, x, known), zero
+            contacts = jax.eval_shape(lambda: response(element, rings, x))
+            return *unloaded(rings, x, contacts), zero
 
         state, energies, magnitude = self.each(one, rings)
         travel = () if self.spring is None else zero

@@ -10,7 +10,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
 
@@ -50,7 +50,7 @@ class SearchHints(eqx.Module):
         """
         return jnp.zeros_like(approach)
 
-    def inertia_size(self) -> Scalar | None:
+    def inertia_scale(self) -> Scalar | None:
         """Size of the inertia forces [N], or `None` if there are none."""
         return None
 
@@ -83,11 +83,11 @@ class SearchHints(eqx.Module):
     @property
     def slots(self) -> tuple[int, int]:
         """Number of elements of a batch solved at a time, and number of them that may
-        be finished before others follow (`lanes.run`). Static.
+        be finished before others follow (`batched_loop.run`). Static.
 
         Larger where a step costs little compared with its overhead.
         """
-        return lanes.SLOTS, lanes.IDLE
+        return batched_loop.SLOTS, batched_loop.IDLE
 
     @property
     def corrects_steps(self) -> bool:
@@ -114,14 +114,14 @@ class SearchHints(eqx.Module):
         """Load that elements pass from ring to ring (…,) [N]; `None`: not known.
 
         Args:
-            load: Of their contacts [N].
+            load: Load of their contacts [N].
         """
         return None
 
     @property
     def may_be_ejected(self) -> bool:
         """Whether `is_ejected` needs to be evaluated. Static."""
-        return self.inertia_size() is not None
+        return self.inertia_scale() is not None
 
     def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
         """Whether inertia has moved the element to where no contact can hold it."""

@@ -11,7 +11,7 @@ from ..numerics.expansion import Expansion
 from ..numerics.types import Scalar
 from .azimuth import Azimuth
 from .energy import unpacked
-from .equilibrium import LocalState, Near, Placed, near_by
+from .equilibrium import ElementStart, LocalState, SolvedElement, element_start
 from .frame import placement, section_matrix
 from .rolling_element import RingMotion
 
@@ -40,21 +40,21 @@ class SolvedRow(NamedTuple):
 
         Args:
             row: The `Row`.
-            function: Function of one `Placed` element, the motions of its rings, and
+            function: Function of one `SolvedElement`, the motions of its rings, and
                 its condensed energy.
             rings: `rings`, or the same with derivatives.
         """
 
         def one(element, rings, state, magnitude, energies):
-            return function(Placed(element, state, magnitude), rings, energies)
+            return function(SolvedElement(element, state, magnitude), rings, energies)
 
         return row.each(one, rings, self.state, self.magnitude, self.energies)
 
-    def near(self, row: Any) -> Near:
+    def near(self, row: Any) -> ElementStart:
         """Starting points for solves at ring freedoms near by, leading axis element."""
 
-        def one(placed, rings, energies):
-            return near_by(placed, rings, energies.beside)
+        def one(solved_element, rings, energies):
+            return element_start(solved_element, rings, energies.aux)
 
         return self.each(row, one, self.rings)
 
@@ -65,7 +65,7 @@ class RowResults(NamedTuple):
     Attributes:
         row: The `Row`.
         local: Ring freedoms in its own axes, its spring's travel included [m, rad].
-        azimuth: Where its elements are [rad].
+        azimuth: Azimuths of its elements [rad].
         rings: Ring motions in the elements' axes (element, r) [m, rad].
         x: Own unknowns (element, n) [m].
         contact_load: Load of each contact (element, contact) [N].

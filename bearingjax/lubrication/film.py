@@ -47,7 +47,7 @@ class Film(eqx.Module):
         central_factor: Central film there [m].
         factors: Minimum film there by the formula of each `Regime` (4,) [m].
         central_exponent: Exponent of U in the central film.
-        exponents: Those of the minimum films (4,).
+        exponents: Exponents of the minimum films (4,).
 
     Static: both exponents.
     """

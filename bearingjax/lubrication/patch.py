@@ -310,7 +310,7 @@ def line_patch(
     Args:
         lubricant: Oil.
         temperature: Its temperature [K].
-        position: Where each slice is along the roller (slice,) [m].
+        position: Position of each slice along the roller (slice,) [m].
         width: Length that each one represents (slice,) [m].
         line_load: Load per length, at least 0 (slice,) [N/m].
         half_width: Half width of the contact (slice,) [m].

@@ -71,7 +71,7 @@ def viscosity_at_100(viscosity: Scalar | float, index: Scalar | float) -> Scalar
         [m²/s].
 
     Raises:
-        ValueError: If no oil of that index is so thin.
+        ValueError: If the viscosity is below that of any oil of that index.
     """
     owner = "viscosity_at_100"
     positive(owner, "viscosity", viscosity, "m²/s")

@@ -12,8 +12,8 @@ over the turn; `linear_model` and `transfer` the way from there to the sensor.
 Levels and bands of the acceleration (`level`, `band_levels`), prominent lines with
 their names (`name_lines`: `3 BPFO`, `BPFI + shaft`, `2 cage`), the errors that cause
 them to first order (`line_causes`), and the number of contacts of every element
-(`contact_states`). `model_warnings`, `record_warnings` and `share_warnings` give the
-warnings of the command line on a record and its levels. `monte_carlo` draws
+(`contact_states`). `model_warnings`, `record_warnings` and `contribution_warnings` give
+the warnings of the command line on a record and its levels. `monte_carlo` draws
 bearings within tolerance classes and gives the distribution of their levels, and the
 share of every tolerance in it.
 
@@ -49,8 +49,8 @@ from .lines import Line as Line
 from .lines import name_lines as name_lines
 from .model import NoiseModel as NoiseModel
 from .monte_carlo import MonteCarlo as MonteCarlo
-from .monte_carlo import drawn as drawn
 from .monte_carlo import monte_carlo as monte_carlo
+from .monte_carlo import sampled_model as sampled_model
 from .natural import NaturalModes as NaturalModes
 from .natural import natural_modes as natural_modes
 from .natural import orbited as orbited
@@ -62,21 +62,21 @@ from .orders import kinematic_frequencies as kinematic_frequencies
 from .orders import waviness_force as waviness_force
 from .quasi_static import Excitation as Excitation
 from .quasi_static import excitation as excitation
-from .scatter import Drawn as Drawn
 from .scatter import RandomWaves as RandomWaves
+from .scatter import SampledErrors as SampledErrors
 from .scatter import Tolerances as Tolerances
-from .scatter import draw as draw
+from .scatter import sample_errors as sample_errors
 from .sensor import Sensor as Sensor
-from .shares import Shares as Shares
-from .shares import shares as shares
 from .sound import sound as sound
 from .sound import write_sound as write_sound
+from .source_contributions import SourceContributions as SourceContributions
+from .source_contributions import source_contributions as source_contributions
 from .spectrum import AbstractWindow as AbstractWindow
 from .spectrum import Hann as Hann
 from .spectrum import Rectangular as Rectangular
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
-from .standing import standing as standing
+from .static_start import static_start as static_start
 from .system import NoiseSystem as NoiseSystem
 from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
@@ -84,6 +84,6 @@ from .vibration import bandwidth as bandwidth
 from .vibration import needed_steps as needed_steps
 from .vibration import rounding as rounding
 from .vibration import vibration as vibration
+from .warning import contribution_warnings as contribution_warnings
 from .warning import model_warnings as model_warnings
 from .warning import record_warnings as record_warnings
-from .warning import share_warnings as share_warnings

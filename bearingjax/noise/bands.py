@@ -89,7 +89,7 @@ def band_root_mean_square(
     counts by its power, which does not depend on the window.
 
     Args:
-        spectrum: Of the record, amplitudes (line, ...).
+        spectrum: Spectrum of the record, amplitudes (line, ...).
         bands: From `octave_bands` or `third_octave_bands`.
         highest: Frequency up to which the record is true, such as
             `Vibration.bandwidth` [Hz]; `None`: half of the sampling rate.
@@ -115,7 +115,7 @@ def band_levels(
     """Return the level of an acceleration record in each band [dB].
 
     Args:
-        spectrum: Of the record, amplitudes (line, ...) [m/s²].
+        spectrum: Spectrum of the record, amplitudes (line, ...) [m/s²].
         bands, highest: As in `band_root_mean_square`.
         reference: Acceleration of 0 dB [m/s²].
 
@@ -166,7 +166,7 @@ def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
     (`AbstractWindow.peak`). Leakage of noise over an edge balances.
 
     Args:
-        spectrum: Of the record, amplitudes (line, ...).
+        spectrum: Spectrum of the record, amplitudes (line, ...).
         edges: Frequencies (edge,) [Hz].
 
     Source: Harris, Proc. IEEE 66 (1978): transform of Hann's window.
@@ -225,7 +225,7 @@ def band_shift(
     """Return the change of each band level by skirts of strong lines.
 
     Args:
-        spectrum: Of the record, amplitudes (line, ...).
+        spectrum: Spectrum of the record, amplitudes (line, ...).
         bands: From `octave_bands` or `third_octave_bands`.
 
     Returns:

@@ -60,9 +60,9 @@ class CageContact(eqx.Module):
         """
         # Nearer to zero the third power of an approach has no inverse.
         apart = approach <= jnp.finfo(approach.dtype).tiny ** 0.25
-        met = jnp.where(apart, 1.0, approach)
-        root = _logarithm(self, stop(met))
-        root = attach_roots(_excess, root, (self, met))
+        closed = jnp.where(apart, 1.0, approach)
+        root = _logarithm(self, stop(closed))
+        root = attach_roots(_excess, root, (self, closed))
         # Beyond the largest number there is none; such an approach is none either.
         most = 0.99 * jnp.log(jnp.finfo(approach.dtype).max)
         return jnp.where(apart, 0.0, jnp.exp(jnp.minimum(root, most)))

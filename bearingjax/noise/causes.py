@@ -60,7 +60,7 @@ def line_causes(
     known = sorted(_known(model, highest), key=lambda one: -one.size)
     rows = len(rows_of(model.element.bearing))
     return tuple(
-        _told(
+        _named_lines(
             [one for one in known if abs(one.frequency - line.frequency) <= tolerance],
             rows,
         )
@@ -68,14 +68,14 @@ def line_causes(
     )
 
 
-def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
+def _named_lines(causes: list[_Cause], rows: int) -> tuple[str, ...]:
     """Return each cause once, with the orders of its waves and its rows in a set."""
     found: dict[str, dict[int, set[int]]] = {}
     for one in causes:
         found.setdefault(one.words, {}).setdefault(one.row, set()).add(one.order)
-    told = []
+    texts = []
     for words, by_row in found.items():
-        # Rows with the same orders are told together.
+        # Rows with the same orders are named together.
         together: dict[tuple[int, ...], list[int]] = {}
         for row, orders in by_row.items():
             together.setdefault(tuple(sorted(orders)), []).append(row)
@@ -83,8 +83,8 @@ def _told(causes: list[_Cause], rows: int) -> tuple[str, ...]:
             numbers = " and ".join(map(str, sorted(of)))
             where = f" of row{'s' if len(of) > 1 else ''} {numbers}" if rows > 1 else ""
             waves = "" if orders == (0,) else f", order {', '.join(map(str, orders))}"
-            told.append(f"{words}{where}{waves}")
-    return tuple(told)
+            texts.append(f"{words}{where}{waves}")
+    return tuple(texts)
 
 
 def _known(model: NoiseModel, highest: float) -> Iterator[_Cause]:
@@ -98,15 +98,15 @@ def _of_row(
     bearing: Any, errors: FormErrors, model: NoiseModel, highest: float
 ) -> Iterator[_Cause]:
     """Yield causes in one row, of lines up to a frequency [Hz]."""
-    turning = kinematic_frequencies(bearing, model.speed)
+    frequencies = kinematic_frequencies(bearing, model.speed)
     count = bearing.n_elements
     row = bearing, model.speed
     for ring in ("outer", "inner"):
-        yield from _of_raceway(row, getattr(errors, ring), ring, turning, highest)
+        yield from _of_raceway(row, getattr(errors, ring), ring, frequencies, highest)
     for shape in errors.elements:
-        yield from _of_elements(shape, row, turning, highest)
+        yield from _of_elements(shape, row, frequencies, highest)
     kind = bearing.noun
-    cage = float(turning.cage)
+    cage = float(frequencies.cage)
     pitch = 0.5 * float(bearing.pitch_diameter)
     for name, words, scale in (
         (f"{kind}_deviation", f"differences of {kind} diameter", 1.0),
@@ -123,13 +123,13 @@ def _of_row(
 
 
 def _of_raceway(
-    row, errors: RacewayErrors, ring, turning: KinematicFrequencies, highest: float
+    row, errors: RacewayErrors, ring, frequencies: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     count = row[0].n_elements
     passage, beside = (
-        (turning.outer_passage, turning.outer)
+        (frequencies.outer_passage, frequencies.outer)
         if ring == "outer"
-        else (turning.inner_passage, turning.inner)
+        else (frequencies.inner_passage, frequencies.inner)
     )
     for shape in (*errors.outwards, *errors.axial, *errors.raised):
         if isinstance(shape, Harmonics):
@@ -144,7 +144,7 @@ def _of_raceway(
 
 
 def _of_elements(
-    shape, row, turning: KinematicFrequencies, highest: float
+    shape, row, frequencies: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     if isinstance(shape, Harmonics):
         sizes = np.abs(np.asarray(shape.amplitude)).max(axis=0)
@@ -153,7 +153,7 @@ def _of_elements(
                 words = "waves of the rolling elements"
                 yield from _of_wave(row, "element", order, size, words)
     elif isinstance(shape, Spall):
-        twice, cage = float(turning.twice_rotation), float(turning.cage)
+        twice, cage = float(frequencies.twice_rotation), float(frequencies.cage)
         words = "spall of a rolling element"
         yield from _of_spall(shape, twice, cage, words, highest)
 

@@ -14,7 +14,7 @@ class ContactStates(NamedTuple):
     """Contacts of the rolling elements over a record.
 
     Attributes:
-        number: Of closed contacts (time, element).
+        number: Number of closed contacts (time, element).
         samples: Number of samples of all elements with 0, 1, 2, … contacts, up to as
             many as an element can have (number,).
         switches_per_turn: Contacts that open or close, of all elements, from one

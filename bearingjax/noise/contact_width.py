@@ -24,16 +24,16 @@ from ..contact.point_law import ball_ellipses, balls_of
 from ..design import AbstractBallBearing, rows_of
 from ..design.material import contact_modulus
 from ..numerics.programs import program
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
-from .standing import standing
+from .static_start import static_start
 
 
 def bridged(model: NoiseModel) -> NoiseModel:
     """Return the model with waves averaged over the width of its contacts.
 
     Contacts have the width under their mean load in static equilibrium; waves of
-    random bearings, which `drawn` adds, are averaged too. Spalls are not.
+    random bearings, which `sampled_model` adds, are averaged too. Spalls are not.
 
     Args:
         model: The bearing.
@@ -41,7 +41,7 @@ def bridged(model: NoiseModel) -> NoiseModel:
     Returns:
         The model with `half_width`, differentiable.
 
-    Fails: as `standing`; the width is then NaN or that of no balance.
+    Fails: as `static_start`; the width is then NaN or that of no balance.
     """
     return dataclasses.replace(model, half_width=_half_widths(model, model.orbits))
 
@@ -49,7 +49,7 @@ def bridged(model: NoiseModel) -> NoiseModel:
 @program(quick=True)
 def _half_widths(model, orbits):
     system = model.still_system()
-    start, _ = standing(model, system, orbits)
+    start, _ = static_start(model, system, orbits)
     bearing = model.element.bearing
     loads = of_rows(system.contact_loads(start, jnp.zeros_like(model.mass)), bearing)
     widths = []
@@ -69,7 +69,7 @@ def contact_half_width(bearing: Any, load: np.ndarray) -> float:
 
     Args:
         bearing: A single row.
-        load: Of its contacts; those that carry count (..., contact) [N].
+        load: Load of its contacts; those that carry count (..., contact) [N].
 
     Returns:
         That of the raceway where it is larger; 0 where nothing carries.

@@ -26,7 +26,7 @@ from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .model import NoiseModel
 from .natural import contact_stiffness
-from .standing import standing
+from .static_start import static_start
 
 
 class LinearModel(NamedTuple):
@@ -36,8 +36,8 @@ class LinearModel(NamedTuple):
 
     Attributes:
         mass: (n,) [kg, kg m²].
-        stiffness: Of contacts and sensor (n, n) [N/m, N, N m].
-        damping: Of both (n, n) [N s/m, N s, N m s].
+        stiffness: Stiffness of contacts and sensor (n, n) [N/m, N, N m].
+        damping: Damping of both (n, n) [N s/m, N s, N m s].
         push: Loads on the coordinates for deviations of the raceways as in
             `Deviation.raceway` (n, element, 2, 3) [N/m, N].
         retardation: τ, by which the rate of deviations counts too [s].
@@ -100,12 +100,12 @@ def linear_model(model: NoiseModel) -> LinearModel:
 @program(quick=True)
 def _linear_model(model, orbits) -> LinearModel:
     system = model.still_system()
-    start, result = standing(model, system, orbits)
+    start, result = static_start(model, system, orbits)
     zero = jnp.zeros((), start.dtype)
     none = jnp.zeros((system.row.azimuth.shape[0], 2, 3), start.dtype)
 
-    def contact_forces(met):
-        return system.contact_forces(start, zero, met)
+    def contact_forces(deviations):
+        return system.contact_forces(start, zero, deviations)
 
     stiffness = contact_stiffness(system, start)
     damping = system.retardation * stiffness

@@ -83,7 +83,7 @@ def name_lines(
         factor: Of a line over the median of its neighbours [1]. One in 2^(factor²)
             lines of noise passes: of 4 one in 65 thousand, of 5 one in 30 million.
         neighbours: Number of neighbours to either side.
-        least: Of a line over the largest one [1].
+        least: Smallest amplitude over that of the largest line [1].
         floor: Amplitude up to which a line is round-off [unit of the record].
         largest: Number of maxima, above `least`, taken by size alone.
 

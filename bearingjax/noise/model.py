@@ -32,7 +32,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
 from .cage import GuidedCage
-from .free_row import FreeRow, of_small_motions
+from .dynamic_row import DynamicRow, of_small_motions
 from .sensor import Sensor
 from .system import NoiseSystem
 
@@ -45,10 +45,10 @@ class NoiseModel(eqx.Module):
             with `Finite()`. Whatever its raceway control, balls are carried as with
             `CentrifugalOnly()`: they orbit at the free contact angle, and have no
             gyroscopic moment; `record_warnings` warns where that moment matters.
-        mass: Of the moving ring, and of what moves with it [kg].
+        mass: Mass of the moving ring, and of what moves with it [kg].
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (6,) [N, N m]; moments only
             if it tilts.
-        speed: Of the rings.
+        speed: Speed of the rings.
         errors: Form errors; of a set those of each row, in that row's own axes, or one
             that all rows have.
         tilting_inertia: Moment of inertia about a diameter of the moving ring and of
@@ -239,7 +239,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
 
     Args:
         bearing: A single row or a set.
-        mass: Of the ring [kg].
+        mass: Mass of the ring [kg].
         moving_ring: "outer" or "inner". Static.
 
     Source: m (3 (R₁² + R₂²) + b²)/12 of a hollow cylinder, with the radii R ± b/2 and
@@ -255,7 +255,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     return total
 
 
-def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
+def _surfaces(model: NoiseModel, found: DynamicRow) -> tuple[Surfaces, ...]:
     """Return the contact tracks of each row, with their averaging of waves."""
     if (widths := model.half_width) is None:
         return found.surfaces
@@ -266,7 +266,7 @@ def _surfaces(model: NoiseModel, found: FreeRow) -> tuple[Surfaces, ...]:
 
 @program(quick=True)
 def _system(model, points) -> NoiseSystem:
-    found = FreeRow.of(model.small, model.speed)
+    found = DynamicRow.of(model.small, model.speed)
     some = jax.tree.leaves(model.errors)
     mass = jnp.repeat(model.mass, 3)
     if (inertia := model.inertia) is not None:
@@ -277,10 +277,10 @@ def _system(model, points) -> NoiseSystem:
         errors = tuple(one.tabulated(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
         row=found.row,
-        sites=found.sites,
+        placements=found.placements,
         errors=errors,
         surfaces=found.surfaces,
-        turning=(model.speed.outer, model.speed.inner, found.carried, found.own),
+        speeds=(model.speed.outer, model.speed.inner, found.carried, found.own),
         mass=mass,
         load=model.load[: mass.shape[0]],
         sensor=model.sensor,

@@ -21,7 +21,7 @@ from ..numerics.result import Result
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .scatter import Drawn, Tolerances, draw
+from .scatter import SampledErrors, Tolerances, sample_errors
 from .spectrum import AbstractWindow, Hann, spectrum
 from .vibration import bandwidth, needed_steps, vibration
 
@@ -34,12 +34,12 @@ class MonteCarlo(eqx.Module):
     """Levels of many bearings; NaN for those that failed.
 
     Attributes:
-        level: Of all frequencies, along x, y, z (bearing, 3) [dB].
+        level: Level of all frequencies, along x, y, z (bearing, 3) [dB].
         bands: Of each band (bearing, band, 3) [dB]; NaN too for bands that the record
             does not hold.
         centre: Nominal centres of the bands (band,) [Hz].
         result: `Result` codes (bearing,).
-        keys: Keys with which `drawn` reproduces each bearing (bearing,).
+        keys: Keys with which `sampled_model` reproduces each bearing (bearing,).
     """
 
     level: Float[Array, "bearing 3"]
@@ -62,20 +62,21 @@ class MonteCarlo(eqx.Module):
         return jnp.nanpercentile(self.level, jnp.asarray(share, float), axis=0)
 
 
-def drawn(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
+def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> NoiseModel:
     """Draw one bearing: the model with random errors added to its own.
 
     Args:
         model: The bearing as on the drawing, or with errors that all have.
-        tolerances: How bearings scatter.
-        key: Of `jax.random`.
+        tolerances: Scatter of the bearings.
+        key: Key of `jax.random`.
     """
     bearing: Any = model.element.bearing
     parts = rows_of(bearing)
     # Rows of a set are drawn on their own.
     keys = [key] if len(parts) == 1 else jax.random.split(key, len(parts))
     found = [
-        draw(tolerances, row.bearing, k) for row, k in zip(parts, keys, strict=True)
+        sample_errors(tolerances, row.bearing, k)
+        for row, k in zip(parts, keys, strict=True)
     ]
     rows = [_with(row.bearing, one) for row, one in zip(parts, found, strict=True)]
     errors = tuple(
@@ -112,13 +113,13 @@ def monte_carlo(
 
     Args:
         model: The bearing as on the drawing, or with errors that all have.
-        tolerances: How bearings scatter.
+        tolerances: Scatter of the bearings.
         n: Number of bearings.
-        key: Of `jax.random`; the same gives the same bearings.
+        key: Key of `jax.random`; the same gives the same bearings.
         turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
         batch: Number of bearings at once.
         bands: `None`: `octave_bands()`.
-        window: Of the spectra; `None`: `Hann()`, since a record does not repeat
+        window: Window of the spectra; `None`: `Hann()`, since a record does not repeat
             itself: the cage turns by no whole number.
         reference: Acceleration of 0 dB [m/s²].
         progress: Called after each batch.
@@ -158,7 +159,7 @@ def monte_carlo(
     return MonteCarlo(total, each, jnp.asarray(bands.centre), result, keys)
 
 
-def _with(bearing: Any, found: Drawn) -> Any:
+def _with(bearing: Any, found: SampledErrors) -> Any:
     """Return a single row with deviations of its elements added to its own."""
     name = f"{bearing.noun}_deviation"
     for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
@@ -226,7 +227,7 @@ class Records:
 
     def batches(self, keys, batch, progress=None, factors=None):
         """Yield the number of bearings, accelerations and result codes by batch."""
-        # All sources always: one program.
+        # Factors of all sources, so that one program serves all calls.
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
         for part, at in self.parts(len(keys), batch):
@@ -243,7 +244,7 @@ def _records(model, tolerances, factors, keys, counts):
 
     def one(key):
         found = vibration(
-            drawn(model, tolerances, key),
+            sampled_model(model, tolerances, key),
             turns=turns,
             settle=settle,
             samples=samples,

@@ -23,7 +23,7 @@ from ..numerics.implicit import stop
 from ..numerics.lapack import eigh
 from ..numerics.programs import program
 from .model import NoiseModel
-from .standing import standing
+from .static_start import static_start
 from .system import NoiseSystem
 
 LOOSE = 1.0
@@ -100,18 +100,18 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
 
     Returns:
         Modes. First derivatives of frequencies are exact, also where some coincide (of
-        their mixture); those of shapes are not there.
+        their mixture); derivatives of shapes are not available.
 
     Fails: as `solve_load`; the frequencies are then those of no balance.
     """
-    # Form errors alone feel the width of contacts: one program with it and without.
+    # Only form errors depend on the contact width: one program with it and without.
     return _natural_modes(dataclasses.replace(model, half_width=None), model.orbits)
 
 
 @program(quick=True)
 def _natural_modes(model, orbits) -> NaturalModes:
     system = model.still_system()
-    motion, result = standing(model, system, orbits)
+    motion, result = static_start(model, system, orbits)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)
     _, vectors = eigh(stop(k))

@@ -93,10 +93,10 @@ def kinematic_frequencies(
 
     Source: rolling without slip; Harris, Rolling Bearing Analysis (2001), chapter 8.
     """
-    turning = _turning("kinematic_frequencies", bearing, speed, contact_angle)
+    speeds = _speeds("kinematic_frequencies", bearing, speed, contact_angle)
     z = bearing.n_elements
-    passages = z * (turning.cage - turning.outer), z * (turning.inner - turning.cage)
-    found = turning.inner, turning.outer, turning.cage, *passages, turning.element
+    passages = z * (speeds.cage - speeds.outer), z * (speeds.inner - speeds.cage)
+    found = speeds.inner, speeds.outer, speeds.cage, *passages, speeds.element
     return KinematicFrequencies(*(jnp.abs(one) / (2.0 * jnp.pi) for one in found))
 
 
@@ -132,20 +132,20 @@ def waviness_force(
         Re exp(i n (θ_j - ω t)) on a ring of the speed ω. Σ exp(i n θ_j) is not zero for
         n = kz; Σ exp(i (n ± 1) θ_j) for n = kz ∓ 1.
     """
-    turning = _turning("waviness_force", bearing, speed, contact_angle)
+    speeds = _speeds("waviness_force", bearing, speed, contact_angle)
     if part not in PARTS:
         raise ValueError(
             f"waviness_force: `part` is {part!r}; it must be {', '.join(PARTS)}."
         )
     count("waviness_force", "order", order)
-    cage, axial, radial = turning.cage, [], []
+    cage, axial, radial = speeds.cage, [], []
     if part == "element":
         if order % 2 == 0:
-            axial = [order * turning.element]
-            radial = [cage + order * turning.element, cage - order * turning.element]
+            axial = [order * speeds.element]
+            radial = [cage + order * speeds.element, cage - order * speeds.element]
     else:
         z = bearing.n_elements
-        ring = turning.inner if part == "inner" else turning.outer
+        ring = speeds.inner if part == "inner" else speeds.outer
         passed = order * (cage - ring)
         if order % z == 0:
             axial = [passed]
@@ -159,7 +159,7 @@ def waviness_force(
     )
 
 
-class _Turning(NamedTuple):
+class _Speeds(NamedTuple):
     """Speeds of the parts [rad/s]."""
 
     inner: Scalar
@@ -168,7 +168,7 @@ class _Turning(NamedTuple):
     element: Scalar
 
 
-def _turning(owner, bearing, speed, contact_angle) -> _Turning:
+def _speeds(owner, bearing, speed, contact_angle) -> _Speeds:
     if isinstance(bearing, BearingSet):
         raise TypeError(
             f"{owner}: `bearing` is a BearingSet; give one of its rows,"
@@ -196,7 +196,7 @@ def _turning(owner, bearing, speed, contact_angle) -> _Turning:
         ratio = roll_ratio(diameter, bearing.pitch_diameter, cosine)
     rings = speed.outer, speed.inner
     turned = rotation(ratio, diameter, bearing.pitch_diameter, *rings)
-    return _Turning(speed.inner, speed.outer, orbit(ratio, *rings), turned)
+    return _Speeds(speed.inner, speed.outer, orbit(ratio, *rings), turned)
 
 
 def _stacked(lines, like):

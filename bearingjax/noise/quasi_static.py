@@ -23,7 +23,7 @@ from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
 from .system import NoiseSystem
 
@@ -38,12 +38,12 @@ class Excitation(eqx.Module):
 
     Attributes:
         time: (sample,) [s].
-        force: Of the contacts on the moving ring, less the reaction to its load
+        force: Force of the contacts on the moving ring, less the reaction to its load
             (sample, 6) [N, N m]. Of a free ring it is zero in its freedoms.
         displacement: Of the moving ring from its position without form errors
             (sample, 6) [m, rad]. Of a held ring it is zero.
-        azimuth: Of every rolling element (sample, element) [rad].
-        shaft_frequency: Of the ring that turns faster [Hz].
+        azimuth: Azimuth of every rolling element (sample, element) [rad].
+        shaft_frequency: Frequency of the ring that turns faster [Hz].
         result: `Result` code of each instant (sample,).
     """
 
@@ -71,7 +71,7 @@ def excitation(
 
     Args:
         model: The bearing.
-        turns: Of the shaft. Static.
+        turns: Turns of the shaft. Static.
         samples: Per turn. Static.
         held: Whether the ring is held at its equilibrium without form errors at time
             zero, or may move under its load. Static.
@@ -113,13 +113,13 @@ def at_instant(
     """Return the bearing at a time, with element positions and raceway deviations.
 
     Args:
-        element: Of the model.
+        element: Element of the model.
         system: Its equations of motion.
         time: [s].
     """
     bearing: Any = element.bearing
-    turned = system.turning[2] * time
-    met = system.met(system.azimuth(time), time)
+    turned = system.speeds[2] * time
+    deviations = system.deviations(system.azimuth(time), time)
 
     def rows(tree):
         return list(bearings_of(tree))
@@ -129,7 +129,11 @@ def at_instant(
         # All elements of a row orbit alike.
         orbit = turned if turned.ndim == 0 else of_rows(turned, bearing)[k][0]
         row = eqx.tree_at(lambda b: b.first_azimuth, row, row.first_azimuth + orbit)
-        now.append(row if met is None else with_raceways(row, of_rows(met, bearing)[k]))
+        now.append(
+            row
+            if deviations is None
+            else with_raceways(row, of_rows(deviations, bearing)[k])
+        )
     if isinstance(bearing, BearingSet):
         bearing = eqx.tree_at(rows, bearing, now)
     else:

@@ -95,11 +95,11 @@ class RandomWaves(eqx.Module):
     def _shares(self):
         return (self.low / jnp.arange(self.low, self.high + 1)) ** self.slope
 
-    def draw(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
+    def sample(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
         """Draw random waves.
 
         Args:
-            key: Of `jax.random`.
+            key: Key of `jax.random`.
             shape: Of the surfaces that are drawn.
         """
         sized, turned = jax.random.split(key)
@@ -117,7 +117,7 @@ class RandomWaves(eqx.Module):
         return eqx.tree_at(lambda w: w.amplitude, self, factor * self.amplitude)
 
 
-class Drawn(NamedTuple):
+class SampledErrors(NamedTuple):
     """Deviations of one bearing from its design.
 
     Attributes:
@@ -210,7 +210,7 @@ class Tolerances(eqx.Module):
             spacing: See the class [rad].
             highest: Last order of the raceways.
             highest_of_elements: Last order of the rolling elements.
-            slope: Of all waves [1].
+            slope: Slope of all waves [1].
 
         Raises:
             TypeError: For another bearing.
@@ -261,7 +261,7 @@ class Tolerances(eqx.Module):
                 program as it is.
 
         Raises:
-            ValueError: For a source that is not there.
+            ValueError: For an unknown source.
         """
         for name in factors:
             if name not in self.sources:
@@ -303,17 +303,17 @@ class Tolerances(eqx.Module):
         check(self, "spacing", spacing <= room, allowed, spacing, "rad")
 
 
-def draw(
+def sample_errors(
     tolerances: Tolerances,
     bearing: AbstractBearing,
     key: Array,
-) -> Drawn:
+) -> SampledErrors:
     """Draw the random errors of one bearing.
 
     Args:
-        tolerances: How bearings scatter.
-        bearing: Of one row.
-        key: Of `jax.random`. Each source draws with a key of its own: what another
+        tolerances: Scatter of the bearings.
+        bearing: Bearing of one row.
+        key: Key of `jax.random`. Each source draws with a key of its own: what another
             source is like does not change it.
 
     Returns:
@@ -331,14 +331,14 @@ def draw(
 
     def waves(name, shape=()):
         found = getattr(tolerances, name)
-        return () if found is None else (found.draw(keys[name], shape),)
+        return () if found is None else (found.sample(keys[name], shape),)
 
     def raceway(ring):
         name, outwards = f"{ring}_eccentricity", waves(f"{ring}_outwards")
         size = getattr(tolerances, name)
         if size is not None:
-            outwards += (RandomWaves(size, 1, 1).draw(keys[name]),)
+            outwards += (RandomWaves(size, 1, 1).sample(keys[name]),)
         return RacewayErrors(waves(f"{ring}_axial"), outwards)
 
     errors = FormErrors(raceway("outer"), raceway("inner"), waves("elements", (count,)))
-    return Drawn(even("diameter"), even("spacing"), errors)
+    return SampledErrors(even("diameter"), even("spacing"), errors)

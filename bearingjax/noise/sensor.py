@@ -18,7 +18,7 @@ class Sensor(eqx.Module):
     Attributes:
         stiffness: [N/m].
         damping: [N s/m].
-        direction: Of the line (x, y, z), of any length (3,) [1].
+        direction: Direction of the line (x, y, z), of any length (3,) [1].
 
     Traced: all fields.
     """

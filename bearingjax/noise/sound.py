@@ -26,7 +26,7 @@ def sound(record: Any, duration: Any) -> np.ndarray:
 
     Args:
         record: Even samples without the end point (time,) [any unit].
-        duration: Of the record [s].
+        duration: Duration of the record [s].
 
     Returns:
         Samples [unit of the record].
@@ -63,7 +63,7 @@ def write_sound(path: str | Path, record: Any, duration: Any) -> float:
     """Write a record as a WAV file: 16 bit, one channel, full amplitude.
 
     Args:
-        path: Of the file.
+        path: Path of the file.
         record, duration: As in `sound`.
 
     Returns:

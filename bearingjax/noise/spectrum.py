@@ -188,7 +188,7 @@ def spectrum(
     Args:
         signal: Samples, evenly spaced, an even number of them: the first at the begin
             of the record, the last one step before its end (time, ...) [any unit].
-        duration: Of the record, the end included: samples times step [s].
+        duration: Duration of the record, the end included: samples times step [s].
         shaft_frequency: Speed of the shaft, above zero [Hz].
         window: `None` or `Rectangular()`: none, for a record that repeats itself; it
             must then cover a whole number of turns of the shaft. `Hann()` for others.

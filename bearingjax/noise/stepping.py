@@ -77,7 +77,7 @@ def stepped(
     Args:
         acceleration: (motion, velocity, given(time)) -> (n,).
         start: Motion and velocity at time zero (n,).
-        step: Of the integration [s].
+        step: Step of the integration [s].
         steps: Per sample. Static.
         samples: Their number. Static.
         kept: Function of the acceleration that is kept at every sample.

@@ -32,13 +32,12 @@ from jaxtyping import Array, Float
 
 from ..design.form_error import FormErrors, Surfaces
 from ..element.frame import RINGS, orbit, roll_ratio
-from ..element.row import Row
+from ..element.row import Row, RowPlacement
 from ..numerics.types import Scalar
 from .cage import GuidedCage, cage_forces, cage_loads
-from .encounter import Encounter, Section
-from .free_balls import ball_forces, is_written_out
-from .free_element import FreeElement, forces
-from .free_row import Sites
+from .dynamic_balls import ball_forces, is_written_out
+from .dynamic_element import DynamicElement, forces
+from .element_positions import ElementPositions, Section
 from .sensor import Sensor
 
 
@@ -52,14 +51,14 @@ class NoiseSystem(eqx.Module):
     element are in the axes of its row, whose z is reversed if it is mirrored.
 
     Attributes:
-        row: The rolling elements, each a `FreeElement`; of a set, those of all rows.
-        sites: Positions of the rows of a set; `None`: of a single row.
+        row: The rolling elements, each a `DynamicElement`; of a set, those of all rows.
+        placements: Positions of the rows of a set; `None`: of a single row.
         errors: Form errors of each row, tabulated; `None`: none.
         surfaces: Contact tracks of each row.
-        turning: Speeds of outer ring, inner ring, orbit and of the elements about
+        speeds: Speeds of outer ring, inner ring, orbit and of the elements about
             their own axes, against the orbit [rad/s]; of a set the latter two of every
             element.
-        mass: Of the ring's freedoms (k,) [kg, kg m²].
+        mass: Mass of the ring's freedoms (k,) [kg, kg m²].
         load: On them (k,) [N, N m].
         growth: Time in which form errors grow from zero, so that their onset excites
             no vibration; `None`: they are present from the start [s].
@@ -71,10 +70,10 @@ class NoiseSystem(eqx.Module):
     """
 
     row: Row
-    sites: Sites | None
+    placements: RowPlacement | None
     errors: tuple[FormErrors, ...] | None
     surfaces: tuple[Surfaces, ...]
-    turning: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
+    speeds: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
     mass: Float[Array, " k"]
     load: Float[Array, " k"]
     sensor: Sensor | None
@@ -96,7 +95,9 @@ class NoiseSystem(eqx.Module):
 
     def _of_each(self, name):
         """Return a property of the rolling elements, with leading axis element."""
-        return self.row.each(lambda free, _: getattr(free, name), self.row.azimuth)
+        return self.row.each(
+            lambda element, _: getattr(element, name), self.row.azimuth
+        )
 
     def parted(
         self, motion: Float[Array, " n"]
@@ -124,12 +125,12 @@ class NoiseSystem(eqx.Module):
             motion: Coordinates (n,) [m, rad], which count where there is a cage;
                 `None`: on the even orbit.
         """
-        even = self.row.azimuth + self.turning[2] * time
+        even = self.row.azimuth + self.speeds[2] * time
         if self.cage is None or motion is None:
             return even
         return even + self.caged(motion)[0] / self.row.pitch_radius
 
-    def met(
+    def deviations(
         self, azimuth: Float[Array, " element"], time: Scalar
     ) -> Float[Array, "element 2 3"] | None:
         """Return `Deviation.raceway` at every rolling element [m].
@@ -140,7 +141,7 @@ class NoiseSystem(eqx.Module):
         """
         if self.errors is None:
             return None
-        outer, inner, _, spin = self.turning
+        outer, inner, _, spin = self.speeds
         rolled = jnp.full_like(azimuth, 1.0) * spin * time
         turns = outer * time, inner * time
         cut = np.cumsum(self.counts)[:-1]
@@ -151,20 +152,28 @@ class NoiseSystem(eqx.Module):
             jnp.split(rolled, cut),
             strict=True,
         )
-        of_rows = [one.met(s, at, *turns, roll) for one, s, at, roll in parts]
-        met = of_rows[0] if len(of_rows) == 1 else jnp.concatenate(of_rows)
-        return met if self.growth is None else _grown(time / self.growth) * met
+        of_rows = [one.deviations(s, at, *turns, roll) for one, s, at, roll in parts]
+        deviations = of_rows[0] if len(of_rows) == 1 else jnp.concatenate(of_rows)
+        return (
+            deviations
+            if self.growth is None
+            else _grown(time / self.growth) * deviations
+        )
 
-    def encounter(self, azimuth: Float[Array, " element"], time: Scalar) -> Encounter:
-        """Return the `Encounter` of the elements; arguments as in `met`."""
-        found = Encounter.at(azimuth)
-        met = self.met(azimuth, time)
-        if met is None or self.errors is None:
+    def positions(
+        self, azimuth: Float[Array, " element"], time: Scalar
+    ) -> ElementPositions:
+        """Return positions with deviations; arguments as in `deviations`."""
+        found = ElementPositions.at(azimuth)
+        deviations = self.deviations(azimuth, time)
+        if deviations is None or self.errors is None:
             return found
-        return found.meeting(met, any(one.raise_surfaces for one in self.errors))
+        return found.with_deviations(
+            deviations, any(one.raise_surfaces for one in self.errors)
+        )
 
-    def course(self, time: Scalar) -> tuple[Encounter, Encounter] | None:
-        """Return encounters at a time and their rates, if they depend on time alone.
+    def course(self, time: Scalar) -> tuple[ElementPositions, ElementPositions] | None:
+        """Return `positions` at a time and their rates, if they depend on time alone.
 
         Args:
             time: [s].
@@ -176,7 +185,7 @@ class NoiseSystem(eqx.Module):
             return None
 
         def at(time):
-            return self.encounter(self.azimuth(time), time)
+            return self.positions(self.azimuth(time), time)
 
         return jax.jvp(at, (time,), (jnp.ones_like(time),))
 
@@ -184,102 +193,106 @@ class NoiseSystem(eqx.Module):
         """Return `course` of a motion with a cage."""
 
         def at(motion, time):
-            return self.encounter(self.azimuth(time, motion), time)
+            return self.positions(self.azimuth(time, motion), time)
 
         return jax.jvp(at, (motion, time), (velocity, jnp.ones_like(time)))
 
-    def _motions(self, motion, encounter):
+    def _motions(self, motion, positions):
         """Return motions of both rings at the elements, and places of the elements."""
         ring, places = self.parted(motion)
         moved = (None, ring) if self.moving else (ring, None)
-        outer, inner = (encounter.motion(q, k, self.sites) for k, q in enumerate(moved))
+        outer, inner = (
+            positions.motion(q, k, self.placements) for k, q in enumerate(moved)
+        )
         return outer, inner, places
 
-    def _each(self, function, motion, encounter):
-        """Map function(free, rings, place) over the elements at their encounters."""
-        outer, inner, places = self._motions(motion, encounter)
+    def _each(self, function, motion, positions):
+        """Map function(element, rings, place) over the elements at these positions."""
+        outer, inner, places = self._motions(motion, positions)
         rings = outer.stacked, inner.stacked
-        raised = encounter.raised
-        heights = () if raised is None else (raised.T,)
+        heights = positions.heights
+        given = () if heights is None else (heights.T,)
 
-        def one(free, outer, inner, place, *heights):
+        def one(element, outer, inner, place, *heights):
             if heights:
-                free = free.raised(heights[0])
-            return function(free, free.seen(outer, inner), place)
+                element = element.with_heights(heights[0])
+            return function(element, element.in_element_axes(outer, inner), place)
 
-        return self.row.each(one, *rings, places, *heights)
+        return self.row.each(one, *rings, places, *given)
 
-    def _contacts(self, motion, encounter):
+    def _contacts(self, motion, positions):
         """Return derivatives of the energy by both ring sections, and by places."""
         if is_written_out(self.row.element):
-            given = self._motions(motion, encounter)
-            return ball_forces(self.row.element, *given, encounter.raised)
+            given = self._motions(motion, positions)
+            return ball_forces(self.row.element, *given, positions.heights)
 
-        def one(free, rings, place):
-            on_rings, on_place = forces(free, rings, place)
-            return [free.in_section(force) for force in on_rings], on_place
+        def one(element, rings, place):
+            on_rings, on_place = forces(element, rings, place)
+            return [element.in_section(force) for force in on_rings], on_place
 
-        on_rings, on_places = self._each(one, motion, encounter)
+        on_rings, on_places = self._each(one, motion, positions)
         return [Section(*force.T) for force in on_rings], on_places
 
     def on_raceways(
-        self, motion: Float[Array, " n"], encounter: Encounter
+        self, motion: Float[Array, " n"], positions: ElementPositions
     ) -> tuple[Section, Section]:
         """Return reversed forces of the rolling elements on both raceways [N, N m].
 
         Args:
-            motion, encounter: As in `resistance`.
+            motion, positions: As in `resistance`.
         """
-        (outer, inner), _ = self._contacts(motion, encounter)
+        (outer, inner), _ = self._contacts(motion, positions)
         return outer, inner
 
     def contact_forces(
         self,
         motion: Float[Array, " n"],
         time: Scalar,
-        met: Float[Array, "element 2 3"] | None = None,
+        deviations: Float[Array, "element 2 3"] | None = None,
     ) -> Float[Array, " n"]:
         """Return ∂E/∂(q, p) at a time [N, N m].
 
         Args:
             motion: Coordinates (n,) [m, rad].
             time: [s].
-            met: How the rolling elements find the raceways [m]; `None`: as `met`.
+            deviations: Deviations at the elements [m]; `None`: those of `errors`.
         """
         azimuth = self.azimuth(time, motion)
-        if met is not None:
-            return self.resistance(motion, Encounter.at(azimuth).meeting(met))
-        return self.resistance(motion, self.encounter(azimuth, time))
+        if deviations is not None:
+            return self.resistance(
+                motion, ElementPositions.at(azimuth).with_deviations(deviations)
+            )
+        return self.resistance(motion, self.positions(azimuth, time))
 
     def resistance(
-        self, motion: Float[Array, " n"], encounter: Encounter
+        self, motion: Float[Array, " n"], positions: ElementPositions
     ) -> Float[Array, " n"]:
-        """Return ∂E/∂(q, p) at given encounters [N, N m].
+        """Return ∂E/∂(q, p) at given positions [N, N m].
 
         Args:
             motion: Coordinates (n,) [m, rad].
-            encounter: Of the rolling elements.
+            positions: Those of the rolling elements.
         """
-        return self._assembled(motion, encounter, self._pressed(motion, encounter))
+        return self._assembled(motion, positions, self._pressed(motion, positions))
 
-    def _pressed(self, motion, encounter) -> "_Pressed":
+    def _pressed(self, motion, positions) -> "_Pressed":
         """Return forces in the axes of the elements, and along normals of the cage."""
-        on_rings, on_places = self._contacts(motion, encounter)
+        on_rings, on_places = self._contacts(motion, positions)
         on_ring = on_rings[self.moving]
         pockets = land = None
         if self.cage is not None:
             given = self._cage_places(motion)
-            pockets, land = cage_loads(self.cage, *given, encounter.azimuth)
+            pockets, land = cage_loads(self.cage, *given, positions.azimuth)
         return _Pressed(on_ring, on_places - self._of_each("force"), pockets, land)
 
-    def _assembled(self, motion, encounter, pressed: "_Pressed") -> Float[Array, " n"]:
+    def _assembled(self, motion, positions, pressed: "_Pressed") -> Float[Array, " n"]:
         """Assemble these forces on all coordinates."""
-        on_ring = encounter.push(pressed.on_ring, self.mass.shape[0], self.sites)
+        on_ring = positions.push(pressed.on_ring, self.mass.shape[0], self.placements)
         parts = [on_ring, pressed.on_places.T.ravel()]
         cage, pockets, land = self.cage, pressed.pockets, pressed.land
         if cage is None or pockets is None or land is None:
             return jnp.concatenate(parts)
-        places = *self._cage_places(motion), encounter.azimuth
+        places = *self._cage_places(motion), positions.azimuth
         found = cage_forces(pockets, land, *places)
         if RINGS.index(cage.guiding_ring) == self.moving:
             parts[0] = on_ring.at[:2].add(found.ring)
@@ -288,7 +301,7 @@ class NoiseSystem(eqx.Module):
     def _cage_places(self, motion):
         """Places of the cage [m, rad], of the elements along the pitch circle [m]
         and of the guiding ring [m]; and the pitch radius [m]."""
-        assert self.cage is not None  # asked by those who know
+        assert self.cage is not None  # callers check it
         arcs, place = self.caged(motion)
         guided = RINGS.index(self.cage.guiding_ring) == self.moving
         guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
@@ -298,15 +311,15 @@ class NoiseSystem(eqx.Module):
         self, motion: Float[Array, " n"], time: Scalar
     ) -> Float[Array, "element contact"]:
         """Return the load of every contact [N]; arguments as in `contact_forces`."""
-        encounter = self.encounter(self.azimuth(time, motion), time)
-        return self._each(FreeElement.loads, motion, encounter)
+        positions = self.positions(self.azimuth(time, motion), time)
+        return self._each(DynamicElement.loads, motion, positions)
 
     def traction(
         self,
         cage: GuidedCage,
         motion: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        encounter: Encounter,
+        positions: ElementPositions,
     ) -> Float[Array, " element"]:
         """Return the traction of both raceways on every ball on its orbit [N].
 
@@ -316,20 +329,20 @@ class NoiseSystem(eqx.Module):
         without delay.
 
         Args:
-            cage: Of the bearing.
+            cage: Cage of the bearing.
             motion, velocity: [m, rad], [m/s, rad/s].
-            encounter: Of the rolling elements.
+            positions: Those of the rolling elements.
         """
-        outer, inner, even, _ = self.turning
+        outer, inner, even, _ = self.speeds
         radius = self.row.pitch_radius
 
-        def one(free, rings, place):
-            load, cosine = free.carried(rings, place)
-            diameter = free.element.diameter
+        def one(element, rings, place):
+            load, cosine = element.carried(rings, place)
+            diameter = element.element.diameter
             own = roll_ratio(diameter, 2.0 * radius, cosine)
             return load, radius * (orbit(own, outer, inner) - even)
 
-        load, ahead = self._each(one, motion, encounter)
+        load, ahead = self._each(one, motion, positions)
         slip = ahead - self.caged(velocity)[0]
         return cage.friction * load * jnp.tanh(slip / cage.sliding_speed)
 
@@ -339,7 +352,7 @@ class NoiseSystem(eqx.Module):
         velocity: Float[Array, " n"],
         time: Scalar,
         start: Float[Array, " n"],
-        course: tuple[Encounter, Encounter] | None = None,
+        course: tuple[ElementPositions, ElementPositions] | None = None,
     ) -> Float[Array, " n"]:
         """Return the forces on all coordinates [N, N m].
 
@@ -351,16 +364,16 @@ class NoiseSystem(eqx.Module):
         """
         if course is None:
             course = self._passing(motion, velocity, time)
-        encounter, change = course
-        given = (motion, encounter), (velocity, change)
+        positions, change = course
+        given = (motion, positions), (velocity, change)
         pressed, rate = jax.jvp(self._pressed, *given)
         damped = jax.tree.map(lambda f, r: f + self.retardation * r, pressed, rate)
-        force = -self._assembled(motion, encounter, damped)
+        force = -self._assembled(motion, positions, damped)
         force = force.at[: self.mass.shape[0]].add(self.load)
         if self.cage is not None:
             count = self.row.azimuth.shape[0]
             force = force.at[-3 - count : -3].add(
-                self.traction(self.cage, motion, velocity, encounter)
+                self.traction(self.cage, motion, velocity, positions)
             )
             force = force.at[-3:-1].add(self.cage.load)
         if self.sensor is None:

@@ -24,7 +24,7 @@ from ..statics.options import DEFAULT_TOLERANCE
 from .cage import fastest_of_cage
 from .model import NoiseModel
 from .natural import natural_modes
-from .standing import standing, why
+from .static_start import static_start, why
 from .stepping import HELD, stepped
 
 _STABLE = 2.5
@@ -60,13 +60,13 @@ class Vibration(eqx.Module):
             freedoms (time, k) [m, rad].
         acceleration: Likewise, of frequencies up to `bandwidth` (time, k)
             [m/s², rad/s²].
-        contact_load: Of every contact (time, element, contact) [N].
-        azimuth: Of every rolling element (time, element) [rad].
-        shaft_frequency: Of the ring that turns faster [Hz].
+        contact_load: Load of every contact (time, element, contact) [N].
+        azimuth: Azimuth of every rolling element (time, element) [rad].
+        shaft_frequency: Frequency of the ring that turns faster [Hz].
         result: `Result` code: `NON_FINITE` where it ran away, `STEP_LIMIT` where its
             steps are too long for the contacts under their largest load.
         cage: Motion of the cage, or `None`.
-        steps: Of the integration, per sample.
+        steps: Steps of the integration, per sample.
 
     Static: turns, steps.
     """
@@ -233,7 +233,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
 def _of_cage(model) -> Scalar:
     """Return a bound of the frequency of cage and balls on the pitch circle [rad/s]."""
     system = model.still_system()
-    start, _ = standing(model, system)
+    start, _ = static_start(model, system)
     loads = system.contact_loads(start, jnp.zeros_like(model.mass))
     cage, (ring, ball) = model.cage, system.masses[jnp.array([0, system.mass.size])]
     size, radius = loads.shape[0], system.row.pitch_radius
@@ -247,7 +247,7 @@ def _of_cage(model) -> Scalar:
 @program(quick=True, level=1)
 def _vibration(model, turns, settle, samples, steps) -> Vibration:
     system = model.system()
-    start, result = standing(model, system)
+    start, result = static_start(model, system)
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     h = 1.0 / (frequency * samples * steps)
     if settle:

@@ -10,19 +10,19 @@ import numpy as np
 
 from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
-from ..element.ball_inertia import carried, turning
+from ..element.ball_inertia import ball_inertia, carried
 from ..element.ball_speed import CentrifugalOnly, OuterControl
 from ..element.choices import BallChoices
 from ..numerics.result import Result
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_states import contact_states
 from .contact_width import contact_half_width
-from .free_row import of_rows
+from .dynamic_row import of_rows
 from .model import NoiseModel
 from .natural import natural_modes, orbited, ring_modes
 from .orders import kinematic_frequencies
 from .scatter import Tolerances
-from .shares import Shares
+from .source_contributions import SourceContributions
 from .spectrum import Spectrum
 from .vibration import Vibration, bandwidth, needed_steps, rounding
 
@@ -52,17 +52,17 @@ def model_warnings(
     Args:
         model: The bearing; concrete.
         samples: Per turn of the shaft.
-        steps: Of the integration, per sample; `None`: as many as are needed.
-        tolerances: How random bearings scatter, if they are wanted.
+        steps: Steps of the integration, per sample; `None`: as many as are needed.
+        tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
         A sentence each; empty if there are none.
     """
-    told = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
+    band_limit = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
     return [
         *_few_steps(model, samples, steps),
         *_wandering_modes(model),
-        *_above(model, told, tolerances),
+        *_above(model, band_limit, tolerances),
     ]
 
 
@@ -79,8 +79,8 @@ def record_warnings(
         model: The bearing; concrete.
         record: From `vibration`, converged.
         found: Spectrum of its acceleration, amplitudes (line, direction) [m/s²].
-        bands: Of the levels.
-        tolerances: How random bearings scatter, if they are wanted.
+        bands: Bands of the levels.
+        tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
         A sentence each; empty if there are none.
@@ -96,18 +96,18 @@ def record_warnings(
     ]
 
 
-def share_warnings(found: Shares) -> list[str]:
+def contribution_warnings(found: SourceContributions) -> list[str]:
     """Return warnings about shares of sources.
 
     Args:
-        found: From `shares`.
+        found: From `source_contributions`.
 
     Returns:
         A sentence, or none.
     """
     together = float(found.together)
     error = float(np.linalg.norm(found.error) / found.mean_square)
-    # Of a single bearing there is no error.
+    # A single bearing has no standard error.
     if together <= 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0):
         return []
     return [
@@ -139,26 +139,26 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
         if int(modes.result) == Result.CONVERGED:
             for name, frequency in ring_modes(modes, model):
                 every.setdefault(name, []).append(frequency)
-    told = [
+    changes = [
         f"{name} between {min(known):.5g} and {max(known):.5g} Hz"
         for name, known in every.items()
         if max(known) > (1.0 + _WANDERING) * min(known)
     ]
-    if told:
+    if changes:
         yield (
-            "natural modes are told of where the rolling elements stand at time zero;"
-            f" as these orbit, they change: {'; '.join(told)}"
+            "natural modes are those of the element positions at time zero;"
+            f" as these orbit, they change: {'; '.join(changes)}"
         )
 
 
-def _above(model, told, tolerances) -> Iterator[str]:
+def _above(model, band_limit, tolerances) -> Iterator[str]:
     """Warn of modes and waves above the bandwidth of the samples."""
     cut = (
-        f"above {told:.5g} Hz, up to which the samples tell the vibration; raise"
+        f"above {band_limit:.5g} Hz, up to which the samples tell the vibration; raise"
         " `vibration.samples` to hear what they make there"
     )
     for name, frequency in ring_modes(jax.device_get(natural_modes(model)), model):
-        if frequency > told:
+        if frequency > band_limit:
             yield f"the {name} at {frequency:.5g} Hz lies {cut}"
     drawn = _highest_drawn(tolerances)
     for where, bearing, errors in _rows(model):
@@ -170,11 +170,11 @@ def _above(model, told, tolerances) -> Iterator[str]:
         }
         for part, given in _parts(errors).items():
             highest = max(_highest(given), drawn[part])
-            met = highest * passing[part]
-            if met > told:
+            rate = highest * passing[part]
+            if rate > band_limit:
                 yield (
                     f"waves of order {highest} of the {part}{where} are met at"
-                    f" {met:.5g} Hz, {cut}"
+                    f" {rate:.5g} Hz, {cut}"
                 )
 
 
@@ -281,7 +281,7 @@ def _gyroscopic(model, load) -> Iterator[str]:
         sine = abs(float(model.load[2])) / (each * own.shape[1])
         cosine = min(float(bearing.free_cosine), math.sqrt(max(0.0, 1.0 - sine**2)))
         normal = jnp.array([math.sqrt(1.0 - cosine**2), cosine])
-        ball = turning(bearing, bearing.ball_diameter, model.speed, OuterControl())
+        ball = ball_inertia(bearing, bearing.ball_diameter, model.speed, OuterControl())
         found = carried(ball, jnp.stack([normal] * 2), jnp.full(2, each))
         share = float(jnp.max(jnp.abs(found.traction))) / each
         if share > _GYROSCOPIC:

@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .lanes import Either
+from .batched_loop import Either
 from .linear import norm
 from .minimise import AbstractMinimiser, first_state
 
@@ -48,7 +48,7 @@ class BFGS(AbstractMinimiser):
         )
         s = jnp.where(first, 0.0, fraction * direction)
         there = problem.at(state.x + s, False, now.memory)
-        # Nothing is asked of a Hessian.
+        # No Hessian is evaluated.
         there = there._replace(hessian=now.hessian)
         new = problem.pulled(state.x + s, there)
         accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (

@@ -30,13 +30,13 @@ class Expansion(NamedTuple):
         gradient: (..., k).
         hessian: (..., k, k): derivatives of the gradient. It need not be symmetric:
             of forces that have no potential the rule is the same.
-        beside: Further results of the pass; they have no derivatives here.
+        aux: Further results of the pass; they have no derivatives here.
     """
 
     value: Any
     gradient: Any
     hessian: Any
-    beside: Any = ()
+    aux: Any = ()
 
 
 Function = Callable[[Any, Any, int], Expansion]
@@ -69,7 +69,7 @@ def expanded_all(
     """Value, gradient and Hessian as in `expanded`, each with its derivatives."""
     orders, given = _orders(function, u, args, known)
     value, gradient, hessian = (order(*given) for order in orders)
-    return Expansion(value, gradient, hessian, given[-1].beside)
+    return Expansion(value, gradient, hessian, given[-1].aux)
 
 
 def _orders(function, u, args, known):
@@ -174,7 +174,8 @@ def composed(outer: Expansion, inner: Expansion) -> Expansion:
 
     Args:
         outer: Functions of (..., k).
-        inner: Those k as functions of (..., m), with one more axis in all arrays.
+        inner: The k arguments as functions of (..., m), with one more axis in all
+            arrays.
     """
 
     # Sums over an axis: what they are of, XLA does not work out anew for each use.
@@ -192,28 +193,28 @@ def composed(outer: Expansion, inner: Expansion) -> Expansion:
         outer.value,
         jax.tree.map(first, outer.gradient, rates),
         jax.tree.map(second, outer.gradient, outer.hessian, rates, inner.hessian),
-        outer.beside,
+        outer.aux,
     )
 
 
-def by_autodiff(function: Callable[..., Any], u: Any, *beside: Any) -> Expansion:
+def by_autodiff(function: Callable[..., Any], u: Any, *constants: Any) -> Expansion:
     """Expansion of functions side by side, by automatic differentiation.
 
     For functions without integrals or powers that make their derivatives long.
 
     Args:
-        function: Smooth function of (k,) and of the arguments `beside` -> scalar.
+        function: Smooth function of (k,) and of the arguments `constants` -> scalar.
         u: Arguments of each (..., k).
-        *beside: Pytrees of more arguments, such as constants of each contact, with the
-            leading axes of u; no derivatives by them are returned.
+        *constants: Pytrees of more arguments, such as constants of each contact, with
+            the leading axes of u; no derivatives by them are returned.
 
     Returns:
         Value (...), gradient (..., k) and Hessian (..., k, k).
     """
 
-    def one(u, *beside):
+    def one(u, *constants):
         def slopes(u):
-            value, gradient = jax.value_and_grad(function)(u, *beside)
+            value, gradient = jax.value_and_grad(function)(u, *constants)
             return gradient, (value, gradient)
 
         hessian, (value, gradient) = jax.jacfwd(slopes, has_aux=True)(u)
@@ -224,5 +225,5 @@ def by_autodiff(function: Callable[..., Any], u: Any, *beside: Any) -> Expansion
     def listed(a):
         return a.reshape(-1, *a.shape[len(axes) :])
 
-    flat = jax.vmap(one)(listed(u), *jax.tree.map(listed, beside))
+    flat = jax.vmap(one)(listed(u), *jax.tree.map(listed, constants))
     return jax.tree.map(lambda a: a.reshape(*axes, *a.shape[1:]), flat)

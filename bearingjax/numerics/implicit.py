@@ -25,7 +25,7 @@ def attach(residual, solution, args, symmetric: bool = True):
         residual: Function (y, args) -> array like `y`, with a positive
             (semi)definite Jacobian in y.
         solution: Solved y (n,); its own derivative is ignored.
-        args: Any pytree; what is no array is static.
+        args: Any pytree; leaves that are not arrays are static.
         symmetric: Whether the Jacobian is symmetric: `residual` is the gradient of
             an energy. Static.
 
@@ -128,7 +128,7 @@ def unless_failed(function, args, solved):
     # No change gets through if not solved, in neither direction.
     gated = jax.tree.map(lambda x: jnp.where(solved, x, lax.stop_gradient(x)), traced)
     found, rest, whole = _parted(function(*joined(gated, others)))
-    # One by one: what nobody differentiates is not differentiated either.
+    # One by one: components without a tangent are not differentiated.
     marked = jax.tree.map(lambda effect: _marked(effect, traced, solved), found)
     return whole(marked, rest)
 
@@ -189,7 +189,7 @@ def _spoiled(causes, effects, solved):
 
 
 def _parts(arrays):
-    """Real and imaginary parts of those that are complex."""
+    """Real and imaginary parts of complex arrays; real arrays as they are."""
     return [(x.real, x.imag) if jnp.iscomplexobj(x) else x for x in arrays]
 
 
@@ -202,7 +202,7 @@ def recall(function, values, args):
     Args:
         function: Function of args -> pytree of floating arrays.
         values: Its result; their own derivative is ignored.
-        args: Tuple of pytrees; what is no array is static.
+        args: Tuple of pytrees; leaves that are not arrays are static.
 
     Returns:
         `values`, differentiable with respect to `args`.

@@ -34,7 +34,7 @@ class Integrated(NamedTuple):
 
     Attributes:
         state: Pytree of states.
-        steps: Steps in time, with those that were rejected.
+        steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
     """
@@ -64,7 +64,7 @@ def integrated(
         rates: (time, state, args) -> derivative of the state.
         args: Arguments of `rates`; derivatives are with respect to their numbers.
         start: State at time zero, in units to which the tolerance relates.
-        times: When the state is wanted, rising [any unit of time].
+        times: Times of the output, rising [any unit of time].
         duration: The last time [the same].
         options: Settings.
         solver: Solver of Diffrax.

@@ -2,9 +2,9 @@
 
 Equilibria are minimisations that must lower an energy, not bare root finds. A
 minimiser is four pure functions of a `Problem`: `init`, then `step` until `terminate`,
-then `finish`. So the same four run alone (`minimise`), many at a time (`lanes.run`), or
-under a load that comes down to its size (`continuation`). Each step takes one
-evaluation of the function.
+then `finish`. So the same four run alone (`minimise`), many at a time
+(`batched_loop.run`), or under a load that comes down to its size (`continuation`). Each
+step takes one evaluation of the function.
 """
 
 import abc
@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from .lanes import Either, Loop
+from .batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 
@@ -90,7 +90,7 @@ class Problem(NamedTuple):
         return self.function(x, with_hessian, *remembered)
 
     def pulled(self, x: Array, now: Evaluation) -> Evaluation:
-        """The evaluation of value - force·x, from that of the function at x."""
+        """The evaluation of value - force·x, from the one of the function at x."""
         if self.force is None:
             return now
         size = norm(self.force)
@@ -141,7 +141,7 @@ class Minimum(NamedTuple):
     memory: Any = ()
 
 
-def blank(problem: Problem) -> Minimum:
+def trivial_result(problem: Problem) -> Minimum:
     """Return a `Minimum` of the right shapes, for an unsolved problem."""
     zero, none = jnp.zeros((), problem.start.dtype), jnp.zeros((), jnp.int32)
     return Minimum(problem.start, zero, zero, none, none, problem.memory)
@@ -186,7 +186,7 @@ class AbstractMinimiser(eqx.Module):
             lambda given, state: self.step(problem_of(given), state),
             lambda given, state: self.terminate(problem_of(given), state),
             lambda given, state: self.finish(problem_of(given), state),
-            lambda given: blank(problem_of(given)),
+            lambda given: trivial_result(problem_of(given)),
         )
 
     @abc.abstractmethod
@@ -202,10 +202,10 @@ class AbstractMinimiser(eqx.Module):
 
     def terminate(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether to stop: at the goal, stalled, out of steps or beyond the limit."""
-        ended = self.settled(problem, state) | self.spent(problem, state)
+        ended = self.converged(problem, state) | self.spent(problem, state)
         return ended & (state.steps >= 0)
 
-    def settled(self, problem: Problem, state: State) -> Bool[Array, ""]:
+    def converged(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether further steps cannot improve the result."""
         now = problem.pulled(state.x, state.now)
         goal = self.goal(problem) * now.scale + now.noise
@@ -258,7 +258,7 @@ class AbstractMinimiser(eqx.Module):
 
 
 def first_state(problem: Problem, hessian: Array, own: Any) -> State:
-    """State of which nothing is evaluated yet.
+    """State before the first evaluation.
 
     Args:
         problem: Problem to be minimised.
@@ -360,11 +360,11 @@ class TrustRegionNewton(AbstractMinimiser):
                 jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
             )
         # Steps of round-off that no longer help.
-        settled = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
+        still = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
         stayed = state._replace(
             radius=jnp.where(first, state.radius, radius),
             steps=state.steps + 1,
-            stalled=settled & ~first & ~searching,
+            stalled=still & ~first & ~searching,
             own=reach,
         )
         return Either(accept, stayed._replace(x=x, now=there), stayed)
@@ -407,7 +407,7 @@ def continuation(
 
     def step(given, carry):
         (state, factor), problem = carry, problem_of(given)
-        near = (factor > 1.0) & minimiser.settled(larger(problem, factor), state)
+        near = (factor > 1.0) & minimiser.converged(larger(problem, factor), state)
         near = near & (state.steps >= 0)
         factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
         state = state._replace(
@@ -418,12 +418,16 @@ def continuation(
 
     def terminate(given, carry):
         (state, factor), problem = carry, problem_of(given)
-        settled = (factor <= 1.0) & minimiser.settled(larger(problem, factor), state)
-        return (settled | minimiser.spent(problem, state)) & (state.steps >= 0)
+        converged = (factor <= 1.0) & minimiser.converged(
+            larger(problem, factor), state
+        )
+        return (converged | minimiser.spent(problem, state)) & (state.steps >= 0)
 
     def finish(given, carry):
         (state, factor), problem = carry, problem_of(given)
         goal = minimiser.goal(problem)
         return minimiser.finish(larger(problem, factor)._replace(tolerance=goal), state)
 
-    return Loop(init, step, terminate, finish, lambda given: blank(problem_of(given)))
+    return Loop(
+        init, step, terminate, finish, lambda given: trivial_result(problem_of(given))
+    )

@@ -131,7 +131,7 @@ def smooth_power(
     Args:
         x: Base, of any unit.
         exponent: At most 2. Static.
-        scale: Where the parabola ends, unit of `x`.
+        scale: End of the parabola, unit of `x`.
     """
     square = (x / scale) ** 2
     return scale**exponent * square * (1.0 + square) ** (0.5 * exponent - 1.0)

@@ -6,7 +6,7 @@ package is kept in a file. A later process that calls it with inputs of the same
 structure loads it and neither traces, lowers nor compiles.
 
 A kept executable is unpickled, and may then run any code. So it is read only from
-a folder and a file that belong to the user and that nobody else can write.
+a folder and a file that belong to the user and that no other user can write.
 """
 
 import contextlib
@@ -92,7 +92,7 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
     are; what your own `jax.jit` compiles, JAX's cache of compiled programs may keep.
 
     Args:
-        folder: Where they are kept; `None`: `bearingjax/programs` in the user's cache
+        folder: Their folder; `None`: `bearingjax/programs` in the user's cache
             (`XDG_CACHE_HOME`, or `~/.cache`). It is made if there is none; if others
             can write there, nothing is read or kept. 512 MB at most, those that were
             not used for longest go first.
@@ -347,8 +347,8 @@ def _processor() -> str:
             first = [line for line in iter(lines.readline, "\n") if line]
     except OSError:
         return repr(platform.uname())
-    told = [line for line in first if line.split("\t")[0].split(":")[0] in names]
-    return platform.machine() + "".join(told)
+    described = [line for line in first if line.split("\t")[0].split(":")[0] in names]
+    return platform.machine() + "".join(described)
 
 
 @contextlib.contextmanager
@@ -369,7 +369,7 @@ def _opened(folder: Path) -> Iterator[int | None]:
 
 
 def is_private(status: os.stat_result) -> bool:
-    """Whether it is a file or folder of the user that nobody else can write.
+    """Whether a file or folder is the user's own and no other user can write it.
 
     Args:
         status: Status of the file or folder; of a link, which is none, from `os.lstat`.
@@ -399,7 +399,7 @@ def _loaded(place: int | None, name: str):
             run = deserialize_and_load(
                 program.executable, inputs, outputs, execution_devices=devices
             )
-    except Exception:  # of whatever a strange file leads to
+    except Exception:  # a damaged file may raise anything
         return None
     return lambda arrays: _filled(program.outputs, run(*arrays))
 

@@ -236,7 +236,7 @@ def _loaded_arc(offset, start, end, a, b):
         # A straight line is highest at an end.
         top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
         top = jnp.clip(top, low, high)
-    # Apart, or a compiler works out all of this anew for each edge.
+    # Apart, or a compiler repeats all of this for each edge.
     value, first, second = lax.optimization_barrier(expanded(top))
     # Of the parabola at the top; of a straight line the end.
     highest = value - 0.5 * first * first / jnp.where(second < 0, second, -jnp.inf)

@@ -27,7 +27,7 @@ def structure(tree: Any) -> str:
 
     Raises:
         UnknownStructure: For classes from outside the package, functions that are not
-            found by their name, and whatever else is not known here.
+            found by their name, and all other objects.
     """
     return _named(tree, False)
 

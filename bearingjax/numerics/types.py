@@ -27,7 +27,7 @@ def as_real(value) -> Any:
     """Converter of every real field: a floating array, never a Python float.
 
     A Python float in a Module would be static under `jit`: a new value would
-    compile anew and have no gradient.
+    recompile and have no gradient.
 
     Args:
         value: Number or array-like [any unit].
@@ -39,7 +39,7 @@ def as_real(value) -> Any:
         unchanged: the check of the field then names them.
     """
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jnp.floating):
-        # jnp.array(0.43) is of weak type, for which `jit` would compile anew.
+        # jnp.array(0.43) is of weak type, for which `jit` would recompile.
         return jnp.asarray(value, dtype=value.dtype) if value.weak_type else value
     if value is None or isinstance(value, str | bytes | bool | complex):
         return value

@@ -70,7 +70,7 @@ def stated_units(kind: type, name: str) -> tuple[str, ...]:
         Those of the last brackets; empty if there are none.
 
     Raises:
-        KeyError: If nothing is said of it.
+        KeyError: If the docstring does not state it.
     """
     entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
     said = False
@@ -84,7 +84,7 @@ def stated_units(kind: type, name: str) -> tuple[str, ...]:
                 if units:
                     return tuple(u.strip() for u in units[-1].split(","))
     if not said:
-        raise KeyError(f"{kind.__name__}: nothing is said of {name}")
+        raise KeyError(f"{kind.__name__}: the docstring does not state {name}")
     return ()
 
 

@@ -62,8 +62,8 @@ class Outcome(NamedTuple):
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
         found = self.solution
-        told = warnings_of(loads_of(found)) if has_loads(found) else []
-        return [*told, *self.doubts()]
+        texts = warnings_of(loads_of(found)) if has_loads(found) else []
+        return [*texts, *self.doubts()]
 
 
 class Bound(NamedTuple):
@@ -80,7 +80,7 @@ class Problem:
 
     Args:
         element, cases, variables, objective, constraints: As in `optimise`, checked.
-        options: How cases are solved.
+        options: Settings of the solves.
         build: As in `optimise`.
     """
 
@@ -147,10 +147,10 @@ class Problem:
 
     def _doubts(self, element, solution) -> Callable[[], list[str]]:
         lives = (m.warnings for m in self.measures if isinstance(m, OfLife))
-        asked = [partial(told, element, solution) for told in lives][:1]
+        asked = [partial(judge, element, solution) for judge in lives][:1]
         if isinstance(element, AbstractSystem):
             asked.append(partial(element.warnings, self.cases, solution))
-        return lambda: [text for told in asked for text in told()]
+        return lambda: [text for judge in asked for text in judge()]
 
     def run(self, unit, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""

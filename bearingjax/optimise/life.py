@@ -143,7 +143,7 @@ class Damage(OfLife):
     def reported_as(self):
         return RatingLife(self.conditions, self.hours)
 
-    def told(self, value):
+    def reported_value(self, value):
         return 1.0 / value
 
     @property

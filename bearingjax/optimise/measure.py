@@ -48,8 +48,8 @@ class AbstractMeasure(eqx.Module):
 
     @property
     def as_objective(self) -> "AbstractMeasure":
-        """Measure that is minimised if this is an objective: itself, or one that falls
-        as it rises."""
+        """Measure to minimise if this is an objective: itself, or one that falls as it
+        rises."""
         return self
 
     @property
@@ -57,13 +57,13 @@ class AbstractMeasure(eqx.Module):
         """Measure that reports show in its place: itself, or a more familiar one."""
         return self
 
-    def told(self, value: Any) -> Any:
+    def reported_value(self, value: Any) -> Any:
         """Convert a value of this measure to that of `reported_as`."""
         return value
 
     @property
     def maximised(self) -> bool:
-        """Whether it is made least so that what reports show becomes largest."""
+        """Whether minimising it maximises `reported_as`."""
         return False
 
     @property

@@ -17,7 +17,7 @@ from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
 from .measure import AbstractMeasure, label_of
-from .search import METHODS, Ending, search, takes_gradients
+from .search import METHODS, SearchOutcome, search, takes_gradients
 from .system import AbstractSystem, Design, check_design
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
@@ -187,17 +187,17 @@ def optimise(
     bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
     with bar:
 
-        def told():
+        def advance():
             bar.set_postfix_str(f"{trials.steps[-1].objective:.6g} of the start")
             bar.update()
 
         n_bounds = len(problem.bounds)
-        ending = search(method, trials, n_bounds, max_steps, tolerance, told)
+        ending = search(method, trials, n_bounds, max_steps, tolerance, advance)
     return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
 
 
 def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
-    best = trials.attempt(ending.unit, slopes or ending.settled)
+    best = trials.attempt(ending.unit, slopes or ending.converged)
     if best.fault:
         # Its gradient may have failed: take the last step.
         best = trials.steps[-1]
@@ -239,7 +239,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
 
 def verdict(
     trials: Trials,
-    ending: Ending,
+    ending: SearchOutcome,
     best: Trial,
     slopes: bool,
     max_steps: int,
@@ -249,7 +249,7 @@ def verdict(
 
     Args:
         trials: Designs that were tried.
-        ending: How the search ended.
+        ending: Outcome of the search.
         best: The best design; with gradients if the search uses them or has settled.
         slopes: Whether the search uses gradients.
         max_steps, tolerance: As in `optimise`.

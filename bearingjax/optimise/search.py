@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .trials import Trial, Trials, optimality, remainder
+from .trials import Trial, Trials, optimality, projected_gradient
 
 METHODS = ("l-bfgs-b", "slsqp", "adam", "nelder-mead")
 """Searches by name; any Optax gradient transformation is another."""
@@ -42,18 +42,18 @@ def takes_gradients(method: Any) -> bool:
     return not (method == "nelder-mead" or callable(method))
 
 
-class Ending(NamedTuple):
+class SearchOutcome(NamedTuple):
     """Outcome of a search.
 
     Attributes:
         unit: Variables in the unit box (variable,).
-        settled: Whether the method reports that it has converged.
+        converged: Whether the method reports that it has converged.
         text: Message of the method.
         limited: Whether the step limit was reached.
     """
 
     unit: np.ndarray
-    settled: bool
+    converged: bool
     text: str
     limited: bool = False
 
@@ -76,8 +76,8 @@ def search(
     n_bounds: int,
     max_steps: int,
     tolerance: float,
-    told: Callable[[], None] = lambda: None,
-) -> Ending:
+    on_step: Callable[[], None] = lambda: None,
+) -> SearchOutcome:
     """Look for the least objective with all margins at least 0.
 
     A method with gradients ends where the first-order conditions hold. If it gives up
@@ -86,12 +86,12 @@ def search(
 
     Args:
         method: One of `METHODS`, an Optax gradient transformation, or a user's own
-            search: (attempt, start, max_steps, tolerance, step) -> `Ending`.
+            search: (attempt, start, max_steps, tolerance, step) -> `SearchOutcome`.
         trials: Evaluates and records; its first step is the start.
         n_bounds: Number of margins.
         max_steps: Step limit.
         tolerance: See `optimise`.
-        told: Called after every step.
+        on_step: Called after every step.
     """
     slopes, run = takes_gradients(method), _method(method, n_bounds, max_steps)
 
@@ -104,13 +104,15 @@ def search(
     def step(unit):
         trial = attempt(unit)
         trials.accept(trial)
-        told()
+        on_step()
         if slopes and not trial.fault and arrived(trial, tolerance):
             raise _Flat
 
     best, patience, begun = trials.steps[0], np.inf, 0
     if slopes and arrived(best, tolerance):
-        return Ending(best.unit, True, "the start fulfils the first-order conditions")
+        return SearchOutcome(
+            best.unit, True, "the start fulfils the first-order conditions"
+        )
     try:
         while True:
             begun += 1
@@ -119,7 +121,7 @@ def search(
             try:
                 ending = run(attempt, best.unit, left, tolerance, step)
             except _Stuck:
-                ending = Ending(best.unit, False, "rejected designs bar the way")
+                ending = SearchOutcome(best.unit, False, "rejected designs bar the way")
             patience = np.inf
             last = attempt(ending.unit)
             ends = trials.steps if last.fault else [*trials.steps, last]
@@ -129,12 +131,12 @@ def search(
                 return ending
             better = _onward(attempt, best, bool(trials.rejected), tolerance)
             if better is None or begun == _RUNS:
-                return ending._replace(settled=False)
+                return ending._replace(converged=False)
             best = better
             step(best.unit)
     except _Flat:
         unit = trials.steps[-1].unit
-        return Ending(unit, True, "the first-order conditions hold")
+        return SearchOutcome(unit, True, "the first-order conditions hold")
 
 
 def arrived(trial: Trial, tolerance: float) -> bool:
@@ -165,7 +167,7 @@ def _onward(attempt, here, rejected, tolerance) -> Trial | None:
     if here.violation > tolerance:
         way = here.margin_slopes[np.argmin(here.margins)]
     else:
-        way = -remainder(here, tolerance)
+        way = -projected_gradient(here, tolerance)
     slope = float(np.linalg.norm(way))
     if slope == 0.0:
         return None
@@ -197,7 +199,7 @@ def _onward(attempt, here, rejected, tolerance) -> Trial | None:
     return None
 
 
-def _method(method, n_bounds, max_steps) -> Callable[..., Ending]:
+def _method(method, n_bounds, max_steps) -> Callable[..., SearchOutcome]:
     """The search as a function of attempt, start, max_steps, tolerance, step."""
     if method in ("l-bfgs-b", "slsqp"):
         return lambda *given: _quasi_newton(method, n_bounds, *given)
@@ -245,7 +247,7 @@ def _quasi_newton(method, n_bounds, attempt, start, max_steps, tolerance, step):
         options=options,
         callback=step if method == "l-bfgs-b" else None,
     )
-    return Ending(
+    return SearchOutcome(
         np.clip(found.x, 0.0, 1.0),
         bool(found.success),
         str(found.message),
@@ -273,8 +275,8 @@ def _simplex(attempt, start, max_steps, tolerance, step):
         options=options,
         callback=step,
     )
-    settled = bool(found.success)
-    return Ending(found.x, settled, str(found.message), not settled)
+    converged = bool(found.success)
+    return SearchOutcome(found.x, converged, str(found.message), not converged)
 
 
 def _descent(transformation, attempt, start, max_steps, tolerance, step):
@@ -302,4 +304,4 @@ def _descent(transformation, attempt, start, max_steps, tolerance, step):
         point, here = target, new
         step(here.unit)
     text = f"step limit reached after {max_steps} steps"
-    return Ending(here.unit, False, text, True)
+    return SearchOutcome(here.unit, False, text, True)

@@ -77,7 +77,7 @@ Design = BearingElement[Any] | Installed | AbstractSystem
 
 
 def check_design(owner: str, design: Any, cases: Any) -> None:
-    """Raise unless it can be optimised over such cases.
+    """Raise unless the design can be optimised over such cases.
 
     Args:
         owner: Function that was called.

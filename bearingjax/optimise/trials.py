@@ -34,7 +34,7 @@ class Trial(NamedTuple):
         return float(max(0.0, -self.margins.min(initial=0.0)))
 
 
-def remainder(trial: Trial, near: float) -> np.ndarray:
+def projected_gradient(trial: Trial, near: float) -> np.ndarray:
     """Part of the gradient that no bound and no active constraint cancels (variable,).
 
     A step against it lowers the objective and, to first order, keeps all bounds. It is
@@ -63,12 +63,12 @@ def remainder(trial: Trial, near: float) -> np.ndarray:
 
 
 def optimality(trial: Trial, near: float) -> float:
-    """Largest component of `remainder` in size; NaN without gradients.
+    """Largest component of `projected_gradient` in size; NaN without gradients.
 
     Args:
-        trial, near: As in `remainder`.
+        trial, near: As in `projected_gradient`.
     """
-    return float(np.abs(remainder(trial, near)).max())
+    return float(np.abs(projected_gradient(trial, near)).max())
 
 
 class Trials:

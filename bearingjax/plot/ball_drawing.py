@@ -190,7 +190,7 @@ def clearance_title(text: str, gap: float, times: float, share: str = "") -> str
         text: Name and value.
         gap: At each raceway [mm].
         times: Magnification of the drawing.
-        share: What is told of the gap over a quarter of the clearance.
+        share: Words inserted after "a quarter of it".
     """
     if gap == 0.0:
         return f"{text}\nno gap at the raceways"

@@ -26,7 +26,7 @@ def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     Balls and raceways are to scale, unloaded; the ring bodies are schematic.
 
     Args:
-        bearing: Of balls.
+        bearing: A ball bearing.
 
     Returns:
         The axes: z to the right, radius upwards.

@@ -31,7 +31,7 @@ def contact_overview(
     """Plot pressure over the contact, and along the roller compared with slices.
 
     Args:
-        solutions: Of one roller under one load or several.
+        solutions: Solutions of one roller under one load or several.
         slices: Results of slices under each.
         title: Head of the page.
 

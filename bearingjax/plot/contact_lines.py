@@ -37,7 +37,7 @@ def centre_pressure(
     those off the scale.
 
     Args:
-        solutions: Of one roller.
+        solutions: Solutions of one roller.
         slices: Results of slices under each load, dashed.
     """
     ax = axes_or_new(ax, (8.0, 5.0))
@@ -80,7 +80,7 @@ def contact_line_load(
     return ax
 
 
-def _lines(solutions, values, others, ax, told):
+def _lines(solutions, values, others, ax, labelled):
     """A line for each load, and that of the slices; off the scale: a triangle."""
     edges = 1e3 * np.asarray(solutions[0].grid.edges)
     top, _ = scale(solutions[0], np.max([*values, *others], axis=0))
@@ -93,10 +93,10 @@ def _lines(solutions, values, others, ax, told):
         if others:
             ax.plot(y, others[k], "--", color=GREY, linewidth=1.0, label="_slices")
         label = load_text(solution)
-        if told is None:
+        if labelled is None:
             ax.text(0.0, np.interp(0.0, y, line), label, **_ON_THE_LINE)
         else:
-            label += f": {told(solution)}"
+            label += f": {labelled(solution)}"
         ax.plot(y, line, color=colour, linewidth=1.8, label=label)
         high = y[[0, -1]][line[[0, -1]] > 1.1 * top]
         ax.plot(

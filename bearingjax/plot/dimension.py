@@ -192,7 +192,7 @@ def spread(wanted, heights) -> np.ndarray:
 
     Args:
         wanted: Ascending places (n,).
-        heights: Of the labels (n,); all are reduced if they do not find room.
+        heights: Heights of the labels (n,); all are reduced if they do not find room.
     """
     if not len(wanted):
         return np.zeros(0)
@@ -290,7 +290,7 @@ def pitch_arrow(ax: Axes, at, diameter: Any) -> None:
     Args:
         ax: Axes.
         at: Its head (2,).
-        diameter: Of the pitch circle [m].
+        diameter: Diameter of the pitch circle [m].
     """
     ax.annotate(
         "",
@@ -326,7 +326,7 @@ def contact_angle(
 
     Args:
         ax: Axes.
-        centre: Of the rolling element (2,).
+        centre: Centre of the rolling element (2,).
         contact: The angle, below 90 degrees [rad].
         top: Radial place of the arc, and of the end of the lines.
         sense: -1 if the row is mirrored.
@@ -360,7 +360,7 @@ def on_line(ax: Axes, at, text: str, turn: float = 0.0, ha: str = "center") -> N
         ax: Axes.
         at: Its middle or end (2,).
         text: The label.
-        turn: Of the text [rad].
+        turn: Turn of the text [rad].
         ha: Horizontal alignment of the text, as in matplotlib.
     """
     ax.text(

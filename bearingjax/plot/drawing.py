@@ -62,7 +62,7 @@ class _Strip(NamedTuple):
     """Views over the width of the page, or text.
 
     Attributes:
-        height: Of the strip [inch].
+        height: Height of the strip [inch].
         views: Its views.
         words: In its middle.
         bold: How they are written.
@@ -97,7 +97,7 @@ def drawing(bearing: AbstractBearing | BearingSet, title: str = "") -> Figure:
 
 
 def _page(strips):
-    """The strips below each other; all sizes are known, so nothing is to be fitted."""
+    """Draw the strips below each other, at their known sizes."""
     tall = _HEAD + sum(strip.height for strip in strips)
     figure = pyplot().figure(figsize=(_WIDTH, tall), layout="none")
     top = tall - _HEAD

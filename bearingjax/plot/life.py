@@ -73,8 +73,8 @@ def _lives(run, order, ax):
             label=_word(name),
         )
         words = [f"{x:.1e}" if np.isfinite(x) else "no end" for x in alone]
-        told = [word if far else "" for word, far in zip(words, beyond, strict=True)]
-        ax.bar_label(drawn, told, fontsize=SMALL, rotation=90, padding=2)
+        labels = [word if far else "" for word, far in zip(words, beyond, strict=True)]
+        ax.bar_label(drawn, labels, fontsize=SMALL, rotation=90, padding=2)
     ax.set_yscale("log")
     if known.size:
         ax.set_ylim(0.3 * known.min(), 10.0 * top)

@@ -81,8 +81,8 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
     ax.set_axisbelow(True)
     every = _radial_labels(polar, azimuth, load, limit, 2 * len(rows) * width)
     balls = isinstance(solution, BallSolution)
-    told = f"; circles every {every:g} {unit}" if every else ""
-    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{told}")
+    note = f"; circles every {every:g} {unit}" if every else ""
+    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{note}")
     ax.legend(
         handles=handles if zone.all() else [*handles, unloaded],
         loc="center left",
@@ -106,8 +106,9 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
 
     Args:
         ax: Polar axes.
-        azimuth: Of the rollers [rad].
-        loads: Of each on both raceways (roller, 2), in the unit of the axes.
+        azimuth: Azimuth of the rollers [rad].
+        loads: Loads of each roller on both raceways (roller, 2), in the unit of the
+            axes.
         limit: End of the radial axis.
         bars: Angle that the bars of a roller take [rad].
 
@@ -132,13 +133,13 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
     k = int(np.argmin(beside + 0.3 * np.abs(np.sin(between))))
     where, reach = between[k], max(most[k], most[(k + 1) % len(angle)])
     # The outermost would meet the labels of the azimuth.
-    told = ticks[ticks <= 0.88 * limit]
-    room = (gaps[k] - bars) * _RADIUS * (told + 0.3 * limit) / (1.3 * limit)
+    labelled = ticks[ticks <= 0.88 * limit]
+    room = (gaps[k] - bars) * _RADIUS * (labelled + 0.3 * limit) / (1.3 * limit)
     wide, low = _TICK_LABEL
     needed = low * abs(np.cos(where)) + wide * abs(np.sin(where))
-    if np.any((room < needed) & (told < reach)):
+    if np.any((room < needed) & (labelled < reach)):
         return float(ticks[0])
-    for tick in told:
+    for tick in labelled:
         ax.text(
             where,
             tick,
@@ -217,8 +218,8 @@ def stiffness_over_speed(
     """Plot axial and radial stiffness of a ring against speed.
 
     Args:
-        speed: Of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
-        stiffness: Of both rings (case, 12, 12) [N/m, N, N m].
+        speed: Speed of the turning ring, for every case (case,) [rad/s]; drawn in rpm.
+        stiffness: Stiffness of both rings (case, 12, 12) [N/m, N, N m].
         moving_ring: Ring whose stiffness is shown, "outer" or "inner".
 
     Raises:

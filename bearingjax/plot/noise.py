@@ -11,7 +11,7 @@ from ..noise import (
     Bands,
     ContactStates,
     Line,
-    Shares,
+    SourceContributions,
     Spectrum,
     Vibration,
 )
@@ -20,7 +20,7 @@ from ..noise.scatter import SOURCES
 from .panel import Ax, Axis, Curve, Panel, chart, finish
 from .style import CURVES, GREY, SMALL, Axes, axes_or_new
 
-DIRECTIONS = ("x", "y", "z")
+AXES = ("x", "y", "z")
 STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
 """Colours of 0, 1, 2, 3, 4 contacts."""
 _NAMED = 8
@@ -39,12 +39,12 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
         record: From `vibration`.
     """
     turns = np.asarray(record.time) * float(record.shaft_frequency)
-    values = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
+    values = np.asarray(record.acceleration)[:, : len(AXES)]
     # What moves most lies below, so that it hides nothing.
     above = np.argsort(np.argsort(-values.std(axis=0)))
     marks = [
         Curve(turns, values[:, k], name, CURVES[k], look={"lw": 0.6, "zorder": 2 + z})
-        for k, (name, z) in enumerate(zip(DIRECTIONS, above, strict=True))
+        for k, (name, z) in enumerate(zip(AXES, above, strict=True))
     ]
     return Panel(
         "Vibration of the moving ring",
@@ -52,7 +52,7 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
         Axis("acceleration", "m/s²"),
         marks,
         (0.0, record.turns),
-        legend={"loc": "upper right", "ncols": len(DIRECTIONS)},
+        legend={"loc": "upper right", "ncols": len(AXES)},
         also=lambda ax: [line.set_linewidth(2) for line in ax.get_legend().get_lines()],
     )
 
@@ -67,7 +67,7 @@ def noise_spectrum(
     """Plot the level of every line of a spectrum, summed over directions.
 
     Args:
-        spectrum: Of the acceleration, amplitudes (line, ...) [m/s²].
+        spectrum: Spectrum of the acceleration, amplitudes (line, ...) [m/s²].
         lines: From `name_lines`; the largest have their names.
         reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
     """
@@ -152,7 +152,7 @@ def band_bars(
     place, width = np.arange(count), 0.8 / directions
     for k in range(directions):
         away = (k - 0.5 * (directions - 1)) * width
-        ax.bar(place + away, level[:, k], width, color=CURVES[k], label=DIRECTIONS[k])
+        ax.bar(place + away, level[:, k], width, color=CURVES[k], label=AXES[k])
     shown = level[np.isfinite(level)]
     if norm is not None:
         norm = np.asarray(norm, dtype=float)
@@ -244,7 +244,7 @@ def level_distribution(
     for k, values in enumerate(np.asarray(level, dtype=float).T):
         values = np.sort(values[values > LOWEST_LEVEL])
         share = (np.arange(len(values)) + 0.5) / max(len(values), 1)
-        marks.append(Curve(values, share, DIRECTIONS[k], CURVES[k], ".-", {"lw": 1.2}))
+        marks.append(Curve(values, share, AXES[k], CURVES[k], ".-", {"lw": 1.2}))
     return Panel(
         "Random bearings",
         _level("level", reference),
@@ -254,20 +254,27 @@ def level_distribution(
     )
 
 
-def source_bars(shares: Shares, ax: Ax = None) -> Any:
+def source_bars(contributions: SourceContributions, ax: Ax = None) -> Any:
     """Plot the share of each source in the mean square of the acceleration [%].
 
     Args:
-        shares: From `shares`.
+        contributions: From `source_contributions`.
 
     Returns:
         The axes; the largest source is at the top. Thin lines are standard errors.
     """
     ax = axes_or_new(ax)
-    part = 100.0 * np.asarray(shares.share) / float(shares.mean_square)
+    part = 100.0 * np.asarray(contributions.share) / float(contributions.mean_square)
     order = np.argsort(part)
-    names = [SOURCES[shares.sources[k]].replace(" of the ", "\nof the ") for k in order]
-    error = 100.0 * np.asarray(shares.error)[order] / float(shares.mean_square)
+    names = [
+        SOURCES[contributions.sources[k]].replace(" of the ", "\nof the ")
+        for k in order
+    ]
+    error = (
+        100.0
+        * np.asarray(contributions.error)[order]
+        / float(contributions.mean_square)
+    )
     bars = ax.barh(
         names, part[order], color=CURVES[0], xerr=np.nan_to_num(error), ecolor=GREY
     )

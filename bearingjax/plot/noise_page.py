@@ -39,9 +39,9 @@ def noise_overview(run: Any, title: str = "") -> Figure:
     contact_state_map(analysis.record, analysis.states, axes[1, 1])
     if run.many is not None:
         level_distribution(run.many.levels.level, axes[2, 0], reference=reference)
-        if run.many.shares is None:
+        if run.many.contributions is None:
             axes[2, 1].set_axis_off()
         else:
-            source_bars(run.many.shares, axes[2, 1])
+            source_bars(run.many.contributions, axes[2, 1])
     head(figure, title or "Noise")
     return figure

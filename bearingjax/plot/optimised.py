@@ -172,8 +172,8 @@ def _cases(found) -> Panel:
     title = "Life under each case alone" if lives else "Peak pressure of the cases"
     unit = "h" if lives and wanted.hours else "revolutions"
     of = Axis("life", unit) if lives else Axis("peak pressure", "Pa")
-    told = _life_label if lives else "%.0f"
-    return _pairs(title, Axis("operating case"), of, sides, told, also=limits)
+    labels = _life_label if lives else "%.0f"
+    return _pairs(title, Axis("operating case"), of, sides, labels, also=limits)
 
 
 def _each_bearing(found) -> Panel:
@@ -196,12 +196,12 @@ def _each_bearing(found) -> Panel:
     return _pairs(title, Axis(""), of, sides, _life_label, **more)
 
 
-def _pairs(title, over, of, sides, told, **more: Any) -> Panel:
+def _pairs(title, over, of, sides, labels, **more: Any) -> Panel:
     """Return bars before and after, side by side."""
     marks = [
         Bars(
             np.where(np.isfinite(values), values, np.nan), side, _SIDES[side][0], away,
-            0.38, told if len(values) <= 8 else None,
+            0.38, labels if len(values) <= 8 else None,
         )
         for side, away, values in zip(_SIDES, (-0.2, 0.2), sides, strict=True)
     ]  # fmt: skip
@@ -222,21 +222,21 @@ def _history(found) -> Panel:
     history, measure = found.history, found.objective
     steps, values = np.arange(len(history.objective)), history.objective
     if isinstance(measure, AbstractMeasure):
-        measure, values = measure.reported_as, measure.told(values)
+        measure, values = measure.reported_as, measure.reported_value(values)
     size = abs(values[0]) or 1.0
     name, look = label_of(measure), {"markersize": 4}
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
     over, of = Axis("step of the search"), Axis(f"{smooth}{name} over its start")
     marks = [Curve(steps, values / size, name, ROLLER, "o-", look)]
-    beside = None
+    twin = None
     if history.violation.any():
         label, colour = "miss of the worst constraint", COLOURS["inner"]
         missed = [Curve(steps, history.violation, label, colour, "s:", look)]
-        beside = Panel("", over, Axis("miss over the bound"), missed, floor=True)
+        twin = Panel("", over, Axis("miss over the bound"), missed, floor=True)
 
     title = f"The search: {found.n_evaluations} designs evaluated"
     return Panel(
-        title, over, of, marks, beside=beside, legend=None if beside is None else {},
+        title, over, of, marks, twin=twin, legend=None if twin is None else {},
         also=lambda ax: ax.xaxis.get_major_locator().set_params(integer=True),
     )  # fmt: skip
 

@@ -67,7 +67,7 @@ class Curve:
 
     Attributes:
         x, y: Coordinates (point,) [SI].
-        label: Of the legend; empty or with a leading underscore: not there.
+        label: Label of the legend; empty or with a leading underscore: none.
         colour, style: As Matplotlib takes them.
         look: Further keywords of Matplotlib's `plot`, or `fill_between`.
         to: Other edge of a band (point,) [SI]; `None`: a line.
@@ -82,7 +82,7 @@ class Curve:
     to: Any = None
 
     def draw(self, ax, across: float, up: float) -> None:
-        """Draw it, in the units displayed."""
+        """Draw the curve, in the units displayed."""
         x, y = across * np.asarray(self.x, float), up * np.asarray(self.y, float)
         if self.to is not None:
             other = up * np.asarray(self.to, float)
@@ -98,10 +98,10 @@ class Bars:
 
     Attributes:
         heights: (place,) [SI].
-        label: Of the legend.
+        label: Label of the legend.
         colour: As Matplotlib takes it, one or one for each.
         away: Distance of their middles from the places [1].
-        width: Of each [1].
+        width: Width of each [1].
         told: Format of the number above each, or the words; `None`: none.
         look: Further keywords of Matplotlib's `bar_label`.
     """
@@ -111,19 +111,19 @@ class Bars:
     colour: Any = OUTER
     away: float = 0.0
     width: float = 0.8
-    told: Any = None
+    labels: Any = None
     look: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
     def draw(self, ax, across: float, up: float) -> None:
-        """Draw them, in the unit displayed."""
+        """Draw the bars, in the unit displayed."""
         heights = up * np.asarray(self.heights, float)
         places = np.arange(len(heights)) + self.away
         more = {"label": self.label} if self.label else {}
         bars = ax.bar(places, heights, self.width, color=self.colour, **more)
-        if self.told is not None:
-            words = isinstance(self.told, list)
-            told = {"labels": self.told} if words else {"fmt": self.told}
-            ax.bar_label(bars, **told, fontsize=SMALL, **{"padding": 2, **self.look})
+        if self.labels is not None:
+            words = isinstance(self.labels, list)
+            text = {"labels": self.labels} if words else {"fmt": self.labels}
+            ax.bar_label(bars, **text, fontsize=SMALL, **{"padding": 2, **self.look})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,7 +134,7 @@ class Panel:
         title: Title.
         over: Quantity along the horizontal axis.
         of: Quantity along the vertical axis.
-        marks: What is drawn, in order.
+        marks: Curves and bars, in the order of drawing.
         span: Ends of the horizontal axis [SI]; default: Matplotlib's.
         floor: Whether the vertical axis begins at 0.
         most: Magnitude beyond which values are cut off [displayed unit].
@@ -142,9 +142,9 @@ class Panel:
         names: Names of the places along the horizontal axis.
         legend: Keywords of Matplotlib's `legend`, which is drawn if marks have labels;
             `None`: none.
-        beside: Panel on a vertical axis of its own at the right.
-        also: Draws on the axes what is special.
-        size: Of a new figure [inch].
+        twin: Panel on a vertical axis of its own at the right.
+        also: Function of the axes that draws further parts.
+        size: Size of a new figure [inch].
     """
 
     title: str
@@ -157,24 +157,24 @@ class Panel:
     room: float = 0.0
     names: Sequence[str] | None = None
     legend: Mapping[str, Any] | None = dataclasses.field(default_factory=dict)
-    beside: "Panel | None" = None
+    twin: "Panel | None" = None
     also: Callable[[Any], Any] = lambda ax: None
     size: tuple[float, float] = (7.0, 5.0)
 
     def draw(self, ax: Ax = None) -> Axes:
-        """Draw it on axes, or on those of a new figure.
+        """Draw the panel on given axes, or on those of a new figure.
 
         Returns:
             The axes.
         """
         ax = axes_or_new(ax, self.size)
         pairs: list[tuple[Panel, Any]] = [(self, ax)]
-        if self.beside is not None:
-            pairs.append((self.beside, without_offset(ax.twinx())))
+        if self.twin is not None:
+            pairs.append((self.twin, without_offset(ax.twinx())))
         for panel, own in pairs:
             panel._fill(own)
-        if self.beside is not None:  # told apart by its colour
-            pairs[1][1].yaxis.label.set_color(self.beside.marks[0].colour)
+        if self.twin is not None:  # told apart by its colour
+            pairs[1][1].yaxis.label.set_color(self.twin.marks[0].colour)
         if self.span is not None:
             ax.set_xlim(*(self.over.scale * float(end) for end in self.span))
         if self.names is not None:
@@ -212,9 +212,9 @@ def curves(x: Any, columns: Any, names: Sequence[str] = (), **look: Any) -> list
         look: As in `Curve`.
     """
     columns = np.asarray(columns, float)
-    told = [*names, *(f"_curve {k}" for k in range(len(names), columns.shape[1]))]
+    labels = [*names, *(f"_curve {k}" for k in range(len(names), columns.shape[1]))]
     return [
-        Curve(x, column, told[k], CURVES[k % len(CURVES)], look=look)
+        Curve(x, column, labels[k], CURVES[k % len(CURVES)], look=look)
         for k, column in enumerate(columns.T)
     ]
 
@@ -237,7 +237,7 @@ def finish(ax: Any, title: str, across: str, up: str = "", axis: str = "both") -
 
 
 def chart(panel: Callable[P, Panel]) -> "Callable[P, Axes]":
-    """Return a function that draws what a function returns.
+    """Return a function that draws the panel that a function returns.
 
     Args:
         panel: Function of results and of the axes `ax`; a new figure if they are

@@ -214,11 +214,11 @@ def rib_view(
     at = point
     if height > 0.0:
         at = between(ax, point - height * rise, point, 0.6 * reach * away)
-    told = f"\ndrawn {times:g} times as large" if gap else ""
+    note = f"\ndrawn {times:g} times as large" if gap else ""
     labels = [
         Label(f"{label(rib, 'end_radius')}\ncentre on the axis\nof the roller", inside),
         Label(label(rib, "contact_height"), at),
-        Label(f"{label(rib, 'axial_gap')}{told}", 0.5 * (point + face)),
+        Label(f"{label(rib, 'axial_gap')}{note}", 0.5 * (point + face)),
     ]
     around = np.array([[-1.0, -1.0], [1.0, 1.0]]) * 2.0 * reach + point
     fit(ax, around, size, (0.98 - 2.0 * _RIB_COLUMN, 0.9))

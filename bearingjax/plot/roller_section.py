@@ -13,7 +13,7 @@ def roller_row(
 
     Args:
         ax: Axes.
-        parts: Of a row of rollers.
+        parts: Parts of a row of rollers.
         place: Map of points (point, 2), z and r in mm.
         apart: Additional distance of each ring from the roller [mm].
         behind: Whether the roller is one behind another in the same rings, of which

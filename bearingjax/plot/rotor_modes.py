@@ -69,7 +69,7 @@ def mode_shapes(
 
 
 def _percent(ratio):
-    """Without what is round-off."""
+    """Format a ratio in percent, zero below round-off."""
     return f"{100.0 * float(np.where(np.abs(ratio) < 1e-9, 0.0, ratio)):.3g}"
 
 

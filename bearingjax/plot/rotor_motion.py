@@ -69,7 +69,7 @@ def waveforms(
         time: Of the samples (sample,) [s]; `None`: they are at even phases of a period
             from 0 on.
         names: Of the curves.
-        unit: Of the displacements: "um", or "mrad" for tilts.
+        unit: Unit of the displacements: "um", or "mrad" for tilts.
     """
     motion, over = np.asarray(motion, dtype=float), Axis("time", "s")
     if time is None:
@@ -109,7 +109,7 @@ def waterfall(
         spectra: From `rotor.nonlinear.spectra_over_time` or `steady_spectra`.
         highest: Frequency up to which it is drawn [Hz]; default: three times the
             highest speed.
-        unit: Of the amplitude: "um", or "mrad" for a tilt.
+        unit: Unit of the amplitude: "um", or "mrad" for a tilt.
     """
     ax = axes_or_new(ax, (8.0, 6.0))
     rpm, of = SPEED.scale * spectra.speed, motion_axis("largest line", unit)

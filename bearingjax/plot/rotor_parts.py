@@ -35,7 +35,7 @@ def disc_size(disc: Disc, shaft_diameter: float, material: Material) -> Cylinder
     Args:
         disc: The disc.
         shaft_diameter: Diameter of its bore [m].
-        material: Of the cylinder, where the width follows from the mass.
+        material: Material of the cylinder, where the width follows from the mass.
 
     Returns:
         The cylinder; `None` if the moment of inertia is less than that of a ring on
@@ -57,7 +57,7 @@ def ball_radius(mass: float, material: Material) -> float:
 
     Args:
         mass: [kg].
-        material: Of the ball.
+        material: Material of the ball.
     """
     return 1e3 * (0.75 * mass / (np.pi * float(material.density))) ** (1.0 / 3.0)
 
@@ -140,7 +140,7 @@ def draw_law(
         support: With a `law` and `turned`.
         z: Of its station [mm].
         shaft_radius: There [mm].
-        size: Of the symbol [mm].
+        size: Size of the symbol [mm].
 
     Returns:
         Radius of its outside [mm].
@@ -165,7 +165,7 @@ def draw_spring(ax: Any, z: float, ends: tuple[float, float], width: float) -> N
         ax: Axes.
         z: Axial position [mm].
         ends: Radial coordinates of its ends [mm].
-        width: Of its turns [mm].
+        width: Width of its turns [mm].
     """
     share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 9), [1.0]])
     side = np.concatenate([[0.0, 0.0], np.tile([1.0, -1.0], 4)[:7], [0.0, 0.0]])
@@ -179,7 +179,7 @@ def draw_ground(ax: Any, z: float, r: float, size: float) -> None:
     Args:
         ax: Axes.
         z, r: Middle of the line [mm].
-        size: Of the symbol [mm].
+        size: Size of the symbol [mm].
     """
     from matplotlib.patches import Rectangle
 
@@ -202,7 +202,7 @@ def draw_below(
         support: The support.
         z: Of its station [mm].
         outside: Radius at which it ends [mm].
-        size: Of the symbols [mm].
+        size: Size of the symbols [mm].
 
     Returns:
         Radius of the lowest point [mm].

@@ -53,7 +53,7 @@ def response_curve(
         branch: From `follow`.
         amplitude: Of its points, such as a column of `branch.amplitude` (point,) [m,
             rad].
-        unit: Of the amplitude: "um", or "mrad" for a tilt.
+        unit: Unit of the amplitude: "um", or "mrad" for a tilt.
         linear: Frequencies [rad/s] and amplitudes [m, rad] of the linear response.
     """
     frequency, marks = np.asarray(branch.frequency), []
@@ -71,14 +71,14 @@ def response_curve(
             part, label = slice(first, last + 1), f"_{name}" if number else name
             x, y, look = frequency[part], amplitude[part], {"lw": 1.6, "zorder": 3}
             marks.append(Curve(x, y, label, colour, style, look))
-    told = set()
+    named = set()
     look = {"mec": "black", "ms": 6, "ls": "none", "zorder": 5}
     for event in branch.events:
         name, mark = EVENTS[event.kind]
-        label = f"_{name}" if name in told else name
+        label = f"_{name}" if name in named else name
         height = _at_event(branch, event, amplitude)
         marks.append(Curve([event.frequency], [height], label, "white", mark, look))
-        told.add(name)
+        named.add(name)
     return _panel("Response", _EXCITATION, marks, unit, frequency)
 
 
@@ -89,9 +89,9 @@ def linear_curve(
     """Plot the amplitude of a linear response over the frequency [Hz].
 
     Args:
-        frequency: Of the excitation (point,) [rad/s].
+        frequency: Frequency of the excitation (point,) [rad/s].
         amplitude: (point,) [m, rad].
-        unit: Of the amplitude: "um", or "mrad" for a tilt.
+        unit: Unit of the amplitude: "um", or "mrad" for a tilt.
     """
     marks = [Curve(frequency, amplitude, "_linear")]
     return _panel("Response", _EXCITATION, marks, unit, frequency)
@@ -122,9 +122,9 @@ def speed_curve(
     Args:
         speed: (point,) [rad/s].
         amplitude: (point,) or (point, curve) [m, rad].
-        unit: Of the amplitude: "um", or "mrad" for tilts.
+        unit: Unit of the amplitude: "um", or "mrad" for tilts.
         names: Of the curves.
-        title: Of the axes.
+        title: Title of the axes.
     """
     values = np.asarray(amplitude, dtype=float)
     values = values[:, None] if values.ndim == 1 else values

@@ -129,11 +129,11 @@ def _push(ax, row, at, half):
 def _words(row, k, turned):
     """Return the labels of a row other than its position."""
     name = f"rows.{k}."
-    told = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
+    note = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
     lines = [
         f"{name}bearing: {type(row.bearing).__name__}, below",
         label(row, "mirrored", name),
-        label(row, "inner_offset", name) + told,
+        label(row, "inner_offset", name) + note,
         _spring(row, name),
     ]
     if turned:

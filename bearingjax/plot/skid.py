@@ -162,7 +162,7 @@ def power_bars(found: SteadySkid | SteadyRollerSkid, ax: Ax = None) -> Panel:
 
     return Panel(
         "Power of the drive, and where it goes", Axis(""), Axis("power", "W"),
-        [Bars(heights, "", colours, told="%.3g")], names=list(bars), also=small,
+        [Bars(heights, "", colours, labels="%.3g")], names=list(bars), also=small,
     )  # fmt: skip
 
 
@@ -173,11 +173,11 @@ def cage_speed(
     """Plot the cage speed over the load, with that of pure rolling [rad/s].
 
     Args:
-        load: Of each case (case,) [N].
+        load: Load of each case (case,) [N].
         found: From `skid.steady` under `jax.vmap` over loads, leading axis case; cases
             that did not converge are left out.
         ax: Axes; a new figure if `None`. Curves may be drawn over one another.
-        label: Of the curve.
+        label: Label of the curve.
 
     Raises:
         ValueError: If there are not as many loads as cases.

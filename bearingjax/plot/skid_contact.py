@@ -20,7 +20,7 @@ def sliding_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
     speed = 1e3 * np.sqrt((ellipse.slip**2).sum(axis=-1))
     ax = _mesh(ellipse, speed, "sliding speed [mm/s]", ax)
     rings, around = slice(4, None, 6), slice(0, -1, 9)
-    # Of one length: their colours tell the speed. As angles on the page, where the
+    # Of one length: their colours show the speed. As angles on the page, where the
     # directions have scales of their own, they lean to the one that is drawn longer.
     y, x = (1e3 * ellipse.y[rings, around], 1e6 * ellipse.x[rings, around])
     across, along = ellipse.slip[rings, around, 1], ellipse.slip[rings, around, 0]

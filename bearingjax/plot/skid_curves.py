@@ -198,8 +198,8 @@ def sliding_spectrum(
         mark.set_label(f"multiples of the cage's {lines.cage:.4g} Hz")
         ax.legend(fontsize=SMALL, loc="upper right")
     else:
-        told = f"lines {apart:.3g} Hz apart: too few for the cage's {lines.cage:.3g} Hz"
-        ax.text(0.5, 0.95, told, ha="center", fontsize=SMALL, transform=ax.transAxes)
+        note = f"lines {apart:.3g} Hz apart: too few for the cage's {lines.cage:.3g} Hz"
+        ax.text(0.5, 0.95, note, ha="center", fontsize=SMALL, transform=ax.transAxes)
     shown = amplitude[lines.frequency <= highest]
     top = float(shown.max(initial=0.0))
     if top > 0:
@@ -215,8 +215,8 @@ def load_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     """Plot contact loads [N] against azimuth [deg], zones B and D shaded."""
     of = Axis.of(found, "contact_load", NEWTONS)
     marks = _both(found, found.contact_load)
-    told = "\nB, D: more load than by the axial load alone" if zones(found) else ""
-    return _over_orbit(found, "Load", of, marks, told=told, floor=True)
+    note = "\nB, D: more load than by the axial load alone" if zones(found) else ""
+    return _over_orbit(found, "Load", of, marks, note=note, floor=True)
 
 
 @chart
@@ -228,8 +228,8 @@ def sliding_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     slip = Curve(*_closed(found, found.slip), "orbit slip", GREY, ":")
     title = "Sliding in the middle of the contacts"
     marks = _both(found, found.sliding_speed)
-    beside = _over_orbit(found, "", _SLIP, [slip])
-    return _over_orbit(found, title, _SLIDING, marks, beside=beside, floor=True)
+    twin = _over_orbit(found, "", _SLIP, [slip])
+    return _over_orbit(found, title, _SLIDING, marks, twin=twin, floor=True)
 
 
 @chart
@@ -276,15 +276,15 @@ def _closed(found, values):
     return around, np.asarray(values)[np.append(order, order[0])]
 
 
-def _over_orbit(found, title, of, marks, *, told="", **more: Any) -> Panel:
+def _over_orbit(found, title, of, marks, *, note="", **more: Any) -> Panel:
     """Return a panel whose zones are shaded and named."""
-    beside = more.get("beside")
-    count = len(marks) + (0 if beside is None else len(beside.marks))
+    twin = more.get("twin")
+    count = len(marks) + (0 if twin is None else len(twin.marks))
 
     def shaded(ax):
         parts = zones(found)
         ax.set_title(title, pad=_PAD if parts else None)
-        ax.set_xlabel(f"{_AZIMUTH.label}{told}")
+        ax.set_xlabel(f"{_AZIMUTH.label}{note}")
         ax.set_xticks(np.arange(0, 361, 60))
         for zone in parts:
             _shade(ax, zone)

@@ -101,7 +101,7 @@ def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
     Args:
         values: Values drawn.
         least: Smallest distance of the limits, in the unit of the values.
-        share: Of the span that stays free at each end.
+        share: Share of the span that stays free at each end.
     """
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]

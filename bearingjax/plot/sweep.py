@@ -27,7 +27,7 @@ class _Curve(NamedTuple):
 
 def sweep_overview(
     solved: Sweep,
-    beside: Mapping[str, np.ndarray] | None = None,
+    extra: Mapping[str, np.ndarray] | None = None,
     title: str = "",
 ) -> Figure:
     """Plot the first nine results that differ from case to case.
@@ -39,13 +39,13 @@ def sweep_overview(
 
     Args:
         solved: From `sweep`, with a case solved.
-        beside: Inputs that make the designs, as in `columns`.
+        extra: Inputs that make the designs, as in `columns`.
         title: Head of the page; "Sweep" if empty.
 
     Returns:
         The figure, 5 inches wide for each of at most three columns.
     """
-    found = columns(solved, beside)
+    found = columns(solved, extra)
     names = list(found)
     split = names.index("result")
     good = solved.converged
@@ -78,13 +78,13 @@ def sweep_overview(
         if number:
             ax.locator_params(axis="x", integer=True)
         if k == 0 and any(curve.name for curve in curves):
-            # Curves of one colour are told once.
-            told = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+            # Curves of one colour are listed once.
+            handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
             figure.legend(
-                told.values(),
-                told.keys(),
+                handles.values(),
+                handles.keys(),
                 loc="outside lower center",
-                ncols=min(3, len(told)),
+                ncols=min(3, len(handles)),
                 fontsize=SMALL,
             )
     if not shown:
@@ -138,8 +138,8 @@ def _curves(inputs, good) -> tuple[str, list[_Curve]]:
         rising = mine[np.argsort(x[mine])]
         colour = int(np.searchsorted(kinds, values[mine[0]])) if name else 0
         text, factor = _shown(name, values) if name else ("", 0.0)
-        told = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
-        curves.append(_Curve(scale * x[rising], rising, colour, told))
+        name_and_value = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
+        curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
     return words, curves
 
 

@@ -158,7 +158,7 @@ class BearingSupport(AbstractSupport):
         """Return the freedoms of both rings at a motion of the station [m, rad].
 
         Args:
-            motion: Of the station less that of the housing (5,) [m, rad].
+            motion: Motion of the station less that of the housing (5,) [m, rad].
         """
         rings = jnp.zeros(2 * _N_RING, motion.dtype)
         return rings.at[_INNER].set(self.offset + self._sense(motion.dtype)[0] * motion)

@@ -33,7 +33,7 @@ class Condensed(eqx.Module):
         back, there: All motions (motion, m) and what the forces between supports add
             (motion,) [m, rad].
         supports: As in the rotor.
-        speed: Of the rotor, or of each support (support,) [rad/s].
+        speed: Speed of the rotor, or of each support (support,) [rad/s].
     """
 
     stiffness: Float[Array, "m m"]
@@ -82,7 +82,7 @@ def condensed(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Co
     Args:
         rotor: With supports.
         force: Constant force on all motions (motion,) [N, N m].
-        speed: Of the rotor [rad/s].
+        speed: Speed of the rotor [rad/s].
     """
     own = rotor.unsupported().stiffness
     rows, every = rotor.at_supports(), rotor.motions()

@@ -195,7 +195,7 @@ def _once(found, point, right):
 
 
 def _undamped(matrices: RotorMatrices, count):
-    """Return critical speeds without damping and their motions; 0 where none is left.
+    """Return critical speeds without damping and their motions; 0 beyond the last one.
 
     In the modes at rest, of frequency ω, the problem is that of the matrix
     S/(ωᵢ ωⱼ) with S = 1 - iG and eigenvalues 1/Ω². Motions that nothing holds (ω = 0)

@@ -32,7 +32,7 @@ def harmonic_response(
         respect to every number.
 
     Raises:
-        ValueError: If a loaded station is not there.
+        ValueError: If the rotor lacks a loaded station.
     """
     frequencies = speed_list("harmonic_response", frequencies)
     speeds = frequencies
@@ -55,8 +55,8 @@ def reduction_error(
     Args:
         rotor: Linear, with a shaft that bends.
         loads: As in `harmonic_response`.
-        frequency: Of the excitation [rad/s].
-        speed: Of the rotor [rad/s].
+        frequency: Frequency of the excitation [rad/s].
+        speed: Speed of the rotor [rad/s].
         modes: As in `craig_bampton`. Static.
     """
     cosine, sine = loads.unbalanced(rotor)

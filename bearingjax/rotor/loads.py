@@ -90,7 +90,7 @@ class RotorLoads(eqx.Module):
             rotor: The rotor.
 
         Raises:
-            ValueError: If a station is not there.
+            ValueError: If the rotor lacks a station.
         """
         last = rotor.shaft.n_segments
         for name in ("unbalances", "forces"):

@@ -4,7 +4,7 @@ Eigenvalues λ of λ² M + λ (C + Ω G) + K come from LAPACK's eigenvalues of t
 matrix, which JAX has on the CPU only. One Newton step with left and right eigenvectors
 that count as fixed, λ - wᵀP(λ)v / wᵀP'(λ)v, then takes away their round-off; its
 derivative is that of the eigenvalue, -wᵀ dP v / wᵀP'v. First derivatives are exact,
-second ones are not; those of mode shapes are not there.
+second ones are not; derivatives of mode shapes are not available.
 
 Source: Lancaster, On eigenvalues of matrices dependent on a parameter, Numer. Math. 6
     (1964) 377-387.
@@ -56,7 +56,7 @@ def is_axial(shape: Any) -> np.ndarray:
     """Return whether modes move almost only along the axis.
 
     Args:
-        shape: (..., node, 5) [m, rad], as of `Modes`.
+        shape: Mode shapes (..., node, 5) [m, rad], as in `Modes`.
     """
     squares = np.sum(np.abs(np.asarray(shape)) ** 2, axis=-2)
     return squares[..., 2] > _AXIAL * squares[..., :3].sum(axis=-1)
@@ -394,7 +394,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
     real = to_complex(values.real)
     values = jnp.where(jnp.abs(values.imag) <= floor, real, values)
-    # First what oscillates, then what does not, then the conjugates of the first.
+    # Oscillating modes first, then the others, then conjugates of the first.
     last = 1.0 + jnp.max(jnp.abs(values))
     behind = jnp.where(values.imag < 0, 2.0 * last, last + jnp.abs(values))
     chosen = jnp.argsort(jnp.where(values.imag > 0, values.imag, behind))
@@ -426,7 +426,7 @@ def resonances_above(matrices: RotorMatrices, frequency: Any) -> Int[Array, ""]:
     """Count the modes that can resonate above a frequency.
 
     Args:
-        matrices: Of the rotor.
+        matrices: Matrices of the rotor.
         frequency: ω [rad/s].
     """
     *_, state = _state(matrices)
@@ -462,8 +462,8 @@ def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
 
     Args:
         pairs: Eigenvalues and vectors.
-        matrices: Of the rotor; only what its freedoms move is read.
-        speed: Of the rotor, whose sense is called forward [rad/s].
+        matrices: Matrices of the rotor; only what its freedoms move is read.
+        speed: Speed of the rotor, whose sense is called forward [rad/s].
     """
     matrices = stop(matrices)
     moved = pairs.right @ to_complex(matrices.motions).T
@@ -501,7 +501,7 @@ def direction(shape: Complex[Array, "*mode node 5"], length) -> Int[Array, "*mod
 
     Args:
         shape: Complex motion of all nodes [m, rad].
-        length: Of the shaft, by which tilts are compared with displacements [m].
+        length: Length of the shaft, by which tilts are compared with displacements [m].
     """
     length = to_complex(length)
     x = jnp.concatenate([shape[..., 0], length * shape[..., 3]], axis=-1)

@@ -23,7 +23,7 @@ class Onset(NamedTuple):
         mode: Its number in the Campbell diagram, from 0.
         speed: From which on it grows; the first speed of the diagram if it does so
             there [rad/s].
-        frequency: Of the mode there [Hz].
+        frequency: Frequency of the mode there [Hz].
     """
 
     mode: int
@@ -75,7 +75,7 @@ def _crossing(rotor, ends, before):
         ends: Two speeds [rad/s].
         before: Eigenvalue of the mode at the first [rad/s].
     """
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from scipy.optimize import brentq
 
     level = 0.0 if _ratio(before) > 0 else _UNSTABLE

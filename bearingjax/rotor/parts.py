@@ -105,7 +105,7 @@ class Disc(AbstractPart):
         Args:
             station: Number of the station that it sits on.
             outer_diameter, width, bore: Sizes [m].
-            material: Of the disc; steel unless given.
+            material: Material of the disc; steel unless given.
         """
         outer, wide, hole = (as_real(v) for v in (outer_diameter, width, bore))
         positive(cls, "outer_diameter", outer, "m")
@@ -236,7 +236,7 @@ class AbstractSupport(eqx.Module):
         Args:
             motion: (ux uy uz gx gy) of the station less those of the housing [m, rad].
             velocity: Its rate [m/s, rad/s].
-            speed: Of the rotor [rad/s].
+            speed: Speed of the rotor [rad/s].
             angle: By which the rotor has turned, from x towards y [rad].
         """
 

@@ -126,7 +126,7 @@ def steady(
         rotor: The rotor.
         moments, forces: On all motions [kg m], [N, N m].
         frequencies: ω of the excitation [rad/s].
-        speeds: Of the rotor at each of them [rad/s].
+        speeds: Speeds of the rotor at each of them [rad/s].
 
     Returns:
         UnbalanceResponse; its `speed` is that of the excitation.
@@ -139,7 +139,7 @@ def steady(
         force = to_complex(frequency**2) * moments + forces
         matrices = rotor.linearised(speed)
         stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * frequency, frequency))
-        # What nothing holds would make it singular at rest.
+        # Motions without stiffness would make it singular at rest.
         little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
         stiffness = stiffness + to_complex(little)
         return motions @ solve_any(stiffness, force)

@@ -38,7 +38,7 @@ class RotorMatrices(eqx.Module):
         motions: Motions per freedom q (motion, freedom): (ux uy uz gx gy) of every
             node, then (ux uy uz) of every housing [m, rad].
         speed: Ω, positive from x towards y [rad/s].
-        length: Of the shaft, by which tilts are compared with displacements [m].
+        length: Length of the shaft, by which tilts are compared with displacements [m].
         n_nodes: Number of nodes of the shaft.
     """
 
@@ -98,7 +98,7 @@ class Unsupported(NamedTuple):
     """Matrices on all motions (motion, motion) of a rotor without its supports.
 
     Attributes:
-        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as of
+        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as in
             `RotorMatrices`.
         shaft_mass, shaft_stiffness: Of the shaft alone.
     """
@@ -215,7 +215,7 @@ class Rotor(eqx.Module):
         """Return the rotor as matrices, linearised.
 
         Args:
-            speed: Of the rotor, positive from x towards y [rad/s].
+            speed: Speed of the rotor, positive from x towards y [rad/s].
             motion: Of nodes and housings, about which supports are linearised [m,
                 rad]; zero unless given.
 

@@ -42,7 +42,7 @@ class Shaft(eqx.Module):
         stations: Axial positions, rising (station,) [m].
         outer_diameter: Of each segment (segment,) [m]; one number serves all.
         bore: Diameter of the hole of each segment (segment,) [m]; zero: solid.
-        material: Of all segments, or a tuple with one for each.
+        material: Material of all segments, or a tuple with one for each.
         divisions: Elements of each segment (segment,); one number serves all.
 
     Traced: all fields but `divisions`.
@@ -284,7 +284,7 @@ def _shapes(length, phi):
     rule that integrates their products exactly.
 
     Args:
-        length: Of the element [m].
+        length: Length of the element [m].
         phi: 12 E I/(κ G A L²), its softness in shear over that in bending [1].
     """
     nodes, weights = np.polynomial.legendre.leggauss(4)

@@ -44,7 +44,7 @@ class StaticEquilibrium(eqx.Module):
         displacement: (ux uy uz gx gy) of every node (node, 5) [m, rad].
         housing: (ux uy uz) of every housing (housing, 3) [m].
         support_load: Load of the shaft on every support (support, 5) [N, N m].
-        stiffness: Of every support there (support, 5, 5) [N/m, N, N m].
+        stiffness: Stiffness of every support there (support, 5, 5) [N/m, N, N m].
         damping: Likewise (support, 5, 5) [N s/m, N s, N m s].
         rotor: The rotor on springs and dampers of that stiffness and damping, for all
             linear analyses about this place.
@@ -82,7 +82,7 @@ def static_equilibrium(
     Args:
         rotor: `Rotor`: shaft, discs, supports; one support at least.
         loads: `RotorLoads`; the constant ones count; `None`: nothing but preload.
-        speed: Of the rotor, for supports that follow it [rad/s].
+        speed: Speed of the rotor, for supports that follow it [rad/s].
         throw: Raise if there is none. Static.
 
     Returns:
@@ -94,7 +94,7 @@ def static_equilibrium(
     Raises:
         SolveError: If it was not found and `throw`; it says where the rotor went.
         TypeError: If `rotor` or `loads` is something else.
-        ValueError: If the rotor has no support, or a loaded station is not there.
+        ValueError: If the rotor has no support, or lacks a loaded station.
 
     Warns:
         UserWarning: If a bearing bears nothing or loses its preload because the shaft
@@ -104,7 +104,7 @@ def static_equilibrium(
     loads = checked_loads("static_equilibrium", rotor, loads)
     speed = as_real(speed)
     number("static_equilibrium", "speed", speed, "rad/s")
-    found, place = settled_at(rotor, loads, speed)
+    found, place = equilibrium_at(rotor, loads, speed)
     if throw:
         found = raise_unless_converged(
             found, found.result, lambda: unsettled(rotor, found, place)
@@ -203,7 +203,7 @@ def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]
 
 
 @program(quick=True)
-def settled_at(
+def equilibrium_at(
     rotor, loads, speed
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
     """Return the result, and the end point of the search even if it failed (motion,).
@@ -217,13 +217,13 @@ def settled_at(
     solved = found.result == Result.CONVERGED
 
     def there(*given):
-        return _settled(found, *given)
+        return _equilibrium(found, *given)
 
-    settled = unless_failed(there, (rotor, parts, speed), solved)
-    return settled, stop(parts).motion(found.x)
+    equilibrium = unless_failed(there, (rotor, parts, speed), solved)
+    return equilibrium, stop(parts).motion(found.x)
 
 
-def _settled(found, rotor, parts, speed) -> StaticEquilibrium:
+def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
     """Return the result of the search with derivatives; NaN if it failed."""
     y, load, stiffness, damping = at_equilibrium(found, parts)
     motion = parts.motion(y)

@@ -20,7 +20,7 @@ from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
 from .rotor import Rotor
 from .speed_support import SpeedSupport, chebyshev_analysis
-from .statics import StaticEquilibrium, checked_loads, settled_at
+from .statics import StaticEquilibrium, checked_loads, equilibrium_at
 
 
 class StaticEquilibriumOver(eqx.Module):
@@ -96,7 +96,7 @@ def _at_each(rotor, loads, speeds) -> StaticEquilibrium:
     """Return equilibria at all speeds, without `rotor`; first axis `place`."""
 
     def one(speed):
-        found = settled_at(rotor, loads, speed)[0]
+        found = equilibrium_at(rotor, loads, speed)[0]
         return eqx.tree_at(lambda f: f.rotor, found, None)
 
     if any(is_traced(leaf) for leaf in jax.tree.leaves((rotor, loads, speeds))):

@@ -67,7 +67,7 @@ def _lost_preload(rotor, found) -> str:
         if not isinstance(support, LinearSupport)
         and np.any(np.asarray(getattr(support, "offset", 1.0)))
     ]
-    # A tangent tells how much it was at least, and whether to ask the bearing.
+    # A tangent gives a lower bound, and whether the bearing need be evaluated.
     before = left[:, 2] - slopes[:, 2, 2] * moved[:, 2]
     if all(abs(left[k, 2]) > _SUSPECT * abs(before[k]) for k in preloaded):
         return ""

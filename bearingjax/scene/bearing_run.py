@@ -12,9 +12,9 @@ from ..statics.solution import Solution
 from .cases_table import turns_of
 from .life_table import life_conditions
 from .optimise_table import Optimisation
+from .preload_of_set import preload_of_set, preload_warnings
 from .quantity import SceneError
 from .read import Scene
-from .set_preload import preload_warnings, set_preload
 from .shaft_optimise import ShaftOptimisation
 from .solved import SolvedScene
 
@@ -76,11 +76,11 @@ def with_set_preload(scene: Scene) -> Scene:
     if scene.fits is None:
         return scene
     ground = scene.ground().drawing
-    found = set_preload(scene.fits, ground, scene.speed)
+    found = preload_of_set(scene.fits, ground, scene.speed)
     if found is None:
         return scene
     told = (*scene.warnings, *preload_warnings(found))
-    return dataclasses.replace(scene, set_preload=found, warnings=told)
+    return dataclasses.replace(scene, preload_of_set=found, warnings=told)
 
 
 def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):

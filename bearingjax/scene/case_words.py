@@ -46,10 +46,10 @@ def case_words(found: dict[str, np.ndarray], case: int) -> list[str]:
         unit = header.partition(" [")[2].rstrip("]")
         value = values[case].item()
         if isinstance(value, str):
-            told = value if len(value) <= _LONGEST else f"{value[: _LONGEST - 1]}…"
+            text = value if len(value) <= _LONGEST else f"{value[: _LONGEST - 1]}…"
         else:
-            told = shown_number(value, unit)
-        words.append(f"{short.replace('_', ' ')} {told}")
+            text = shown_number(value, unit)
+        words.append(f"{short.replace('_', ' ')} {text}")
     return words
 
 

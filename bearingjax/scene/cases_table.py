@@ -55,7 +55,7 @@ MOST_DESIGNS = 10**5
 
 
 @dataclasses.dataclass(frozen=True)
-class Structure:
+class DesignGroup:
     """Designs solved by one program: with the same classes, counts and parts, and the
     same catalogue bearing.
 
@@ -89,7 +89,7 @@ class CaseTable:
 
     Attributes:
         scene: The scene without its cases.
-        structures: The bearing, preloaded and mounted; several designs are grouped
+        design_groups: The bearing, preloaded and mounted; several designs are grouped
             by structure.
         cases: The cases.
         varied: Keys that vary, in order.
@@ -102,7 +102,7 @@ class CaseTable:
     """
 
     scene: Scene
-    structures: tuple[Structure, ...]
+    design_groups: tuple[DesignGroup, ...]
     cases: Cases
     varied: tuple[str, ...]
     settings: tuple[dict[str, Any], ...]
@@ -186,7 +186,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
@@ -202,18 +202,18 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
-    structures, design, made, odd = _designs(data, path, columns)
-    _check_outputs(table, outputs, structures)
+    design_groups, design, made, warned = _designs(data, path, columns)
+    _check_outputs(table, outputs, design_groups)
     cases = _cases(table, scene, columns, design)
-    odd += speeds_told(structures, cases)
+    warned += speed_warnings(design_groups, cases)
     return CaseTable(
         scene=scene,
-        structures=structures,
+        design_groups=design_groups,
         cases=cases,
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=outputs,
-        warnings=_alike(scene.warnings, odd),
+        warnings=_alike(scene.warnings, warned),
         inputs=_inputs(scene, columns, _placed(data["cases"], path)),
     )
 
@@ -246,16 +246,20 @@ def _makes_design(key: str) -> bool:
     return "." in key and key.partition(".")[0] in DESIGN
 
 
-def speeds_told(structures: Sequence[Structure], cases: Cases) -> tuple[str, ...]:
+def speed_warnings(
+    design_groups: Sequence[DesignGroup], cases: Cases
+) -> tuple[str, ...]:
     """Warn of case speeds above the catalogue speeds of each bearing."""
-    turns, told = turns_of(cases), []
-    for name in dict.fromkeys(part.designation for part in structures):
-        mine = [part.of(cases) for part in structures if part.designation == name]
+    turns, texts = turns_of(cases), []
+    for name in dict.fromkeys(part.designation for part in design_groups):
+        mine = [part.of(cases) for part in design_groups if part.designation == name]
         own = np.zeros(cases.count)
         own[np.concatenate(mine)] = turns[np.concatenate(mine)]
-        bearing = next(p.scene for p in structures if p.designation == name).installed
-        told += bearing.speed_warnings(own)
-    return tuple(told)
+        bearing = next(
+            p.scene for p in design_groups if p.designation == name
+        ).installed
+        texts += bearing.speed_warnings(own)
+    return tuple(texts)
 
 
 def turns_of(cases: Cases) -> np.ndarray:
@@ -268,11 +272,11 @@ def turns_of(cases: Cases) -> np.ndarray:
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
-def _alike(first: Iterable[str], odd: Sequence[str]) -> tuple[str, ...]:
+def _alike(first: Iterable[str], warned: Sequence[str]) -> tuple[str, ...]:
     """Merge the warnings of a scene and of its designs; of those that differ only in
     their numbers the first is kept."""
     kinds: dict[str, list[str]] = {}
-    for text in dict.fromkeys((*first, *odd)):
+    for text in dict.fromkeys((*first, *warned)):
         kinds.setdefault(re.sub(r"\d[\d.e+-]*", "#", text), []).append(text)
     return tuple(
         texts[0] + (f" ({len(texts)} designs alike)" if len(texts) > 1 else "")
@@ -295,11 +299,11 @@ def _placed(cases, path) -> dict[str, Any]:
     return {**cases, "file": str((path.parent / name).resolve())} if name else cases
 
 
-def _check_outputs(table, outputs, structures) -> None:
+def _check_outputs(table, outputs, design_groups) -> None:
     """Reject outputs per rolling element if the number of elements varies."""
     sizes = {
         tuple(row.bearing.n_elements for row in rows_of(part.element.bearing))
-        for part in structures
+        for part in design_groups
     }
     lives = [name for name in LIFE_OUTPUTS if name != "damage_share"]
     whole = ("displacement", "force", "stiffness", *SUMMARIES, *lives)
@@ -431,7 +435,7 @@ def _designs(data, path, columns):
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
         scene = scene_of(data, path)
-        return (Structure(scene.running(), None, scene),), None, ({},), ()
+        return (DesignGroup(scene.running(), None, scene),), None, ({},), ()
     # Repeated values are merged, and so are repeated designs.
     codes = []
     for column in varied:
@@ -444,7 +448,7 @@ def _designs(data, path, columns):
     if len(first) > MOST_DESIGNS:
         problem = f"make {len(first)} designs; at most {MOST_DESIGNS}"
         raise SceneError(f"{path.name}: `cases`: {problem}")
-    made, elements, scenes, odd = [], [], [], []
+    made, elements, scenes, warned = [], [], [], []
     for case in first:
         settings = {c.key: c.values[c.index[case]] for c in varied}
         changed = copy.deepcopy(data)
@@ -461,21 +465,21 @@ def _designs(data, path, columns):
         made.append(dict(pairs))
         elements.append(scene.running())
         scenes.append(scene)
-        odd += scene.warnings
+        warned += scene.warnings
     alike: dict[Any, list[int]] = {}
     for number, element in enumerate(elements):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
         key = jax.tree.structure(element), shapes, _rated_as(scenes[number])
         alike.setdefault(key, []).append(number)
-    structures = tuple(
-        Structure(
+    design_groups = tuple(
+        DesignGroup(
             stack_designs([elements[k] for k in numbers]),
             np.array(numbers),
             scenes[numbers[0]],
         )
         for numbers in alike.values()
     )
-    return structures, design.reshape(-1), tuple(made), tuple(odd)
+    return design_groups, design.reshape(-1), tuple(made), tuple(warned)
 
 
 def _rated_as(scene: Scene) -> tuple[Any, ...]:

@@ -71,8 +71,8 @@ def _side_by_side(found: list[dict[str, float]]) -> dict[str, np.ndarray]:
     largest: dict[tuple[str, str], float] = {}
     for header in rows:
         largest[kind(header)] = max(largest.get(kind(header), 0.0), size[header])
-    told = [h for h in rows if size[h] > _SMALL * largest[kind(h)]]
-    order = sorted(told, key=lambda h: -np.nan_to_num(difference(rows[h])))
+    large = [h for h in rows if size[h] > _SMALL * largest[kind(h)]]
+    order = sorted(large, key=lambda h: -np.nan_to_num(difference(rows[h])))
     return {header: rows[header] for header in order}
 
 
@@ -99,18 +99,18 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
     scene, solution, life = one.scene, one.numbers, one.life
     if not one.converged:
         return {}
-    told: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
-    told |= {name: SUMMARIES[name](solution) for name in _SUMMARIES}
+    numbers: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
+    numbers |= {name: SUMMARIES[name](solution) for name in _SUMMARIES}
     if life is not None:
-        told |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
-        del told["damage_share"]
+        numbers |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
+        del numbers["damage_share"]
     if scene.fits is not None:
         left = scene.fits.facts.operating
-        told[OPERATING_CLEARANCE] = left.radial_clearance
+        numbers[OPERATING_CLEARANCE] = left.radial_clearance
     fixed, moving = f"_{scene.fixed_ring}_", f"_{scene.moving_ring}_"
     diagonal = {f"stiffness{moving}{name}{moving}{name}" for name in FREEDOMS}
     found = {}
-    for name, value in told.items():
+    for name, value in numbers.items():
         if value is None:
             continue
         values = without_round_off(np.asarray(value))
@@ -130,7 +130,7 @@ def compare_report(found: Comparison) -> Report:
         found: From `run_compare`.
     """
     rows = {h: values for h, values in found.quantities.items() if difference(values)}
-    told: list[Part] = []
+    parts: list[Part] = []
     if rows:
         headers = [header.partition(" [") for header in rows]
         units = [unit.rstrip("]") for _, _, unit in headers]
@@ -141,15 +141,15 @@ def compare_report(found: Comparison) -> Report:
             *map(Column, found.names, values, [units] * len(values)),
             Column("difference", apart, "1", ".3g", (100.0, "%")),
         ]
-        told.append(Grid(columns))
+        parts.append(Grid(columns))
     same = len(found.quantities) - len(rows)
-    told += [f"{same} results are the same"] if same else []
+    parts += [f"{same} results are the same"] if same else []
     warned = [
         f"{name}: {text}"
         for name, one in zip(found.names, found.solved, strict=True)
         for text in one.warnings
     ]
-    return Report({"Scenes": [_inputs(found)], "Results": told}, warned)
+    return Report({"Scenes": [_inputs(found)], "Results": parts}, warned)
 
 
 def _inputs(found: Comparison) -> Part:

@@ -295,7 +295,7 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
@@ -338,7 +338,7 @@ def _contact(roller: RollerKeys, raceway: RacewayKeys) -> RollerContact:
         )
 
 
-def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
+def _scene(top: Table, name, contact: RollerContact, warned) -> ContactScene:
     operating = read_keys(ContactOperatingKeys, top.table("operating", required=True))
     numerics = read_keys(ContactNumericsKeys, top.table("numerics"))
     _check_grid(numerics, contact, len(operating.loads))
@@ -358,7 +358,7 @@ def _scene(top: Table, name, contact: RollerContact, odd) -> ContactScene:
         tolerance=numerics.tolerance,
         max_steps=numerics.max_steps,
         field=read_keys(ContactOutputKeys, top.table("output")).field,
-        warnings=odd,
+        warnings=warned,
         inputs={},
     )
 

@@ -25,7 +25,7 @@ MOST_ORDER = {"raceway": 900, "element": 110}
 around a rolling element are in error by 1 % of the amplitude."""
 
 
-class Place(NamedTuple):
+class ErrorContext(NamedTuple):
     """Context of a form error, in addition to its table.
 
     Attributes:
@@ -64,21 +64,23 @@ class DeviationKeys(Keys):
         """Highest wave order of the part."""
         return MOST_ORDER["element" if self.part == ELEMENTS else "raceway"]
 
-    def shape(self, place: Place) -> AbstractShape:
+    def shape(self, context: ErrorContext) -> AbstractShape:
         """Build the form error.
 
         Args:
-            place: Its context.
+            context: Its context.
         """
         raise NotImplementedError
 
-    def _each(self, values: Any, place: Place) -> Any:
+    def _each(self, values: Any, context: ErrorContext) -> Any:
         """Spread values over the rolling elements, 0 for those without the error."""
         values = np.asarray(values, dtype=float)
-        if place.count is None:
+        if context.count is None:
             return values
-        which = np.arange(place.count)
-        chosen = np.ones(place.count) if self.element is None else which == self.element
+        which = np.arange(context.count)
+        chosen = (
+            np.ones(context.count) if self.element is None else which == self.element
+        )
         return chosen.reshape(-1, *[1] * values.ndim) * values
 
     def _check_order(self, name: str, order: Any) -> None:
@@ -152,9 +154,9 @@ class WavesKeys(DirectedKeys):
             problem = "is negative; turn the `phase` by 180 deg in its place"
             raise self.table.error("amplitude", problem)
 
-    def shape(self, place: Place) -> Harmonics:
+    def shape(self, context: ErrorContext) -> Harmonics:
         sizes = np.broadcast_to(self.amplitude, len(self.order))
-        sizes = self._each(sizes, place)
+        sizes = self._each(sizes, context)
         return Harmonics(self.order, sizes, np.broadcast_to(self.phase, sizes.shape))
 
 
@@ -180,13 +182,13 @@ class SpectrumKeys(DirectedKeys):
             problem = f"{self.highest} is below `lowest`, {self.lowest}"
             raise self.table.error("highest", problem)
 
-    def shape(self, place: Place) -> Harmonics:
+    def shape(self, context: ErrorContext) -> Harmonics:
         # Rows are drawn independently; the first equals that of a single-row bearing.
-        seed = [self.seed, place.row] if place.row else self.seed
+        seed = [self.seed, context.row] if context.row else self.seed
         orders = self.highest - self.lowest + 1
-        shape = (orders,) if place.count is None else (place.count, orders)
+        shape = (orders,) if context.count is None else (context.count, orders)
         phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, shape)
-        sizes = self._each(np.full(1, self.amplitude), place)
+        sizes = self._each(np.full(1, self.amplitude), context)
         return Harmonics.spectrum(self.lowest, self.highest, sizes, self.slope, phase)
 
 
@@ -211,10 +213,10 @@ class ProfileKeys(DirectedKeys):
         if self.highest is not None:
             self._check_order("highest", self.highest)
 
-    def shape(self, place: Place) -> Harmonics:
+    def shape(self, context: ErrorContext) -> Harmonics:
         heights, table = np.array(self.points), self.table
         if self.points is None:
-            found = read_list(table, place.folder, {"height": "length"}, "heights")
+            found = read_list(table, context.folder, {"height": "length"}, "heights")
             if list(found) != ["height"]:
                 problem = 'must have one column, headed such as "height [um]"'
                 raise table.error("file", problem)
@@ -224,7 +226,7 @@ class ProfileKeys(DirectedKeys):
         highest = self.highest or min(self.most, max(1, (len(heights) - 1) // 2))
         table.fill("highest", highest)
         waves = Harmonics.measured(heights, highest)
-        sizes = self._each(waves.amplitude, place)
+        sizes = self._each(waves.amplitude, context)
         return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
 
 
@@ -246,9 +248,9 @@ class SpallKeys(DeviationKeys):
             problem = "is missing; number of the element with the spall"
             raise self.table.error("element", problem)
 
-    def shape(self, place: Place) -> Spall:
-        every = np.zeros(() if place.count is None else (place.count,))
-        depth = self._each(self.depth, place)
+    def shape(self, context: ErrorContext) -> Spall:
+        every = np.zeros(() if context.count is None else (context.count,))
+        depth = self._each(self.depth, context)
         return Spall(every + self.angle, every + self.length, depth)
 
 
@@ -273,7 +275,7 @@ def read_deviations(
         folder: Folder of the scene and of its profile files.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     keys = read_keys(DeviationsKeys, table)
     found = [_Gathered(count) for count in counts]
@@ -303,7 +305,9 @@ class _Gathered:
             problem = f"{one.element} is not there; the elements are 0 to"
             raise one.table.error("element", f"{problem} {self.count - 1}")
         with one.table.building():
-            shape = one.shape(Place(self.count if of_elements else None, folder, row))
+            shape = one.shape(
+                ErrorContext(self.count if of_elements else None, folder, row)
+            )
         if of_elements:
             self.elements.append(shape)
         else:

@@ -160,7 +160,7 @@ class DynamicsKeys(Keys):
         "duration of the motion; needed without `--steady`", "time", above=0, most=1e5
     )
     n_times: int = scene_key(
-        "times that are told", default=501, least=2, most=MOST_TIMES
+        "number of output times", default=501, least=2, most=MOST_TIMES
     )
     axis: str = scene_key("axis of the bearing", choices=AXES, default="vertical")
     start: str = scene_key(

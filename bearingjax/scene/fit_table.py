@@ -414,7 +414,7 @@ def fit_warnings(fits: Fits, load_fixed_to: str = "space") -> list[str]:
     return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
 
 
-def turning(fits: Fits | None, speed: float) -> Fits | None:
+def fits_at_speed(fits: Fits | None, speed: float) -> Fits | None:
     """Return the fits on a rotating shaft in a stationary housing.
 
     Args:

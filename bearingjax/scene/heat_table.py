@@ -63,7 +63,7 @@ def read_heat(
         bearings: The bearings as scenes; `None` of springs.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     if "heat" not in top:
         for name, table in own.items():
@@ -102,7 +102,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
 
 
 def friction_of(scene: Scene, oil: Oil) -> dict[str, Any]:
-    """Return what `friction_power` needs to know of a bearing, by field name.
+    """Return the inputs of `friction_power` for a bearing, by field name.
 
     Args:
         scene: The bearing.

@@ -184,11 +184,11 @@ def _unit(unit: str) -> str:
     return f' <span class="unit">{escape(unit)}</span>' if unit else ""
 
 
-def _warnings(told: Sequence[str]) -> str:
+def _warnings(warnings: Sequence[str]) -> str:
     """Format the warnings as a box, without duplicates."""
-    if not told:
+    if not warnings:
         return ""
-    items = "\n".join(f"<li>{escape(one)}</li>" for one in dict.fromkeys(told))
+    items = "\n".join(f"<li>{escape(one)}</li>" for one in dict.fromkeys(warnings))
     return _section("Warnings", f"<ul>\n{items}\n</ul>", "warnings")
 
 

@@ -23,7 +23,7 @@ _RATED = "published for the `designation`, else from the geometry"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class LifeKeys(Keys):
-    """[life]: what a rating life needs beside the bearing."""
+    """[life]: conditions of the rating life, in addition to the bearing."""
 
     dynamic_capacity: float | None = scene_key(
         "basic dynamic load rating C", "force", above=0, otherwise=_RATED
@@ -80,7 +80,7 @@ def read_life(
         points: Number of positions along the rollers.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     if "life" not in top:
         return None

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
-from ..noise import Shares, write_sound
+from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
 from .noise_run import NoiseRun, RandomBearings
-from .noise_scene import DIRECTIONS
+from .noise_scene import AXES
 from .tolerance_table import Tighter
 
 
@@ -61,9 +61,9 @@ def _analysis(run: NoiseRun) -> dict[str, Any]:
     analysis = run.analysis
     assert analysis is not None  # checked by the caller
     states = analysis.states
-    three = len(DIRECTIONS)
+    three = len(AXES)
     return {
-        "direction": list(DIRECTIONS),
+        "direction": list(AXES),
         "time": analysis.record.time.tolist(),
         "acceleration": analysis.acceleration.tolist(),
         "displacement": np.asarray(analysis.record.displacement)[:, :three].tolist(),
@@ -91,7 +91,7 @@ PERCENTILES = (5.0, 50.0, 95.0)
 
 def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
-    told: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         "level": np.asarray(levels.level).tolist(),
         "band_level": np.asarray(levels.bands).tolist(),
         "percentile": {
@@ -99,20 +99,20 @@ def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
             "level": np.asarray(levels.percentile(PERCENTILES)).tolist(),
         },
     }
-    if many.shares is not None:
-        told["sources"] = list(many.shares.sources)
-        told["part"] = parts_of(many.shares).tolist()
-        total = float(many.shares.mean_square)
-        told["part_error"] = (np.asarray(many.shares.error) / total).tolist()
-        told["part_by_band"] = np.asarray(many.shares.by_band).tolist()
-        told["tighter"] = [
-            {"name": name, "gain": float(many.shares.gain_together(ratio))}
+    if many.contributions is not None:
+        numbers["sources"] = list(many.contributions.sources)
+        numbers["part"] = parts_of(many.contributions).tolist()
+        total = float(many.contributions.mean_square)
+        numbers["part_error"] = (np.asarray(many.contributions.error) / total).tolist()
+        numbers["part_by_band"] = np.asarray(many.contributions.by_band).tolist()
+        numbers["tighter"] = [
+            {"name": name, "gain": float(many.contributions.gain_together(ratio))}
             for name, ratio in tighter
         ]
-    return told
+    return numbers
 
 
-def parts_of(found: Shares) -> np.ndarray:
+def parts_of(found: SourceContributions) -> np.ndarray:
     """Return the part of the mean square lost without each source (source,) [1]."""
     return np.asarray(found.share) / float(found.mean_square)
 
@@ -124,13 +124,13 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
         run: From `run_noise`, converged.
     """
     analysis = run.analysis
-    assert analysis is not None  # asked for of what is solved alone
+    assert analysis is not None  # callers have solved it
     columns = {"time [s]": np.asarray(analysis.record.time)}
     for name, unit, values in (
         ("acceleration", "m/s²", analysis.acceleration),
         ("displacement", "m", np.asarray(analysis.record.displacement)),
     ):
-        for k, direction in enumerate(DIRECTIONS):
+        for k, direction in enumerate(AXES):
             columns[f"{name}_{direction} [{unit}]"] = values[:, k]
     return columns
 
@@ -146,7 +146,7 @@ def loudest_direction(run: NoiseRun) -> np.ndarray:
         direction = np.asarray(sensor.direction)
         return direction / np.linalg.norm(direction)
     assert run.analysis is not None
-    return np.eye(len(DIRECTIONS))[int(np.argmax(run.analysis.level))]
+    return np.eye(len(AXES))[int(np.argmax(run.analysis.level))]
 
 
 def write_noise_sound(path: str | Path, run: NoiseRun) -> float:

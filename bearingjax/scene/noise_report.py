@@ -8,7 +8,7 @@ from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
-from .noise_scene import DIRECTIONS
+from .noise_scene import AXES
 from .report import bearing_text
 from .report_model import Column, Grid, Report
 
@@ -93,7 +93,7 @@ def _by_direction(levels):
     held = np.where(levels > LOWEST_LEVEL, levels, np.nan)
     return [
         Column(name, values, "dB", ".1f")
-        for name, values in zip(DIRECTIONS, held.T, strict=True)
+        for name, values in zip(AXES, held.T, strict=True)
     ]
 
 
@@ -123,12 +123,12 @@ def _lines(run):
 
 def _states(run):
     states = run.analysis.states
-    told = ", ".join(
+    text = ", ".join(
         f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
     )
     kind = f"{run.task.model.element.bearing.noun}s"
     return (
-        f"contacts of the {kind}, share of the time: {told};"
+        f"contacts of the {kind}, share of the time: {text};"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"
     )
 
@@ -140,7 +140,10 @@ def _many(run):
     names = [f"{share:g} % are below" for share in PERCENTILES]
     columns = [Column("level", names), *_by_direction(levels)]
     grid = Grid(columns, f"{task.bearings} random bearings")
-    return [grid, *([] if many.shares is None else _sources(task, many.shares))]
+    return [
+        grid,
+        *([] if many.contributions is None else _sources(task, many.contributions)),
+    ]
 
 
 def _sources(task, found):
@@ -149,11 +152,9 @@ def _sources(task, found):
     where = "in all directions"
     if sensor is not None:
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
-        named = [
-            k for k, d in enumerate(np.eye(len(DIRECTIONS))) if np.allclose(d, along)
-        ]
-        told = DIRECTIONS[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
-        where = f"along the sensor ({told})"
+        named = [k for k, d in enumerate(np.eye(len(AXES))) if np.allclose(d, along)]
+        text = AXES[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
+        where = f"along the sensor ({text})"
     total = float(found.mean_square)
     parts, errors = parts_of(found), np.asarray(found.error) / total
     gains, factors = np.asarray(found.gain()), dict(task.tighter)
@@ -169,7 +170,7 @@ def _sources(task, found):
     yield Grid(columns, f"what makes the noise {where}, of {found.used} bearings")
     yield "the rest is what all bearings of the scene have: load, `waves`, `spalls`"
     if doubt.any():
-        yield "no gain is told (-) where the part may be chance: take more bearings"
+        yield "no gain is given (-) where the part may be chance: take more bearings"
     for name, ratio in factors.items():
         much = ", ".join(f"{SOURCES[k]} x {v:.2g}" for k, v in ratio.items())
         yield f"{name}: {-float(found.gain_together(ratio)):.2g} dB ({much})"
@@ -179,13 +180,13 @@ def _sources(task, found):
 def _in_bands(task, found):
     """Tabulate the largest source of each band."""
     parts = np.asarray(found.by_band)
-    told = []
+    largest = []
     for centre, column in zip(task.bands.centre, parts.T, strict=True):
         if np.isfinite(column).all() and column.max() > _WORTH:
             k = int(np.argmax(column))
-            told.append((f"{centre:g}", SOURCES[found.sources[k]], column[k]))
+            largest.append((f"{centre:g}", SOURCES[found.sources[k]], column[k]))
     by_source: dict[str, list[str]] = {}
-    for centre, name, part in told:
+    for centre, name, part in largest:
         by_source.setdefault(name, []).append(f"{centre} ({100.0 * part:.0f} %)")
     for name, bands in by_source.items():
         yield f"{name}, the largest part of the bands, Hz: {', '.join(bands)}"

@@ -13,12 +13,13 @@ from ..noise import (
     Line,
     MonteCarlo,
     NaturalModes,
-    Shares,
+    SourceContributions,
     Spectrum,
     Vibration,
     band_levels,
     bridged,
     contact_states,
+    contribution_warnings,
     level,
     line_causes,
     model_warnings,
@@ -28,15 +29,14 @@ from ..noise import (
     record_warnings,
     ring_modes,
     rounding,
-    share_warnings,
-    shares,
+    source_contributions,
     spectrum,
     total_root_mean_square,
     vibration,
 )
-from ..noise.standing import why
+from ..noise.static_start import why
 from ..numerics.result import Result
-from .noise_scene import DIRECTIONS, NoiseScene
+from .noise_scene import AXES, NoiseScene
 
 LARGEST_LINES = 12
 """Number of largest spectral lines reported regardless of their neighbours."""
@@ -69,7 +69,7 @@ class NoiseAnalysis:
     @property
     def acceleration(self) -> np.ndarray:
         """Acceleration of the moving ring (time, direction) [m/s²]."""
-        return np.asarray(self.record.acceleration)[:, : len(DIRECTIONS)]
+        return np.asarray(self.record.acceleration)[:, : len(AXES)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,12 +78,12 @@ class RandomBearings:
 
     Attributes:
         levels: Levels of each bearing.
-        shares: Share of each source of scatter in the mean square, from a subset of
-            the bearings; `None` if none of these was solved.
+        contributions: Share of each source of scatter in the mean square, from a subset
+            of the bearings; `None` if none of these was solved.
     """
 
     levels: MonteCarlo
-    shares: Shares | None
+    contributions: SourceContributions | None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -116,18 +116,20 @@ class NoiseRun:
         return self.result is Result.CONVERGED
 
 
-def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> NoiseRun:
+def run_noise(
+    task: NoiseScene, on_stage: Callable[[str], None] | None = None
+) -> NoiseRun:
     """Simulate and evaluate the vibration of the bearing of a scene.
 
     Args:
         task: From `read_noise`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run with its result code; a failed solve does not raise.
     """
     model = task.model
-    _tell(told, "natural modes")
+    _tell(on_stage, "natural modes")
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
@@ -141,7 +143,7 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
         model, line = models
         task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
-    _tell(told, "vibration")
+    _tell(on_stage, "vibration")
     record = vibration(
         model,
         turns=task.turns,
@@ -164,22 +166,22 @@ def run_noise(task: NoiseScene, told: Callable[[str], None] | None = None) -> No
     analysis = analyse(task, record, modes)
     doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
     warned += tuple(doubtful)
-    many = _many(task, steps, told) if task.bearings else None
+    many = _many(task, steps, on_stage) if task.bearings else None
     if many is not None and many.levels.failed:
         warned += (
             f"{many.levels.failed} of {task.bearings} random bearings were not solved",
         )
-    if many is not None and many.shares is not None:
-        warned += tuple(share_warnings(many.shares))
+    if many is not None and many.contributions is not None:
+        warned += tuple(contribution_warnings(many.contributions))
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
-def _tell(told, stage):
-    if told is not None:
-        told(stage)
+def _tell(on_stage, stage):
+    if on_stage is not None:
+        on_stage(stage)
 
 
-def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
+def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
@@ -193,7 +195,7 @@ def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
     key = jax.random.key(task.seed)
 
     def progress(words):
-        return lambda done, whole: _tell(told, f"{words}: {done} of {whole}")
+        return lambda done, whole: _tell(on_stage, f"{words}: {done} of {whole}")
 
     levels = monte_carlo(
         *given,
@@ -211,7 +213,7 @@ def _many(task: NoiseScene, steps: int, told) -> RandomBearings:
     sensor = task.line.sensor
     along = None if sensor is None else np.asarray(sensor.direction)
     with contextlib.suppress(FloatingPointError):
-        made = shares(
+        made = source_contributions(
             *given,
             max(fewer, batch),
             key,
@@ -234,7 +236,7 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         record: The vibration.
         modes: Natural modes, in NumPy.
     """
-    acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
+    acceleration = np.asarray(record.acceleration)[:, : len(AXES)]
     shaft = float(record.shaft_frequency)
     found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
     bearing = task.model.element.bearing

@@ -8,7 +8,7 @@ import numpy as np
 from ..noise import AbstractWindow, Bands, NoiseModel, Tolerances
 from .read import Scene
 
-DIRECTIONS = ("x", "y", "z")
+AXES = ("x", "y", "z")
 """Directions of the reported acceleration."""
 
 

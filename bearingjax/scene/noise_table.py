@@ -26,8 +26,8 @@ from ..noise import (
 )
 from ..noise.reference_levels import NORM
 from .deviations_table import read_deviations
-from .noise_scene import DIRECTIONS, NoiseScene
-from .read import Scene, scene_of, with_speed_told
+from .noise_scene import AXES, NoiseScene
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -45,7 +45,7 @@ MOST_SAMPLES = 200_000
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class VibrationKeys(Keys):
-    """[vibration]: the rig of a bearing whose noise is wanted, and how it is heard."""
+    """[vibration]: the test rig of a bearing, the record and its evaluation."""
 
     mass: float = scene_key("mass of the moving ring", "mass")
     moving_ring: str | None = scene_key(
@@ -83,7 +83,7 @@ class VibrationKeys(Keys):
         reader=lambda table, name: _direction(table, name),
         json={
             "anyOf": [
-                {"enum": list(DIRECTIONS)},
+                {"enum": list(AXES)},
                 {
                     "type": "array",
                     "items": {"type": "number"},
@@ -158,12 +158,12 @@ def read_noise(
         bearings: Number of additional random bearings.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
     top = Table(data, path.name)
-    scene = with_speed_told(scene_of(data, path))
+    scene = with_speed_warnings(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
     row = rows_of(scene.element.bearing)[0].bearing
@@ -309,8 +309,8 @@ def _direction(table: Table, name: str) -> list[float]:
         numbers = [one for one in given if isinstance(one, int | float)]
         if len(numbers) == 3 and len(given) == 3 and not any(map(_is_bool, given)):
             return [float(one) for one in numbers]
-    elif given in DIRECTIONS:
-        return [float(given == axis) for axis in DIRECTIONS]
+    elif given in AXES:
+        return [float(given == axis) for axis in AXES]
     problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
     raise table.error(name, problem)
 

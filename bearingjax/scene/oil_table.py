@@ -62,7 +62,7 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
         table: `[lubricant]`.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     keys = read_keys(LubricantKeys, table)
     known = keys.temperature, keys.supply, keys.roughness
@@ -163,10 +163,10 @@ def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
             "ribs": friction.flange_torque,
         }
         sums = {k: 1e3 * v.sum() for k, v in parts.items() if v.any()}
-        told = ", ".join(f"{k} {value:.4g}" for k, value in sums.items())
+        text = ", ".join(f"{k} {value:.4g}" for k, value in sums.items())
         lines.append(
             f"friction torque (Palmgren) {1e3 * float(friction.torque):.4g} N mm"
-            f" ({told}); {float(friction.power):.4g} W"
+            f" ({text}); {float(friction.power):.4g} W"
         )
     if facts.skf is not None:
         skf = facts.skf

@@ -126,5 +126,5 @@ class OutputKeys(Keys):
     """[output] of a bearing of rollers."""
 
     points: int = scene_key(
-        "positions along a roller at which loads are told", default=101, least=2
+        "positions along a roller at which loads are output", default=101, least=2
     )

@@ -38,8 +38,8 @@ def scene_of_design(task: Optimisation | ShaftOptimisation, design: Any) -> Any:
     fixed_to = "space" if scene.life is None else scene.life.load_fixed_to
     old = fit_warnings(scene.fits, fixed_to)
     kept = [text for text in scene.warnings if text not in old]
-    told = (*kept, *fit_warnings(fits, fixed_to))
-    return dataclasses.replace(scene, fits=fits, warnings=told)
+    warned = (*kept, *fit_warnings(fits, fixed_to))
+    return dataclasses.replace(scene, fits=fits, warnings=warned)
 
 
 def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:

@@ -230,12 +230,12 @@ def _bearings(found, best):
 def _shown(found):
     """Return the displayed form of the objective by its name, if it differs."""
     pair = [_measured(side)[0] for side in (found.before, found.after)]
-    measure, ((_, before), (_, after)) = _told(found.objective, pair)
+    measure, ((_, before), (_, after)) = _as_reported(found.objective, pair)
     if measure is found.objective:
         return {}
     ends = {"before": before, "after": after}
-    told = {k: _finite(x) for k, x in ends.items()}
-    return {label_of(measure).replace(" ", "_"): told}
+    finite = {k: _finite(x) for k, x in ends.items()}
+    return {label_of(measure).replace(" ", "_"): finite}
 
 
 def _measured(outcome: Outcome):
@@ -278,7 +278,7 @@ def _measures(found):
     rows = []
     pairs = zip(_measured(found.before), _measured(found.after), strict=True)
     for k, (measure, values) in enumerate(zip(measures, pairs, strict=True)):
-        shown, (first, last) = _told(measure, values)
+        shown, (first, last) = _as_reported(measure, values)
         scale, unit = _unit(shown)
         largest = isinstance(measure, AbstractMeasure) and measure.maximised
         made = "made largest" if largest else "made least"
@@ -295,11 +295,11 @@ def _grid(names, rows):
     return Grid([Column(n, v) for n, v in zip(names, values, strict=True)])
 
 
-def _told(measure, values):
+def _as_reported(measure, values):
     """Return the displayed form of a measure, and its (smooth, exact) pairs."""
     if not isinstance(measure, AbstractMeasure) or measure.reported_as is measure:
         return measure, values
-    shown = [tuple(measure.told(x) for x in pair) for pair in values]
+    shown = [tuple(measure.reported_value(x) for x in pair) for pair in values]
     return measure.reported_as, shown
 
 

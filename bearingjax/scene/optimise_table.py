@@ -27,7 +27,7 @@ from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_table import life_conditions
 from .quantity import SceneError, kind_of
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
 from .table import Table, not_among
@@ -165,7 +165,7 @@ class ConstraintKeys(BoundKeys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SearchKeys(Keys):
-    """[optimise]: what is free, and how the best is sought."""
+    """[optimise]: variables and the search for the best design."""
 
     objective: str
     exponent: float = scene_key(
@@ -194,7 +194,7 @@ class SearchKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class OptimiseKeys(SearchKeys):
-    """[optimise]: what is free, what is made least, and what is kept."""
+    """[optimise]: variables, objective and constraints."""
 
     objective: str = scene_key(
         "what is made least; a life in hours is made largest", choices=OBJECTIVES
@@ -221,7 +221,7 @@ def read_bearing_optimisation(
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     settings = tuple(settings)
     path = find_scene(source)
@@ -243,7 +243,7 @@ def read_bearing_optimisation(
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
-    scene = with_speed_told(scene, turns_of(cases))
+    scene = with_speed_warnings(scene, turns_of(cases))
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases, set(begun))
     table.finish()
@@ -385,7 +385,7 @@ def read_variables(
         begun: Keys that start in the middle of their range unless a start is given.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     variables = []
     for key in table.keys():

@@ -13,8 +13,8 @@ from .fit_report import fit_as_dict
 from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import oil_as_dict
+from .preload_of_set import preload_as_dict
 from .read import Scene
-from .set_preload import preload_as_dict
 from .solved import SolvedScene
 
 _OF_ALL = "displacement", "force", "stiffness", "roller_load"
@@ -127,8 +127,8 @@ def fits_as_dict(scene: Scene) -> dict[str, Any]:
     if scene.fits is None:
         return {}
     found = fit_as_dict(scene.fits)
-    if scene.set_preload is not None:
-        found["preload"] = preload_as_dict(scene.set_preload)
+    if scene.preload_of_set is not None:
+        found["preload"] = preload_as_dict(scene.preload_of_set)
     return {"fit": found}
 
 

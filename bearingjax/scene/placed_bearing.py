@@ -45,12 +45,12 @@ def placed_bearing(
         name: NAME.
         path: Path of the scene.
         beside: Keys of the table that the machine reads itself.
-        speed: Of the inner ring [rad/s]; lives and fits take that of the machine.
+        speed: Speed of the inner ring [rad/s]; lives and fits take that of the machine.
         known: Scenes read before, by what was read; added to.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed; the message names the
-            keys of the machine.
+        SceneError: For keys that are missing, unknown or not allowed; the message names
+            the keys of the machine.
     """
     known = {} if known is None else known
     own = {k: v for k, v in table.keys_given().items() if k not in beside}

@@ -18,13 +18,14 @@ from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from .bearing_table import designated, read_bearing
-from .catalogue_doubts import catalogue_doubts
 from .catalogue_entry import FromCatalogue, catalogue_entry
 from .choices_table import KINEMATICS, read_choices
 from .fit_table import Fits, fit_warnings, installed, read_fits
+from .leftover_keys import leftover_warnings
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
+from .preload_of_set import PreloadOfSet
 from .quantity import SceneError
 from .scene_file import (
     find_scene,
@@ -34,7 +35,6 @@ from .scene_file import (
     shipped_scenes,
 )
 from .schema import read_keys
-from .set_preload import SetPreload
 from .table import Table
 
 
@@ -61,7 +61,7 @@ class Scene:
         catalogue: Catalogue entry of its `designation`, or `None` without one.
         inputs: The scene as it was read, all quantities in SI, defaults filled in, in
             the form of a scene file.
-        set_preload: Preload of a set on its seats, or `None`: not computed
+        preload_of_set: Preload of a set on its seats, or `None`: not computed
             (`with_set_preload`).
     """
 
@@ -81,7 +81,7 @@ class Scene:
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
-    set_preload: SetPreload | None = None
+    preload_of_set: PreloadOfSet | None = None
 
     @property
     def moving_ring(self) -> str:
@@ -148,13 +148,13 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         The scene, validated.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
-    return with_speed_told(scene_of(parse_bearing(path, settings), path))
+    return with_speed_warnings(scene_of(parse_bearing(path, settings), path))
 
 
-def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
+def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
     """Add warnings of speeds above those of the catalogue to a scene.
 
     Args:
@@ -164,8 +164,8 @@ def with_speed_told(scene: Scene, turns: Any = None) -> Scene:
     """
     if turns is None:
         turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
-    told = scene.installed.speed_warnings(turns)
-    return dataclasses.replace(scene, warnings=(*scene.warnings, *told))
+    texts = scene.installed.speed_warnings(turns)
+    return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
 
 
 def scene_of(
@@ -197,10 +197,10 @@ def scene_of(
         bearing, preload = read_bearing(table, top)
     found = designated(table)
     catalogue = None if found is None else found[1].varied(varied)
-    odd = tuple(str(w.message) for w in caught)
+    warned = tuple(str(w.message) for w in caught)
     if found is not None:
-        odd += catalogue_doubts(*found, varied)
-    scene = _scene(top, path.stem, bearing, preload, catalogue, odd)
+        warned += leftover_warnings(*found, varied)
+    scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())
 
@@ -226,14 +226,14 @@ def read_element(
     return element
 
 
-def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
+def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     numerics, asked = top.table("numerics"), read_keys(SolveKeys, top.table("numerics"))
     operating = read_keys(OperatingKeys, top.table("operating"))
     speed = operating.speed
     oil = None
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
-        odd += assumed
+        warned += assumed
     bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
     element = read_element(bearing, top.table("contact"), operating.table, numerics)
     numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
@@ -246,8 +246,8 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
     life = read_life(top, bearing, speed, points)
     if fits is not None:
         fixed_to = "space" if life is None else life.load_fixed_to
-        odd += tuple(fit_warnings(fits, fixed_to))
-    odd += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
+        warned += tuple(fit_warnings(fits, fixed_to))
+    warned += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,
         element=element,
@@ -262,7 +262,7 @@ def _scene(top, name, bearing, preload, catalogue, odd) -> Scene:
         tolerance=asked.tolerance,
         points=points,
         life=life,
-        warnings=odd,
+        warnings=warned,
         catalogue=catalogue,
     )
 

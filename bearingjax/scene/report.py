@@ -24,9 +24,9 @@ from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .life_report import life_section
 from .oil_table import oil_report
 from .operation_report import operation
+from .preload_of_set import preload_report
 from .read import Scene
 from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
-from .set_preload import preload_report
 from .solved import SolvedScene
 
 ROUND_OFF = 1e-11
@@ -117,8 +117,8 @@ def fits_section(scene: Scene) -> Section:
     if scene.fits is None:
         return []
     found = fit_report(scene.fits)
-    if scene.set_preload is not None:
-        found += preload_report(scene.set_preload)
+    if scene.preload_of_set is not None:
+        found += preload_report(scene.preload_of_set)
     return found
 
 
@@ -181,11 +181,11 @@ def roller_row(bearing, head) -> list[str]:
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
     ribs = ", ".join(bearing.ribs.present) or "none"
-    told = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
+    play = "" if bearing.is_thrust else f"{_roller_clearance(bearing)}; "
     lines = [
         f"{head}: {_kind(bearing)} bearing, {bearing.n_rollers} rollers"
         f" {diameter:.4g} x {length:.4g} mm on a pitch circle of {pitch:.4g} mm",
-        f"{told}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
+        f"{play}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
     axis, half = _angles(bearing)
     if isinstance(bearing, CrossedRollerRow):

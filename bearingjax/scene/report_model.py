@@ -78,10 +78,10 @@ class Column:
         if np.isinf(value):
             return "infinite"
         number = factor * float(value)
-        told = f"{number:{self.format}}"
-        if float(told) == 0.0:
-            told = told.replace("-0", "0", 1)  # no minus before what rounds to zero
-        return f"{number:.0f}" if "e+0" in told and abs(number) < _WHOLE else told
+        text = f"{number:{self.format}}"
+        if float(text) == 0.0:
+            text = text.replace("-0", "0", 1)  # no minus before what rounds to zero
+        return f"{number:.0f}" if "e+0" in text and abs(number) < _WHOLE else text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,8 +127,8 @@ def _wrapped(line: str, indent: str) -> list[str]:
     head, words = line[: len(indent)], line[len(indent) :]
     room = max(_WIDTH - len(indent), _WIDTH // 3)
     parts = textwrap.wrap(words, room, break_on_hyphens=False) or [""]
-    told = [f"{indent if k else head}{part}".rstrip() for k, part in enumerate(parts)]
-    return [part.replace("\xa0", " ") for part in told]
+    lines = [f"{indent if k else head}{part}".rstrip() for k, part in enumerate(parts)]
+    return [part.replace("\xa0", " ") for part in lines]
 
 
 Part = str | Grid
@@ -159,8 +159,8 @@ class Report:
     warnings: Sequence[str] = ()
 
     def __post_init__(self):
-        told = {title: parts for title, parts in self.sections.items() if parts}
-        object.__setattr__(self, "sections", told)
+        filled = {title: parts for title, parts in self.sections.items() if parts}
+        object.__setattr__(self, "sections", filled)
 
     def __str__(self) -> str:
         texts = ["\n".join(map(str, parts)) for parts in self.sections.values()]

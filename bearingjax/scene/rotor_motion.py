@@ -18,7 +18,7 @@ from ..rotor import (
 )
 from ..rotor.nonlinear import (
     Branch,
-    Ending,
+    BranchEnd,
     HarmonicBalance,
     Shooting,
     Steps,
@@ -40,15 +40,15 @@ _REDUCED = 0.03
 _SAMPLES = 64
 """Number of phases at which a linear vibration is output."""
 _ENDINGS = {
-    Ending.POINTS: (
+    BranchEnd.POINTS: (
         "the branch did not reach the end of the range within the allowed points;"
         " raise `rotor.response.points`, or `scale` where the vibration is far larger"
     ),
-    Ending.SMALL_STEP: (
+    BranchEnd.SMALL_STEP: (
         "the branch could not be followed further: no step, however small, led on;"
         " take more {finer}"
     ),
-    Ending.NO_START: (
+    BranchEnd.NO_START: (
         "no periodic vibration was found at the first frequency; begin farther from"
         " the resonances, or take more {finer}"
     ),
@@ -130,9 +130,9 @@ def respond(
         modes: Its modes, of which the lowest sets the unit of frequency.
     """
     asked = task.response
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     if asked.method == "linear":
-        assert linear is not None  # asked for by the caller
+        assert linear is not None  # callers check it
         return _linear(task, linear)
     if asked.reduction is not None:
         _warn_of_reduction(task, settled.rotor)
@@ -217,7 +217,7 @@ def _half_ranges(every):
 
 def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
     asked = task.response
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     frequency = np.linspace(asked.begin, asked.end, asked.points)
     found = harmonic_response(linear, task.loads, frequency, asked.speed)
     motion = np.asarray(found.motion)[:, _stations(task)]
@@ -239,7 +239,7 @@ def run_in_time(
         task, rotor, settled, modes: As in `respond`.
     """
     asked = task.transient
-    assert asked is not None  # asked for by the caller
+    assert asked is not None  # callers check it
     if asked.passage:
         turning = tuple(with_passage(support) for support in rotor.supports)
         rotor = dataclasses.replace(rotor, supports=turning)

@@ -12,7 +12,7 @@ from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
 from .catalogue_entry import FromCatalogue
-from .fit_table import Fits, fit_warnings, installed, turning
+from .fit_table import Fits, fit_warnings, fits_at_speed, installed
 from .placed_bearing import check_seat, echoed, placed_bearing
 from .quantity import SceneError
 from .read import Scene, scene_of
@@ -111,7 +111,7 @@ class HousingKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class MountKeys(Keys):
-    """[[rotor.bearings]]: what holds the shaft, a bearing or springs each."""
+    """[[rotor.bearings]]: supports of the shaft, each a bearing or springs."""
 
     station: int = scene_key("station of the shaft", least=0)
     bearing: str | None = scene_key(
@@ -181,7 +181,7 @@ def read_mounts(
         path: Path of the scene, to which names of other scenes are relative.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     for key in ("fit", "temperature"):
         if key in top:
@@ -212,7 +212,7 @@ def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bear
 
 def _in_rotor(scene: Scene, speed: float) -> _Bearing:
     """Return the bearing of a scene with its fits at the speed of the rotor."""
-    fits, taken = turning(scene.fits, speed), scene.catalogue
+    fits, taken = fits_at_speed(scene.fits, speed), scene.catalogue
     running = installed(scene.element, scene.preload_force, fits, taken)
     return _Bearing(scene.name, running, fits, taken, scene)
 

@@ -86,8 +86,8 @@ def _fits(task):
             f"{mount.name} at {where} {', '.join(map(str, stations))}, its inner ring"
             f" turning at {rpm(task.speed)}"
         )
-        told = fit_report(mount.fits)
-        found[f"Fits of {mount.name}"] = [head, *told]
+        lines = fit_report(mount.fits)
+        found[f"Fits of {mount.name}"] = [head, *lines]
     return found
 
 
@@ -192,12 +192,12 @@ def _campbell(run):
     (_, frequency), _, (_, whirl) = mode_numbers(run.campbell)
     shape = np.asarray(run.campbell.shape)[-1]
     speeds = run.task.campbell
-    told = np.flatnonzero(frequency.max(axis=0) > 0)
-    senses = [_whirl(whirl[-1, k], shape[k], _length(run)) for k in told]
+    followed = np.flatnonzero(frequency.max(axis=0) > 0)
+    senses = [_whirl(whirl[-1, k], shape[k], _length(run)) for k in followed]
     columns = [
-        Column("mode", told + 1),
-        Column(f"at {rpm(speeds[0])}", frequency[0, told], "Hz"),
-        Column(f"at {rpm(speeds[-1])}", frequency[-1, told], "Hz"),
+        Column("mode", followed + 1),
+        Column(f"at {rpm(speeds[0])}", frequency[0, followed], "Hz"),
+        Column(f"at {rpm(speeds[-1])}", frequency[-1, followed], "Hz"),
         Column("whirl", senses),
     ]
     onsets = [
@@ -228,24 +228,24 @@ def _response(run, found: RotorResponse):
         Column("uy", ends[:, 1], "m", ".4g"),
     ]
     title = f"{head}: {len(span)} points, {span.min():.5g} to {span.max():.5g} Hz"
-    told: list[Part] = [Grid(columns, title)]
+    parts: list[Part] = [Grid(columns, title)]
     branch = found.branch
     if branch is None:
-        return told
+        return parts
     coordinate = STATION_FREEDOMS.index(asked.coordinate)
     factor, unit = (1e6, "µm") if coordinate < 3 else (1e3, "mrad")
     for event, moved in zip(branch.events, found.event_amplitude, strict=True):
         kind = event.kind.replace("_", "-")
-        told.append(
+        parts.append(
             f"{kind} at {_HZ * event.frequency:.6g} Hz ({asked.coordinate} of station"
             f" {asked.station}: {factor * moved[asked.station, coordinate]:.4g} {unit})"
         )
     stable = int(branch.stable.sum())
-    told.append(
+    parts.append(
         f"{stable} of {len(span)} points are stable; the branch ends:"
         f" {branch.ending.label.replace('_', ' ')}"
     )
-    return told
+    return parts
 
 
 def _transient(run, found: RotorTransient):

@@ -30,7 +30,7 @@ from ..rotor import (
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
-from .fit_table import turning
+from .fit_table import fits_at_speed
 from .life_table import life_conditions
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
@@ -112,17 +112,17 @@ _STAGES = {
 class _Parts:
     """Collected results, failures and warnings of the parts of a run."""
 
-    def __init__(self, told: Callable[[str], None] | None):
+    def __init__(self, on_stage: Callable[[str], None] | None):
         self.found: dict[str, Any] = {}
         self.failures: list[Failure] = []
         self.warnings: list[str] = []
-        self._told = told
+        self._on_stage = on_stage
 
     @contextlib.contextmanager
     def part(self, name: str) -> Iterator[None]:
         """Context that records a SolveError as the failure of this part."""
-        if self._told is not None:
-            self._told(_STAGES[name])
+        if self._on_stage is not None:
+            self._on_stage(_STAGES[name])
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             try:
@@ -136,12 +136,14 @@ class _Parts:
         self.failures.append(Failure(part, result, message))
 
 
-def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> RotorRun:
+def run_rotor(
+    task: RotorScene, on_stage: Callable[[str], None] | None = None
+) -> RotorRun:
     """Run the analyses of a rotor scene.
 
     Args:
         task: From `read_rotor`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run; a part that fails does not raise.
@@ -149,7 +151,7 @@ def run_rotor(task: RotorScene, told: Callable[[str], None] | None = None) -> Ro
     Raises:
         SceneError: For errors found only when the rotor is assembled.
     """
-    parts = _Parts(told)
+    parts = _Parts(on_stage)
     with _naming(task):
         rotor = _rotor(task, parts)
         if rotor is not None:
@@ -223,13 +225,13 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     found, count = parts.found, task.n_modes
     settled = found["settled"]
     with parts.part("modes"):
-        found["modes"] = _held(modes(settled.rotor, task.speed, count=count))
+        found["modes"] = _as_numpy(modes(settled.rotor, task.speed, count=count))
     highest = top_speed(task)
     follows = _following(task, rotor, settled, highest, parts)
     if follows is None:
         return None
     with parts.part("critical speeds"):
-        found["critical"] = _held(
+        found["critical"] = _as_numpy(
             critical_speeds(follows, count=count, operating_speed=task.speed)
         )
     if follows is not settled.rotor and (found["critical"].speed > highest).any():
@@ -241,7 +243,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     if task.campbell is not None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
-            found["campbell"] = _held(lines)
+            found["campbell"] = _as_numpy(lines)
             found["onsets"] = instability_onsets(
                 follows, task.campbell, found["campbell"]
             )
@@ -306,7 +308,7 @@ def held_fits(task: RotorScene) -> Iterator[str]:
         left = {
             speed: float(fits.facts.operating.radial_clearance)
             for speed in (task.speed, *_ends(task))
-            if (fits := turning(mount.fits, speed)) is not None
+            if (fits := fits_at_speed(mount.fits, speed)) is not None
         }
         far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
         if abs(left[far] - left[task.speed]) > _DRIFT:
@@ -354,7 +356,7 @@ def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> No
                 parts.failed("transient", *motion.stopped)
 
 
-def _held(tree: Any) -> Any:
+def _as_numpy(tree: Any) -> Any:
     """Convert to NumPy: JAX would compile every small operation."""
     return jax.tree.map(
         lambda leaf: np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf, tree

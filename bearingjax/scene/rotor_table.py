@@ -174,7 +174,7 @@ class BaseKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class ExcitationKeys(Keys):
-    """[rotor.excitation]: what acts on the rotor beside its weight."""
+    """[rotor.excitation]: loads on the rotor in addition to its weight."""
 
     unbalance: tuple[UnbalanceKeys, ...] = scene_key("masses off the axis", default=())
     forces: tuple[ForceKeys, ...] = scene_key("constant forces and moments", default=())
@@ -275,7 +275,7 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
@@ -288,8 +288,8 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         warnings.simplefilter("always")
         scene = _scene(top, path)
     top.finish()
-    odd = tuple(dict.fromkeys(str(w.message) for w in caught))
-    return dataclasses.replace(scene, warnings=odd, inputs=top.echo())
+    warned = tuple(dict.fromkeys(str(w.message) for w in caught))
+    return dataclasses.replace(scene, warnings=warned, inputs=top.echo())
 
 
 def _scene(top: Table, path: Path) -> RotorScene:

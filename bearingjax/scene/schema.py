@@ -73,7 +73,7 @@ class Key:
         unit = KINDS[self.kind][0] if self.kind else ""
         return self.shown or ("°C" if unit == "K" else unit)
 
-    def told(self, value: float) -> float:
+    def in_shown_unit(self, value: float) -> float:
         """Convert a number to the unit of the range.
 
         Args:
@@ -99,8 +99,8 @@ class Key:
         if first and "below" in ends:
             return f"from {first} to below {ends['below']}{unit}"
         words = {"least": "at least", "most": "at most"}
-        told = [f"{words.get(name, name)} {value}" for name, value in ends.items()]
-        return " and ".join(told) + (unit if told else "")
+        bounds = [f"{words.get(name, name)} {value}" for name, value in ends.items()]
+        return " and ".join(bounds) + (unit if bounds else "")
 
     @property
     def goes_with(self) -> str:
@@ -365,7 +365,9 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
     """Return the number or numbers of a key after checking its range, if given."""
     if name not in table or value is None:
         return value
-    for number in map(one.told, value if isinstance(value, tuple) else (value,)):
+    for number in map(
+        one.in_shown_unit, value if isinstance(value, tuple) else (value,)
+    ):
         if not one.holds(number):
             unit = f" {one.unit}" if one.unit else ""
             hint = f" ({one.hint})" if one.hint else ""
@@ -386,7 +388,7 @@ def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) 
             required.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     given = table.table_or_word(name, tuple(kinds))
     if given is None and default and isinstance(default[0], str):

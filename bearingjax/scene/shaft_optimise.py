@@ -65,7 +65,7 @@ class ShaftConstraintKeys(BoundKeys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class ShaftOptimiseKeys(SearchKeys):
-    """[optimise]: what is free, what is made least, and what is kept."""
+    """[optimise]: variables, objective and constraints."""
 
     objective: str = scene_key(
         "what is made least; lives and `static_safety` are made largest",
@@ -102,7 +102,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
         `Optimisation`, or `ShaftOptimisation`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     settings = tuple(settings)
     path = find_scene(source)

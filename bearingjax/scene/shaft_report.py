@@ -47,10 +47,10 @@ def shaft_page(run: ShaftRun) -> Report:
         scene, solution, life = bearing.scene, bearing.solution, bearing.life
         if scene is None or solution is None or life is None:
             continue
-        told: list[Part] = [*life_section(scene, solution, life), *fits_section(scene)]
+        parts: list[Part] = [*life_section(scene, solution, life), *fits_section(scene)]
         if scene.oil is not None:
-            told += oil_report(scene.oil, bearing.oil)
-        sections[f"Bearing {bearing.name}"] = told
+            parts += oil_report(scene.oil, bearing.oil)
+        sections[f"Bearing {bearing.name}"] = parts
     return Report(sections, report.warnings)
 
 
@@ -81,14 +81,14 @@ def _head(run: ShaftRun) -> list[Part]:
             f" {float(power.speed[at]) * _RPM:.5g} rpm, {1e-3 * out:.5g} kW"
         )
     losses = {"meshes": float(power.loss), "bearings": bearing_loss(run)}
-    told = [f"{k} {v:.4g} W" for k, v in losses.items() if v is not None and v > 1e-6]
-    return [*lines, *([f"losses: {', '.join(told)}"] if told else [])]
+    shown = [f"{k} {v:.4g} W" for k, v in losses.items() if v is not None and v > 1e-6]
+    return [*lines, *([f"losses: {', '.join(shown)}"] if shown else [])]
 
 
 def _shafts(run: ShaftRun) -> Grid:
     states = run.solution.shafts
     bent = [np.linalg.norm(s.displacement[:, :2], axis=1).max() for s in states]
-    # Rounded to 1 µN m, so that a shaft without load does not tell round-off.
+    # Rounded to 1 µN m, so that a shaft without load does not show round-off.
     moment = [np.linalg.norm(s.moment, axis=1).max().round(6) for s in states]
     where = [s.position[np.linalg.norm(s.moment, axis=1).argmax()] for s in states]
     return Grid(
@@ -184,15 +184,15 @@ def _temperatures(run: ShaftRun) -> Section:
         Column("friction", np.asarray(state.friction), "W", ".4g"),
     ]
     of = "" if run.duty is None else ", in the first case"
-    told: list[Part] = [Grid(columns, f"in equilibrium with friction{of}")]
+    parts: list[Part] = [Grid(columns, f"in equilibrium with friction{of}")]
     if run.task.heat is not None and run.task.heat.housing is not None:
-        told.append(f"housing and oil: {float(state.housing) - 273.15:.1f} °C")
+        parts.append(f"housing and oil: {float(state.housing) - 273.15:.1f} °C")
     if float(state.slowest) > 0:
-        told.append(
+        parts.append(
             "the slowest disturbance decays in"
             f" {1.0 / float(state.slowest) / 60.0:.3g} min"
         )
-    return told
+    return parts
 
 
 def _called(bearing: Any) -> str:
@@ -259,14 +259,14 @@ def _lives(run: ShaftRun) -> Section:
             kappa = [None if b is None else b.viscosity_ratio for b in known]
             rows.append(Column("κ", kappa, "1", ".3g", (1.0, "")))
         title = "rating lives" if any(turning) else "at rest: no lives in hours"
-    told: list[Part] = [Grid(rows, title)]
+    parts: list[Part] = [Grid(rows, title)]
     together = run.system_hours
     if together is not None:
-        told.append(
+        parts.append(
             f"all bearings together, with the reliability of each:"
             f" {life_number(together)} h"
         )
-    return told
+    return parts
 
 
 _SHOWN = 12
@@ -296,7 +296,7 @@ def _cases(run: ShaftRun) -> Section:
         )
         for k, seat in enumerate(task.system.seats)
     ]
-    told: list[Part] = [Grid(columns, "load of each bearing")]
+    parts: list[Part] = [Grid(columns, "load of each bearing")]
     if len(task.cases) > _SHOWN:
-        told.append(f"and {len(task.cases) - _SHOWN} more; `--table` has all")
-    return told
+        parts.append(f"and {len(task.cases) - _SHOWN} more; `--table` has all")
+    return parts

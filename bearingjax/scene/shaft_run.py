@@ -33,12 +33,12 @@ from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
-from .fit_table import turning
+from .fit_table import fits_at_speed
 from .life_report import life_as_dict
 from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
-from .read import Scene, with_speed_told
+from .read import Scene, with_speed_warnings
 from .shaft_table import ShaftScene
 from .solved import solved_warnings
 
@@ -141,12 +141,14 @@ class ShaftRun:
         return float(called(system_life, self.task.system, known))
 
 
-def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> ShaftRun:
+def run_shafts(
+    task: ShaftScene, on_stage: Callable[[str], None] | None = None
+) -> ShaftRun:
     """Run the scene of a system of shafts.
 
     Args:
         task: From `read_shafts`.
-        told: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins.
 
     Returns:
         The run; a system without equilibrium does not raise.
@@ -154,7 +156,7 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
     Raises:
         SceneError: For torques that do not balance.
     """
-    say = told or (lambda name: None)
+    say = on_stage or (lambda name: None)
     system, cases = task.system, task.cases
     state, problem = None, ""
     try:
@@ -186,8 +188,8 @@ def run_shafts(task: ShaftScene, told: Callable[[str], None] | None = None) -> S
         warming = np.asarray(warm_up(system, task.heat, task.times))
     state = jax.device_get(state)
     run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
-    odd = dict.fromkeys((*task.warnings, *_warnings(run)))
-    return dataclasses.replace(run, warnings=tuple(odd))
+    warned = dict.fromkeys((*task.warnings, *_warnings(run)))
+    return dataclasses.replace(run, warnings=tuple(warned))
 
 
 def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
@@ -290,7 +292,7 @@ def _in_place(
         scene = dataclasses.replace(
             scene,
             speed=None if system.inertia is None else speed,
-            fits=turning(scene.fits, float(speed.inner)),
+            fits=fits_at_speed(scene.fits, float(speed.inner)),
         )
         try:
             life = jax.device_get(life_of(solution.element, solution, conditions))
@@ -299,7 +301,7 @@ def _in_place(
         oil = None
         if scene.oil is not None:
             oil = oil_facts(scene.oil, solution, scene.catalogue)
-        scene = with_speed_told(scene, speeds[:, system.station(seat)[0]])
+        scene = with_speed_warnings(scene, speeds[:, system.station(seat)[0]])
         yield InPlace(seat.name, with_set_preload(scene), solution, life, oil)
 
 

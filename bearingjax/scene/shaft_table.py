@@ -272,7 +272,7 @@ class HousingKeys(Keys):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SystemKeys(Keys):
-    """[system]: what acts on all shafts."""
+    """[system]: numbers and settings common to all shafts."""
 
     gravity: str = scene_key(
         "direction of the weight of the shafts in global axes",
@@ -322,7 +322,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
@@ -361,14 +361,14 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         cases.append(dataclasses.replace(one, hours=_hours(hours)))
         every.append(values)
     first = cases[0]
-    odd = dict.fromkeys(text for one in cases for text in one.warnings)
+    warned = dict.fromkeys(text for one in cases for text in one.warnings)
     return dataclasses.replace(
         first,
         hours=None,
         cases=tuple(cases),
         varied=tuple(c.key for c in columns if c.key != "hours"),
         settings=tuple(every),
-        warnings=tuple(odd),
+        warnings=tuple(warned),
         inputs={**first.inputs, "cases": data["cases"]},
     )
 
@@ -392,8 +392,8 @@ def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene
         warnings.simplefilter("always")
         scene = _scene(top, path, known)
     top.finish()
-    odd = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
-    return dataclasses.replace(scene, warnings=tuple(odd), inputs=top.echo())
+    warned = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
+    return dataclasses.replace(scene, warnings=tuple(warned), inputs=top.echo())
 
 
 def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:

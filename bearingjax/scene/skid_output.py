@@ -136,7 +136,7 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
     Args:
         run: From `run_skid`.
     """
-    found, told = run.found, {}
+    found, results = run.found, {}
     for name in UNITS:
         values = getattr(found, name, None)
         if name == "least_film" and run.state is not None:
@@ -147,8 +147,8 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
         if name == "spin" and run.state is None:  # of rollers, about their axes
             values = values[..., None] * np.array([0.0, 0.0, 1.0])
         one = name in OF_ONE
-        told[name] = values if one else by_raceway(values, found.contact_load)
-    return told
+        results[name] = values if one else by_raceway(values, found.contact_load)
+    return results
 
 
 def at_balls(run: SkidRun) -> np.ndarray:

@@ -58,16 +58,16 @@ def _rpm(speed):
 
 def _cage(speed, rolling):
     slip = f", slip {100.0 * (1.0 - speed / rolling):.3g} %" if rolling else ""
-    told = f"{speed:.6g} rad/s ({_rpm(speed)}); pure rolling {rolling:.6g} rad/s{slip}"
-    return "cage", told
+    text = f"{speed:.6g} rad/s ({_rpm(speed)}); pure rolling {rolling:.6g} rad/s{slip}"
+    return "cage", text
 
 
 def _torque(run, torque, when=""):
     speed = run.task.speed
     faster = abs(float(speed.outer)) > abs(float(speed.inner))
     value, ring = f"{1e3 * _clean(torque):.5g} N mm", "outer" if faster else "inner"
-    told = f"{value} on the {ring} ring{when} (of sliding and drag alone)"
-    return "friction torque", told
+    text = f"{value} on the {ring} ring{when} (of sliding and drag alone)"
+    return "friction torque", text
 
 
 def _mean_torque(run):
@@ -146,18 +146,18 @@ def _balls(run):
     balls = run.state is not None
     alike = steady and len(found.azimuth) == 1
     rows = at_balls(run) if steady else slice(None)
-    told = {n: (v if steady else v[-1])[rows] for n, v in each_ball(run).items()}
-    azimuth = found.solution.azimuth if steady else told["azimuth"]
-    load = told["contact_load"]
+    each = {n: (v if steady else v[-1])[rows] for n, v in each_ball(run).items()}
+    azimuth = found.solution.azimuth if steady else each["azimuth"]
+    load = each["contact_load"]
     small = _SMALL * load.max()
     columns = [
         Column("ball" if balls else "roller", range(len(azimuth))),
         Column("azimuth", azimuth % (2.0 * np.pi), "rad", ".1f", DEGREES),
         *by_ring("load", np.where(load > small, load, 0.0), "N", ".4g", NEWTONS),
-        Column("slip", told["slip"], "1", ".3g", (100.0, "%")),
-        Column("pitch", np.round(_pitch(told), 4), "rad", ".1f", DEGREES)
+        Column("slip", each["slip"], "1", ".3g", (100.0, "%")),
+        Column("pitch", np.round(_pitch(each), 4), "rad", ".1f", DEGREES)
         if balls
-        else Column("cage", np.round(told["cage_force"], 1), "N", ".1f", NEWTONS),
+        else Column("cage", np.round(each["cage_force"], 1), "N", ".1f", NEWTONS),
     ]
     for name, what, *scale in (
         ("film", "film", "m", ".3g"),
@@ -165,7 +165,7 @@ def _balls(run):
         ("heat", "heat", "W", ".3g"),
     ):
         # An open contact has no meaningful film.
-        columns += by_ring(name, np.where(load > small, told[what], np.nan), *scale)
+        columns += by_ring(name, np.where(load > small, each[what], np.nan), *scale)
     if alike:
         words = ["all"], ["-"]
         columns = [
@@ -175,9 +175,9 @@ def _balls(run):
     return Grid(columns)
 
 
-def _pitch(told):
+def _pitch(each):
     """Return the angles between spin and bearing axis [rad]."""
-    return np.arctan2(told["spin"][:, 1], -told["spin"][:, 2])
+    return np.arctan2(each["spin"][:, 1], -each["spin"][:, 2])
 
 
 def _films(run):

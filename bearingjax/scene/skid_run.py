@@ -83,12 +83,12 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
         raise SceneError(f"{task.name}: {error}") from error
     balls = task.model.bearing.is_ball
     state = conditions(task.model, found, speed) if balls else None
-    held, state = jax.tree.map(_held, (found, state))
-    told = (*task.warnings, *(_left_out(task) if task.steady else ()))
+    held, state = jax.tree.map(_as_numpy, (found, state))
+    warned = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
         doubtful = skid_warnings(task.model, held, state)
-        told = (*told, *warnings(found.solution), *doubtful)
-    return SkidRun(task, held, state, told)
+        warned = (*warned, *warnings(found.solution), *doubtful)
+    return SkidRun(task, held, state, warned)
 
 
 def _left_out(task):
@@ -146,6 +146,6 @@ def _still(task) -> SkidState:
     return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
 
 
-def _held(leaf):
+def _as_numpy(leaf):
     """Convert to NumPy: JAX would compile every small operation."""
     return np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf

@@ -18,7 +18,7 @@ from ..element import Speed
 from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from .dynamics_table import CageKeys, DynamicsKeys
 from .lubricant_table import LubricantKeys
-from .read import Scene, scene_of, with_speed_told
+from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import read_keys
 from .table import Table
@@ -90,7 +90,7 @@ def read_skid(
             then optional, but checked.
 
     Raises:
-        SceneError: One line that names file, key, fault and what is allowed.
+        SceneError: One line with file, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
@@ -101,10 +101,10 @@ def read_skid(
     cage = read_keys(CageKeys, top.table("cage"))
     dynamics = read_keys(DynamicsKeys, top.table("dynamics"))
     _check_dynamics(dynamics, scene, steady)
-    odd = lubricant.assumed
+    warned = lubricant.assumed
     if lubricant.supply != "oil_bath":
-        odd = (
-            *odd,
+        warned = (
+            *warned,
             f"`lubricant.supply` {lubricant.supply!r} counts for the friction torque of"
             " `solve` alone; what skids has films of plenty of oil, and the drag of"
             " `dynamics.fill`",
@@ -128,7 +128,7 @@ def read_skid(
         dynamics.speeds(scene.speed),
         None if steady else dynamics.duration,
     )
-    scene = with_speed_told(scene, _fastest(speeds, duration))
+    scene = with_speed_warnings(scene, _fastest(speeds, duration))
     found = SkidScene(
         scene=scene,
         model=model,
@@ -143,7 +143,7 @@ def read_skid(
         tolerance=dynamics.tolerance,
         max_steps=dynamics.max_steps,
         places=dynamics.places,
-        warnings=tuple(dict.fromkeys((*scene.warnings, *odd))),
+        warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
         inputs={},
     )
     for keys in (lubricant, cage, dynamics):

@@ -17,12 +17,12 @@ from ..statics.sweep import Sweep, sweep
 from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
-from .cases_table import CaseTable, Structure, turns_of
+from .cases_table import CaseTable, DesignGroup, turns_of
 from .life_table import life_conditions
+from .preload_of_set import preload_warnings, range_warnings
 from .quantity import SceneError
 from .report import ROUND_OFF
 from .report_model import Column, Grid, Part, Report
-from .set_preload import preload_warnings, range_warnings
 
 OUTPUTS = (
     "displacement",
@@ -53,13 +53,13 @@ def run_cases(
         SceneError: For outputs that do not exist or exceed the memory.
     """
     done: list[tuple[np.ndarray, Sweep]] = []
-    for part in table.structures:
+    for part in table.design_groups:
         mine = part.of(table.cases)
         # A sweep polls after its first block; once stopped, no other sweep is started.
         stopped = bool(done) and stop is not None and stop()
         if mine.size and not stopped:
             done.append((mine, _run(table, part, mine, progress, stop)))
-    if len(table.structures) == 1:
+    if len(table.design_groups) == 1:
         return done[0][1]
     return _merged(table, done)
 
@@ -88,7 +88,7 @@ def _run(table, part, mine, progress, stop) -> Sweep:
     return _on_seats(part, solved)
 
 
-def _life(table: CaseTable, part: Structure) -> LifeConditions | None:
+def _life(table: CaseTable, part: DesignGroup) -> LifeConditions | None:
     """Return the conditions of lives that are output, or checked; otherwise `None`.
 
     Without speeds a life is checked as by `solve`, which then has no film.
@@ -100,7 +100,7 @@ def _life(table: CaseTable, part: Structure) -> LifeConditions | None:
     return life_conditions(part.scene, turning=bool(turns_of(table.cases).any()))
 
 
-def _on_seats(part: Structure, solved: Sweep) -> Sweep:
+def _on_seats(part: DesignGroup, solved: Sweep) -> Sweep:
     """Add to the sweep of a structure the radial clearance in operation [m] and, for a
     set, the preload [N] of each case."""
     if part.scene.fits is None:
@@ -131,15 +131,15 @@ def cases_with_set_preload(table: CaseTable) -> CaseTable:
     if table.cases.design is not None:
         return table
     scene = with_set_preload(table.scene)
-    part = dataclasses.replace(table.structures[0], scene=scene)
-    return dataclasses.replace(table, scene=scene, structures=(part,))
+    part = dataclasses.replace(table.design_groups[0], scene=scene)
+    return dataclasses.replace(table, scene=scene, design_groups=(part,))
 
 
-def _preloads(part: Structure, cases: Cases) -> np.ndarray:
+def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
     """Return the preload force between the rows of each design, without load, at the
     speeds of its first case (design,) [N]."""
-    if part.scene.set_preload is not None:
-        return np.array([part.scene.set_preload.operating])
+    if part.scene.preload_of_set is not None:
+        return np.array([part.scene.preload_of_set.operating])
     if part.designs is None:
         first, design = np.zeros(1, int), None
     else:
@@ -198,10 +198,10 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
         f"{counts}; {seconds:.3g} s, compiling included",
     ]
     if len(table.settings) > 1:
-        kinds = len(table.structures)
+        kinds = len(table.design_groups)
         of = f" of {kinds} structures, solved one after the other"
         told.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
-    if OPERATING_PRELOAD in solved.outputs and table.scene.set_preload is None:
+    if OPERATING_PRELOAD in solved.outputs and table.scene.preload_of_set is None:
         words = "at `fit.at` alone, not over the tolerances of the seats"
         told.append(f"preload of the set in operation: {words} (`solve` tells those)")
     rows = []
@@ -252,8 +252,8 @@ def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
 
 def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
     """Return warnings about the preload of a set in the cases, one sentence each."""
-    if table.scene.set_preload is not None:
-        return preload_warnings(table.scene.set_preload)
+    if table.scene.preload_of_set is not None:
+        return preload_warnings(table.scene.preload_of_set)
     preload = solved.outputs.get(OPERATING_PRELOAD)
     if preload is None or not np.isfinite(preload).any():
         return []

@@ -108,7 +108,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
         bearing: The design.
 
     Raises:
-        SceneError: For what is missing, unknown or not allowed.
+        SceneError: For keys that are missing, unknown or not allowed.
     """
     table, grade = keys.table, keys.grade
     if grade is not None:

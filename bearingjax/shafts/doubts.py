@@ -1,4 +1,4 @@
-"""Warnings about what the bearings of a system of shafts bear together."""
+"""Warnings about the loads that the bearings of a system of shafts share."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -58,7 +58,7 @@ def axial_load(system: ShaftSystem, index: int, load: Any) -> float:
 
 
 def _where(cases: np.ndarray, count: int) -> str:
-    """Say in how many cases something is so; nothing of a single one."""
+    """Return in words the number of cases with a warning; empty for a single case."""
     if count == 1:
         return ""
     return f" in {len(cases)} of {count} cases (case {cases[0]})"

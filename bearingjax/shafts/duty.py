@@ -49,8 +49,8 @@ class DutyResult(eqx.Module):
     Attributes:
         load: On each inner ring in global axes (case, bearing, 6) [N, N m].
         displacement: As in `SystemSolution` (case, bearing, 6) [m, rad].
-        misalignment: Of each mesh (case, mesh) [rad].
-        speed: Of each shaft (case, shaft) [rad/s].
+        misalignment: Misalignment of each mesh (case, mesh) [rad].
+        speed: Speed of each shaft (case, shaft) [rad/s].
         loss: Power lost in meshes (case,) [W].
         result: `Result` code (case,).
         peak_pressure: Largest contact pressure (case, bearing) [Pa]; NaN of springs.
@@ -184,7 +184,7 @@ def _check_balances(systems: Sequence[ShaftSystem], found: dict[str, Any]) -> No
 
 
 def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
-    """Return function(one) of all, stacked in NumPy; what they share is not copied."""
+    """Return function(one) of all, stacked in NumPy; shared leaves are not copied."""
     trees = [jax.tree.structure(one) for one in given]
     if any(tree != trees[0] for tree in trees):
         raise ValueError("solve_duty: the cases differ in more than numbers.")
@@ -260,8 +260,8 @@ def bearing_hours(
     """Return the life of each bearing under a spectrum (bearing,) [h].
 
     Args:
-        damage: Of `DutyResult` [1/rev].
-        speed: Of the shaft of each bearing [rad/s].
+        damage: Damage, as in `DutyResult` [1/rev].
+        speed: Speed of the shaft of each bearing [rad/s].
         hours: Time in each case [h]; `None`: the same in all.
 
     Source: Palmgren (1924), Miner (1945); ISO 281.

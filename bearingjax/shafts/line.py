@@ -54,10 +54,10 @@ class ShaftLine(eqx.Module):
 
     Attributes:
         name: Name, unique in the system.
-        length: Of each segment (segment,) [m].
-        outer_diameter: Of each segment (segment,) [m].
-        bore: Of each segment, 0 of a solid one (segment,) [m].
-        material: Of all segments, or a tuple with one for each.
+        length: Length of each segment (segment,) [m].
+        outer_diameter: Outer diameter of each segment (segment,) [m].
+        bore: Bore of each segment, 0 of a solid one (segment,) [m].
+        material: Material of all segments, or a tuple with one for each.
         axis: Direction of the shaft in global axes (3,) [1].
         origin: Start of the first segment in global axes (3,) [m]; `None`: not known,
             meshes are then placed by their angles.
@@ -112,7 +112,7 @@ class ShaftLine(eqx.Module):
         x = x / jnp.sqrt(x @ x)
         return jnp.stack([x, jnp.cross(z, x), z])
 
-    def around(self, angle: Any) -> Float[Array, "3"]:
+    def radial_direction(self, angle: Any) -> Float[Array, "3"]:
         """Return the radial direction at an angle around the shaft, in global axes.
 
         Args:

@@ -63,7 +63,7 @@ def torque_of(part: Any, speed: Any) -> Any:
 
     Args:
         part: Part with `torque` and `power`.
-        speed: Of its shaft [rad/s].
+        speed: Speed of its shaft [rad/s].
     """
     return part.torque if part.power is None else part.power / speed
 
@@ -273,7 +273,7 @@ class Drive(eqx.Module):
 
     Attributes:
         into: Name of a shaft, driven through a coupling, or of a wheel without a mate.
-        speed: Of that shaft [rad/s].
+        speed: Speed of that shaft [rad/s].
         torque: On that shaft about its local z [N m].
         power: In place of the torque, into the shaft [W].
     """

@@ -100,7 +100,7 @@ def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
             f"ShaftSystem: `{name}` of {wheel.name} is missing; it has no mate in the"
             " system from which it follows."
         )
-    return Contact(wheel, None, shaft.around(angle), wheel.radius)
+    return Contact(wheel, None, shaft.radial_direction(angle), wheel.radius)
 
 
 def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Contact]:
@@ -129,11 +129,15 @@ def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Conta
                 " so is the origin of a shaft; give one or the other."
             )
         here = angles[0] is not None
-        first = shaft.around(angles[0]) if here else -far.around(angles[1])
+        first = (
+            shaft.radial_direction(angles[0])
+            if here
+            else -far.radial_direction(angles[1])
+        )
         radial, radii = [first, -first], (one.radius, other.radius)
     given = [getattr(wheel, "direction", None) for wheel in (one, other)]
     radial = [
-        s.around(angle) if angle is not None else way
+        s.radial_direction(angle) if angle is not None else way
         for s, angle, way in zip((shaft, far), given, radial, strict=True)
     ]
     return (

@@ -167,7 +167,7 @@ def speed_of(
     Args:
         system: The system.
         index: Number of the bearing.
-        speeds: Of all shafts [rad/s].
+        speeds: Speeds of all shafts [rad/s].
     """
     seat = system.seats[index]
     turns = speeds[system.station(seat)[0]]
@@ -186,7 +186,7 @@ def in_place(
 
     Args:
         installed: The bearing.
-        motion: Of its inner ring, in its axes [m, rad].
+        motion: Motion of its inner ring, in its axes [m, rad].
         speed: Ring speeds, for its fits.
         inertia: Whether rolling elements feel them; `None` at rest. Static.
         points: Positions along the rollers at which loads are reported. Static.

@@ -174,8 +174,8 @@ class ShaftDesign(AbstractSystem):
     def warnings(self, cases, solved):
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
-            told = counted(jax.device_get(sizes))
-            found += [f"{seat.name}: {text}" for text in told]
+            texts = counted(jax.device_get(sizes))
+            found += [f"{seat.name}: {text}" for text in texts]
         return [*found, *load_doubts(self.system, solved.load)]
 
     def hours(self, cases: ShaftCases, solved: Any) -> Float[Array, " bearing"]:
@@ -252,7 +252,7 @@ class PowerOf(AbstractMeasure):
     def reported_as(self):
         return self.measure
 
-    def told(self, value):
+    def reported_value(self, value):
         return value ** (1.0 / self.power)
 
     @property

@@ -32,7 +32,7 @@ class ShaftState(eqx.Module):
         displacement: (ux uy uz gx gy) (side, 5) [m, rad].
         shear: Force (Fx, Fy, Fz) in the section (side, 3) [N].
         moment: Bending moment (Mx, My) (side, 2) [N m].
-        speed: Of the shaft [rad/s].
+        speed: Speed of the shaft [rad/s].
     """
 
     position: Float[Array, " side"]
@@ -55,7 +55,7 @@ class SystemSolution(eqx.Module):
             [m, rad].
         motion: Inner ring in each bearing, in the axes of the bearing (bearing, 5)
             [m, rad].
-        stiffness: Of each bearing, in the axes of its shaft (bearing, 5, 5).
+        stiffness: Stiffness of each bearing, in the axes of its shaft (bearing, 5, 5).
         misalignment: Angle between the flanks of each mesh in the plane of action
             (mesh,) [rad]: by how much they part towards larger z of the wheel. Of a
             wheel with a mate outside the system that of the wheel alone.
@@ -156,7 +156,7 @@ def _lines(z, acting, weight, moved):
     Args:
         z: Of the nodes (node,) [m].
         acting: Forces and moments on them (node, 5) [N, N m].
-        weight: Of each element (element, 3) [N].
+        weight: Weight of each element (element, 3) [N].
         moved: Displacements of the nodes (node, 5) [m, rad].
     """
     middle = 0.5 * (z[1:] + z[:-1])
@@ -206,7 +206,7 @@ def moving(system: ShaftSystem, motion: Any) -> str:
 
     Args:
         system: The system.
-        motion: Of all nodes, seats and floating rings (motion,) [m, rad].
+        motion: Motion of all nodes, seats and floating rings (motion,) [m, rad].
     """
     motion, first = np.asarray(motion), 0
     best, words = 0.0, "no motion"

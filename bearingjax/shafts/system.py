@@ -119,9 +119,9 @@ class ShaftSystem(eqx.Module):
     Attributes:
         shafts: One or several.
         seats: The bearings in their places.
-        drive: Where the system is driven; `None`: no power.
+        drive: Drive of the system; `None`: no power.
         wheels: Gears and pulleys.
-        couplings: Where torque enters or leaves besides.
+        couplings: Further places where torque enters or leaves.
         loads: Free forces and moments.
         housing: Stiffness of the housing; `None`: rigid.
         gravity: Acceleration of free fall in global axes (3,) [m/s²].

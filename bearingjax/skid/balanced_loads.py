@@ -36,8 +36,8 @@ class BalancedLoads(eqx.Module):
         balance: Balance of the ring, with its free freedoms.
         load: Function of time [s] that returns the load on the ring (6,) [N, N m];
             a pytree.
-        unit: Of the unknowns [m].
-        force: Of what is not balanced [N].
+        unit: Unit of the unknowns [m].
+        force: Scale of the unbalanced force [N].
     """
 
     skid: SkidModel
@@ -70,7 +70,7 @@ class BalancedLoads(eqx.Module):
 
         Args:
             azimuth: Its azimuth [rad].
-            speed: Of the rings.
+            speed: Speed of the rings.
             centre: Its centre (z, r) relative to its position between the rings [m].
             ring: Unknowns of the ring's balance [m].
         """
@@ -87,7 +87,7 @@ class BalancedLoads(eqx.Module):
         moved = ball.coordinates(unpacked(ball, seen), centre)
         outwards = jnp.asarray(ball.grooves.outwards, moved.dtype)
         angle = angles(outwards[:, None] * ball.grooves.touch(moved).normal)
-        load = ball.respond(moved).beside
+        load = ball.respond(moved).aux
         law, contacts = skid.point_law, (load, angle, self.ellipses)
         loaded = loaded_ball(skid.bearing, law, skid.oil, *contacts)
         on_rings = unpacked(ball, forces[:-2])

@@ -101,7 +101,7 @@ class Sliding(NamedTuple):
     """Motion of a ball against its raceways, leading axis contact.
 
     Attributes:
-        slip: Of the ball in the middle of the contact, along x and t (contact, 2)
+        slip: Slip of the ball in the middle of the contact, along x and t (contact, 2)
             [m/s].
         spin: About the contact normal, (u_x + y w, u_y - x w) (contact,) [rad/s].
         entrainment: Mean of both surface speeds relative to the contact (contact,)

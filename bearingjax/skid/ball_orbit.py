@@ -131,7 +131,7 @@ class BallOrbit(AbstractOrbit):
 
         state, moving, pulls, lost = jax.vmap(one)(ball, rolls, own)
         around = state.orbit
-        # In time, not along the orbit: a ball is longer where it is slow.
+        # Means over time, not along the orbit: a ball spends longer where it is slow.
         still = around == 0
         time = jnp.where(still, 1.0, 1.0 / jnp.where(still, 1.0, around))
         share = time / jnp.sum(time)

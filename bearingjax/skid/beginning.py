@@ -24,7 +24,7 @@ from .loaded import (
     loaded_rollers,
 )
 from .model import SkidModel
-from .motion import SkidState, Surroundings, mechanics
+from .motion import SkidState, Surroundings, equations_of_motion
 from .ring_speed import SpeedTable
 
 
@@ -69,7 +69,7 @@ def surroundings(
         load_speed: Ring speeds of that solution.
         speed: Ring speeds over time.
         gravity: Against y [m/s²].
-        places: Of the table. Static.
+        places: Places of the table. Static.
     """
     table = tabulated(model, solution, load_speed, places)
     centre = jnp.zeros((*solution.azimuth.shape, 0))
@@ -110,26 +110,26 @@ def balanced_surroundings(
 
 def _begun(model, loads, solution, speed, gravity, centre, ring):
     density = model.lubricant.density.at(model.temperature)
-    around = Surroundings(model, loads, speed, solution.azimuth, density, gravity)
-    return around, rolling_start(around, centre, ring)
+    environment = Surroundings(model, loads, speed, solution.azimuth, density, gravity)
+    return environment, rolling_start(environment, centre, ring)
 
 
 def rolling_start(
-    around: Surroundings,
+    environment: Surroundings,
     centre: Float[Array, "ball z"],
     ring: Float[Array, " unknown"],
 ) -> SkidState:
     """Return the state of pure rolling, with balls or rollers in mid pocket.
 
     Args:
-        around: Surroundings of the balls.
+        environment: Surroundings of the balls.
         centre, ring: As in `SkidState` [m].
     """
-    speed = around.speed.at(around.speed.time[0] * 0.0)
-    ball, _, _ = jax.vmap(lambda at, c: around.loads.at(at, speed, c, ring))(
-        around.place, centre
+    speed = environment.speed.at(environment.speed.time[0] * 0.0)
+    ball, _, _ = jax.vmap(lambda at, c: environment.loads.at(at, speed, c, ring))(
+        environment.place, centre
     )
-    rolling = jax.vmap(partial(mechanics(ball).rolling, speed=speed))(ball)
+    rolling = jax.vmap(partial(equations_of_motion(ball).rolling, speed=speed))(ball)
     spin = rolling.spin.reshape(*rolling.orbit.shape, -1)
     none, turning = jnp.zeros_like(rolling.orbit), jnp.mean(rolling.orbit)
     return SkidState(spin, rolling.orbit, none, turning, none[0], centre, ring)

@@ -79,7 +79,7 @@ def conditions(model: SkidModel, found: Any, speed: Speed | SpeedTable) -> Condi
 
     Args:
         model: The bearing and its oil.
-        found: How its balls move; from `skid.steady` or `skid.simulate`.
+        found: Motion of its balls, from `skid.steady` or `skid.simulate`.
         speed: Ring speeds, those over time of a motion in time.
 
     Raises:

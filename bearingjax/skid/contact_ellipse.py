@@ -18,9 +18,9 @@ class Ellipse(NamedTuple):
     Attributes:
         x: Along the rolling direction [m].
         y: Across [m].
-        slip: Of the ball against the raceway, along and across (ring, around, 2)
+        slip: Slip of the ball against the raceway, along and across (ring, around, 2)
             [m/s].
-        heat: Of the traction [W/m²].
+        heat: Heat of the traction [W/m²].
     """
 
     x: np.ndarray

@@ -72,7 +72,7 @@ class AbstractSystem(eqx.Module):
         """
 
     @abc.abstractmethod
-    def beside(
+    def rest(
         self, time: Scalar, shared: Float[Array, " m"]
     ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
         """Return contributions to shared rates and sums that come from no body."""
@@ -92,7 +92,7 @@ class AbstractSystem(eqx.Module):
         rates, shared, sums = jax.vmap(self.body, (0, None, 0, None))(
             self.bodies, time, state.own, state.shared
         )
-        of_shared, of_sums = self.beside(time, state.shared)
+        of_shared, of_sums = self.rest(time, state.shared)
         return Coupled(
             rates, of_shared + jnp.sum(shared, axis=0), of_sums + jnp.sum(sums, axis=0)
         )
@@ -106,7 +106,7 @@ class AbstractSystem(eqx.Module):
             return jnp.concatenate(self.body(which, time[0], own, shared))
 
         def of_rest(unknowns):
-            return jnp.concatenate(self.beside(unknowns[-1], unknowns[:-1]))
+            return jnp.concatenate(self.rest(unknowns[-1], unknowns[:-1]))
 
         common = jnp.append(state.shared, time)
         whole = jax.vmap(lambda own: jnp.concatenate([own, common]))(state.own)

@@ -23,12 +23,12 @@ class SkidMotion(eqx.Module):
     Attributes:
         time: Times (time,) [s].
         state: The motion, leading axis time; `SkidState`.
-        azimuth: Of the balls (time, ball) [rad].
+        azimuth: Azimuth of the balls (time, ball) [rad].
         contact_load: Loads (time, ball, contact) [N].
         rolling_orbit_speed: That of pure rolling (time, ball) [rad/s].
         displacement: Ring freedoms, outer ring first (time, 12) [m, rad].
         film: Central films (time, ball, contact) [m].
-        heat: Of each contact (time, ball, contact) [W].
+        heat: Heat of each contact (time, ball, contact) [W].
         cage_force: Of the cage on the balls, in the sense in which angles are counted
             (time, ball) [N].
         friction_torque: On the ring that drives, the one that turns faster, of the
@@ -36,9 +36,9 @@ class SkidMotion(eqx.Module):
         ring_torque: On outer and inner ring (time, 2) [N m].
         power: Momentary powers (time,).
         work: Their integrals since the beginning (time,).
-        kinetic_energy: Of balls and cage (time,) [J].
-        potential_energy: Of pockets and weights (time,) [J].
-        steps: Steps in time, with those that were rejected.
+        kinetic_energy: Kinetic energy of balls and cage (time,) [J].
+        potential_energy: Potential energy of pockets and weights (time,) [J].
+        steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
     """
@@ -84,7 +84,7 @@ class SkidMotion(eqx.Module):
         """Mean friction torque over the last orbits of the cage [N m], and their
         number: half of all orbits, at least one; NaN and 0 without a full orbit.
 
-        Of a motion that is concrete, as far as it was reached.
+        The motion must be concrete; the part that was reached is used.
         """
         reached = np.isfinite(np.asarray(self.cage_speed))
         time, torque, turn = (
@@ -168,7 +168,7 @@ class SlidingSpectrum(NamedTuple):
 
     Attributes:
         frequency: Frequencies (line,) [Hz].
-        amplitude: Of the sliding speed (line,) [m/s].
+        amplitude: Amplitude of the sliding speed (line,) [m/s].
         cage: Mean frequency of the cage over the time that was transformed [Hz].
     """
 
@@ -193,7 +193,7 @@ def sliding_spectrum(
         begin: Time from which on [s]; default: a third of all.
 
     Returns:
-        Amplitudes as of `hann_lines`.
+        Amplitudes as returned by `hann_lines`.
 
     Raises:
         ValueError: For times that are not even, or too few of them.

@@ -29,7 +29,7 @@ class Integrated(NamedTuple):
     Attributes:
         state: The motion.
         work: Work done since the beginning.
-        steps: Steps in time, with those that were rejected.
+        steps: Steps in time, rejected ones included.
         rejected: Those.
         result: `Result` code.
     """
@@ -42,7 +42,7 @@ class Integrated(NamedTuple):
 
 
 def integrated(
-    around: Surroundings,
+    environment: Surroundings,
     start: SkidState,
     times: Float[Array, " time"],
     duration: Scalar,
@@ -51,16 +51,16 @@ def integrated(
     """Integrate the motion of balls and cage.
 
     Args:
-        around: Surroundings of the balls.
+        environment: Surroundings of the balls.
         start: The motion at time zero.
-        times: When it is wanted, rising [s].
+        times: Times of the output, rising [s].
         duration: The last time [s].
         options: Settings.
     """
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from .rosenbrock import Rodas
 
-    system = _system(around, start)
+    system = _system(environment, start)
     found = in_time.integrated(
         lambda time, y, system: system.rates(time, y),
         system,
@@ -71,15 +71,15 @@ def integrated(
         solver=Rodas(),
         step_error=_STEP,
         first=_FIRST * duration,
-        knots=_knots(around),
+        knots=_knots(environment),
     )
     state, work = jax.vmap(system.unpacked)(found.state)
     return Integrated(state, work, found.steps, found.rejected, found.result)
 
 
-def _knots(around):
+def _knots(environment):
     """Return the times at which speeds or loads have a kink, or `None`."""
-    tables = [around.speed, getattr(around.loads, "load", None)]
+    tables = [environment.speed, getattr(environment.loads, "load", None)]
     times = [
         stop(table.time)
         for table in tables
@@ -91,11 +91,13 @@ def _knots(around):
     return jnp.unique(every, size=every.shape[0])
 
 
-def _system(around, start):
+def _system(environment, start):
     """Return the system in units to which the tolerance relates."""
-    bearing, count = around.model.bearing, start.orbit.shape[0]
-    rings = jnp.concatenate([around.speed.inner, around.speed.outer])
+    bearing, count = environment.model.bearing, start.orbit.shape[0]
+    rings = jnp.concatenate([environment.speed.inner, environment.speed.outer])
     fastest = jnp.max(jnp.abs(jnp.concatenate([rings, start.orbit])))
     fastest = jnp.where(fastest > 0, fastest, 1.0)
-    energy = count * around.loads.mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
-    return SkidSystem(around, *stop((fastest, energy)))
+    energy = (
+        count * environment.loads.mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
+    )
+    return SkidSystem(environment, *stop((fastest, energy)))

@@ -71,7 +71,7 @@ class LoadTable(eqx.Module):
         return self.like.mass
 
     def push(self, time: Scalar, ring: Array) -> Array:
-        """Return an empty load, as nothing is to be balanced (0,) [N]."""
+        """Return an empty load: a table has no unknowns to balance (0,) [N]."""
         return jnp.zeros_like(ring)
 
     def at(

@@ -61,7 +61,7 @@ def orbiting(
     row, each = (
         model.rows[0] for model in (element.model(speed), jax.vmap(one)(excess))
     )
-    rows = (dataclasses.replace(row, element=each.element, unlike=True),)
+    rows = (dataclasses.replace(row, element=each.element, per_element=True),)
     return BearingModel(RowGroup.of(rows), element.equilibrium, element.cage_torque)
 
 
@@ -82,11 +82,11 @@ def ring_forces(
     """
 
     def seen(q):
-        return row.seen(row.local(q), azimuth)
+        return row.in_element_axes(row.local(q), azimuth)
 
     def energy(rings):
-        def one(placed, rings, energies):
-            return expanded(condensed, rings, placed, energies)
+        def one(solved_element, rings, energies):
+            return expanded(condensed, rings, solved_element, energies)
 
         return jnp.sum(solved.each(row, one, rings))
 

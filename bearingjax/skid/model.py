@@ -59,9 +59,9 @@ class SkidModel(eqx.Module):
             gyroscopic moment where contact loads and angles are solved;
             `EqualShare()` is that of the source.
         lubricant: Oil.
-        temperature: Of the oil in all contacts [K].
+        temperature: Temperature of the oil in all contacts [K].
         traction: Law of traction.
-        drag: Of the oil and air between the rings.
+        drag: Drag of the oil and air between the rings.
         cage: Cage.
         least_film: Thickness that remains of a film at rest, such as the composite
             roughness [m].

@@ -58,9 +58,9 @@ class SkidState(NamedTuple):
         orbit: Orbital speeds (ball,) [rad/s].
         lead: Angle by which each ball is ahead of the middle of its pocket (ball,)
             [rad].
-        cage_speed: Of the cage [rad/s].
+        cage_speed: Speed of the cage [rad/s].
         cage_turn: Angle by which the cage has turned [rad].
-        centre: Of each ball (z, r) from where the rings take it (ball, 2) [m].
+        centre: Centre of each ball (z, r) from where the rings take it (ball, 2) [m].
         ring: Unknowns of the ring's balance (6,) [m].
 
     Where the loads are tabulated there is nothing in centre (ball, 0) and ring (0,).
@@ -81,9 +81,9 @@ class Surroundings(eqx.Module):
     Attributes:
         model: Traction law, drag, cage.
         loads: Contact loads of the balls.
-        speed: Of the rings, over time.
+        speed: Speed of the rings, over time.
         place: Azimuths of the pockets at rest (ball,) [rad].
-        density: Of the oil [kg/m³].
+        density: Density of the oil [kg/m³].
         gravity: Acceleration against y [m/s²].
     """
 
@@ -130,27 +130,27 @@ class ElementState(NamedTuple):
         return on_inner, jnp.sum(jnp.where(outer, torque, 0.0))
 
 
-def mechanics(ball: LoadedBall | LoadedRoller) -> Any:
+def equations_of_motion(ball: LoadedBall | LoadedRoller) -> Any:
     """Return the module of the equations of motion."""
     return roller_motion if isinstance(ball, LoadedRoller) else ball_motion
 
 
 def one_ball(
-    around: Surroundings, time: Scalar, place: Scalar, state: SkidState
+    environment: Surroundings, time: Scalar, place: Scalar, state: SkidState
 ) -> ElementState:
     """Return a ball at an instant.
 
     Args:
-        around: Surroundings of the balls.
+        environment: Surroundings of the balls.
         time: Time [s].
         place: Azimuth of its pocket at rest [rad].
-        state: Of this ball alone, with cage and ring.
+        state: State of this ball alone, with cage and ring.
     """
-    model, azimuth = around.model, place + state.cage_turn + state.lead
-    speed = around.speed.at(time)
+    model, azimuth = environment.model, place + state.cage_turn + state.lead
+    speed = environment.speed.at(time)
     here = azimuth, speed, state.centre, state.ring
-    ball, unbalanced, on_ring = around.loads.at(*here)
-    of, motion = mechanics(ball), BallState(state.spin, state.orbit)
+    ball, unbalanced, on_ring = environment.loads.at(*here)
+    of, motion = equations_of_motion(ball), BallState(state.spin, state.orbit)
     if isinstance(ball, LoadedRoller):
         motion = RollerState(state.spin[0], state.orbit)
     moving = of.sliding(ball, motion, speed)
@@ -162,8 +162,8 @@ def one_ball(
         moving,
         of.tractions(ball, model.traction, moving),
         model.cage.force(-state.lead * ball.pitch_radius),
-        model.drag.force(*turning, around.density),
-        -ball.mass * around.gravity * jnp.cos(azimuth),
+        model.drag.force(*turning, environment.density),
+        -ball.mass * environment.gravity * jnp.cos(azimuth),
         unbalanced,
         on_ring,
     )
@@ -173,18 +173,20 @@ _AXES: Any = (0, 0, 0, None, None, 0, None)
 """Axes of the balls in their state."""
 
 
-def each_ball(around: Surroundings, time: Scalar, state: SkidState) -> ElementState:
+def each_ball(
+    environment: Surroundings, time: Scalar, state: SkidState
+) -> ElementState:
     """Return all balls at an instant, leading axis ball; arguments as in `one_ball`."""
 
     def one(place, state):
-        return one_ball(around, time, place, state)
+        return one_ball(environment, time, place, state)
 
-    return jax.vmap(one, in_axes=(0, SkidState(*_AXES)))(around.place, state)
+    return jax.vmap(one, in_axes=(0, SkidState(*_AXES)))(environment.place, state)
 
 
-def power(around: Surroundings, time: Scalar, ball: ElementState) -> Work:
+def power(environment: Surroundings, time: Scalar, ball: ElementState) -> Work:
     """Return the powers of one ball [W]; arguments as in `one_ball`."""
-    speed, (on_inner, on_outer) = around.speed.at(time), ball.ring_torque
+    speed, (on_inner, on_outer) = environment.speed.at(time), ball.ring_torque
     return Work(
         drive=-on_inner * speed.inner - on_outer * speed.outer,
         contacts=jnp.sum(ball.pulls.heat),
@@ -192,13 +194,13 @@ def power(around: Surroundings, time: Scalar, ball: ElementState) -> Work:
     )
 
 
-def energies(around: Surroundings, ball: ElementState) -> tuple[Scalar, Scalar]:
+def energies(environment: Surroundings, ball: ElementState) -> tuple[Scalar, Scalar]:
     """Return kinetic and potential energy, of pocket and weight, of a ball [J]."""
-    of_ball, cage = ball.ball, around.model.cage
+    of_ball, cage = ball.ball, environment.model.cage
     height = of_ball.pitch_radius * jnp.sin(ball.azimuth)
     pressed = ball.push**2 / (2.0 * cage.stiffness)
-    weight = of_ball.mass * around.gravity * height
-    kinetic = mechanics(of_ball).kinetic_energy(of_ball, ball.state)
+    weight = of_ball.mass * environment.gravity * height
+    kinetic = equations_of_motion(of_ball).kinetic_energy(of_ball, ball.state)
     return kinetic, pressed + weight
 
 
@@ -206,25 +208,25 @@ class SkidSystem(AbstractSystem):
     """Balls and cage as bodies with shared unknowns, in units of their own.
 
     Attributes:
-        around: Surroundings of the balls.
+        environment: Surroundings of the balls.
         speed: Unit of speeds [rad/s].
         energy: Unit of work [J].
     """
 
-    around: Surroundings
+    environment: Surroundings
     speed: Scalar
     energy: Scalar
 
     @property
     def bodies(self) -> Float[Array, " ball"]:
         """Azimuths of the pockets at rest [rad]."""
-        return self.around.place
+        return self.environment.place
 
     @property
     def masses(self) -> Masses:
         """Masses: 1 for speeds and angles; balls and ring are in equilibrium at every
         time, except for a ring without stiffness."""
-        loads, real = self.around.loads, self.speed.dtype
+        loads, real = self.environment.loads, self.speed.dtype
         own = [1.0] * (loads.n_spins + 2) + [_REST] * loads.n_own
         shared = [1.0] * 2 + [_REST] * loads.n_shared
         return Masses(jnp.asarray(own, real), jnp.asarray(shared, real))
@@ -232,7 +234,7 @@ class SkidSystem(AbstractSystem):
     @property
     def _units(self):
         """Units of the unknowns: of a ball, and shared."""
-        loads, one = self.around.loads, jnp.ones_like(self.speed)
+        loads, one = self.environment.loads, jnp.ones_like(self.speed)
         own = (
             [self.speed] * (loads.n_spins + 1)
             + [one]
@@ -261,31 +263,33 @@ class SkidSystem(AbstractSystem):
         units = self._units
         own = own * jnp.broadcast_to(units[0], own.shape)
         shared = shared * units[1]
-        n = self.around.loads.n_spins
+        n = self.environment.loads.n_spins
         of_ball = own[..., :n], own[..., n], own[..., n + 1]
         return SkidState(*of_ball, shared[0], shared[1], own[..., n + 2 :], shared[2:])
 
     def body(self, which, time, own, shared):
         """Return rates and powers of a ball, as `AbstractSystem`."""
-        around, state = self.around, self._state(own, shared)
-        ball = one_ball(around, time, which, state)
+        environment, state = self.environment, self._state(own, shared)
+        ball = one_ball(environment, time, which, state)
         force = ball.push + ball.drag + ball.weight
-        change = mechanics(ball.ball).rates(ball.ball, ball.state, ball.pulls, force)
+        change = equations_of_motion(ball.ball).rates(
+            ball.ball, ball.state, ball.pulls, force
+        )
         turning = jnp.stack([change.orbit, state.orbit - state.cage_speed])
-        of_cage = -ball.ball.pitch_radius * ball.push / around.model.cage.inertia
+        of_cage = -ball.ball.pitch_radius * ball.push / environment.model.cage.inertia
         of_cage = jnp.stack([of_cage, jnp.zeros_like(of_cage)])
         # Forces out of balance, in units so large as the lengths that they move.
-        yielding = around.loads.unit / around.loads.force
+        yielding = environment.loads.unit / environment.loads.force
         spins = jnp.reshape(change.spin, (-1,))
         own = jnp.concatenate([spins, turning, yielding * ball.unbalanced])
         shared = jnp.concatenate([of_cage, -yielding * ball.on_ring])
-        work = jnp.stack(list(power(around, time, ball)))
+        work = jnp.stack(list(power(environment, time, ball)))
         units = self._units
         return own / units[0], shared / units[1], work / self.energy
 
-    def beside(self, time, shared):
+    def rest(self, time, shared):
         """Return rates from cage rotation and ring load, as `AbstractSystem`."""
-        loads, units = self.around.loads, self._units[1]
+        loads, units = self.environment.loads, self._units[1]
         own = shared * units
         turning = jnp.stack([jnp.zeros_like(own[0]), own[0]])
         push = loads.push(time, own[2:]) * (loads.unit / loads.force)

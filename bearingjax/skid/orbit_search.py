@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int
 from ..design import pitch_radius
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults, SolvedRow
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.lapack import solve_any
 from ..numerics.linear import solve
@@ -59,7 +59,7 @@ class AbstractOrbit(eqx.Module):
             nothing would hold the ring in its place [1].
         balance: Of the ring.
         azimuth: The places, spread evenly (place,) [rad].
-        density: Of the oil [kg/m³].
+        density: Density of the oil [kg/m³].
         along: Matrix of derivatives along the orbit (place, place) [1].
         least: Sum of the contact loads in pure rolling, the scale of contact loads
             that vanish [N].
@@ -133,14 +133,14 @@ class AbstractOrbit(eqx.Module):
 
     @abc.abstractmethod
     def described(
-        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
+        self, y: Float[Array, " unknown"], solved: SolvedRow, **fields: Any
     ) -> SteadyMotion:
         """Return the results of the steady motion.
 
         Args:
             y: Unknowns that fulfil the equations (unknown,) [rad/s, m].
             solved: Their row, solved there.
-            **known: Fields that do not follow from them.
+            **fields: Fields that do not follow from them.
         """
 
     def parts(self, y: Float[Array, " unknown"]) -> tuple[Array, Array, Array]:
@@ -234,7 +234,7 @@ class AbstractOrbit(eqx.Module):
         own, common, ring = self.parts(y)
         (places, k), c = own.shape, common.size
 
-        # What happens at a place hangs on its own unknowns and on those that all share:
+        # Forces at a place depend on its own unknowns and on the shared ones:
         # all places are moved at once.
         def moved(way):
             here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
@@ -265,7 +265,7 @@ class AbstractOrbit(eqx.Module):
         turned = -jnp.sum(of_ring[:, :, 2 * k :], axis=0)
         turned = turned.at[:, c:].add(-jnp.diag(1.0 - self.balance.free))
         last = jnp.concatenate([stand.reshape(_RING, -1), turned], axis=1)
-        # Tractions of which no contact would tell are none.
+        # Tractions below `NO_TRACTION` of the loads count as none.
         loads = jnp.maximum(sizes[1], self.least)
         most = jnp.maximum(sizes[0], NO_TRACTION * loads)
         largest = jnp.full(y.size - _RING, most)
@@ -284,7 +284,7 @@ class Evaluated(NamedTuple):
     Attributes:
         out: Forces out of balance (unknown,) [N].
         sizes: Scale of each (unknown,) [N].
-        jacobian: Of the forces (unknown, unknown) [N s/rad, N/m].
+        jacobian: Jacobian of the forces (unknown, unknown) [N s/rad, N/m].
         solved: The row in equilibrium there.
     """
 
@@ -294,7 +294,7 @@ class Evaluated(NamedTuple):
     solved: SolvedRow
 
 
-class Found(NamedTuple):
+class OrbitSolution(NamedTuple):
     """Result of a search.
 
     Attributes:
@@ -313,20 +313,20 @@ class Found(NamedTuple):
     solved: SolvedRow
 
 
-def search(orbit: AbstractOrbit) -> Found:
-    """Find the periodic motion; without derivatives, see `known`.
+def search(orbit: AbstractOrbit) -> OrbitSolution:
+    """Find the periodic motion; without derivatives, see `with_derivatives`.
 
     Args:
         orbit: Its equations.
 
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
-    loop = lanes.Loop(_init, _step, _terminate, _finish, _blank)
+    loop = batched_loop.Loop(_init, _step, _terminate, _finish, _trivial_result)
     few = orbit.start.size <= _FEW + _RING
-    return Found(*lanes.run(loop, stop(orbit), 16 if few else 2))
+    return OrbitSolution(*batched_loop.run(loop, stop(orbit), 16 if few else 2))
 
 
-def known(
+def with_derivatives(
     orbit: AbstractOrbit, y: Float[Array, " unknown"], result: Int[Array, ""]
 ) -> Float[Array, " unknown"]:
     """Return the unknowns found, with derivatives; NaN if the search failed.
@@ -405,7 +405,7 @@ def _step(orbit, state):
     step = jnp.where(taken, longer, 0.2 * state.step)
     new = _State(y, at, jnp.where(first, state.step, step), state.steps + 1)
     kept = state._replace(step=step, steps=state.steps + 1)
-    return lanes.Either(taken, new, kept)
+    return batched_loop.Either(taken, new, kept)
 
 
 def _size(out):
@@ -435,7 +435,7 @@ def _finish(orbit, state):
     return state.y, _size(at.out / at.sizes), state.steps, result, at.solved
 
 
-def _blank(orbit):
+def _trivial_result(orbit):
     y, none = orbit.start, jnp.zeros((), jnp.int32)
     return y, jnp.zeros_like(y[0]), none, none, _unsolved(orbit)
 

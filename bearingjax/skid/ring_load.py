@@ -48,7 +48,7 @@ class SinusoidalLoad(eqx.Module):
 
     Attributes:
         mean: (Fx, Fy, Fz, Mx, My, Mz) (6,) [N, N m].
-        amplitude: Of each (6,) [N, N m].
+        amplitude: Amplitude of each (6,) [N, N m].
         speed: Angular frequency [rad/s].
         phase: At time zero [rad].
 

@@ -54,7 +54,7 @@ def ramp(duration, end: Speed, start: Speed | None = None) -> SpeedTable:
     """Create a table with a linear ramp between two speeds, then constant.
 
     Args:
-        duration: Of the change [s].
+        duration: Duration of the change [s].
         end: Speeds after it.
         start: Speeds before; default: standstill.
     """

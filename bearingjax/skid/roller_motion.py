@@ -82,7 +82,7 @@ class RollerSliding(NamedTuple):
     """Motion of a roller against its raceways, contacts (outer, inner).
 
     Attributes:
-        slip: Of the roller along x (contact,) [m/s].
+        slip: Slip of the roller along x (contact,) [m/s].
         entrainment: Mean of both surface speeds relative to the contact (contact,)
             [m/s].
     """

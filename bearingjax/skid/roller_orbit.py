@@ -87,11 +87,11 @@ class RollerOrbit(AbstractOrbit):
             state, moving, pulls, drag = self.forces(roller, spin, common[0])
             push = jnp.sum(pulls.force) - drag
             lost = -drag * roller.pitch_radius * state.orbit
-            told = conditions_of(self.model, roller, moving, pulls.film)
-            return state, self.rolls(roller), moving, pulls, push, lost, told
+            conditions = conditions_of(self.model, roller, moving, pulls.film)
+            return state, self.rolls(roller), moving, pulls, push, lost, conditions
 
         found = jax.vmap(one)(roller, own[:, 0])
-        state, rolls, moving, pulls, push, lost, told = found
+        state, rolls, moving, pulls, push, lost, conditions = found
         rollers = self.model.bearing.n_elements
 
         def mean(values):
@@ -109,7 +109,7 @@ class RollerOrbit(AbstractOrbit):
             heat=pulls.heat,
             cage_speed=state.orbit[0],
             cage_force=push,
-            conditions=told,
+            conditions=conditions,
             ring_torque=jnp.stack([-on_outer, -on_inner]),
             friction_torque=driving(-on_outer, -on_inner, speed),
             power=Power(

@@ -143,7 +143,7 @@ class CageSlip(AbstractLargest):
     than in pure rolling, and the cage leads, although they slide.
 
     Attributes:
-        exponent: Of the smooth maximum over the cases.
+        exponent: Exponent of the smooth maximum over the cases.
 
     Static: exponent.
     """

@@ -23,7 +23,7 @@ from ..statics.load_case import LoadCase, load_case
 from ..statics.options import SolveOptions
 from .ball_orbit import BallOrbit
 from .model import SkidModel
-from .orbit_search import NO_TRACTION, derivatives, known, search
+from .orbit_search import NO_TRACTION, derivatives, search, with_derivatives
 from .roller_orbit import RollerOrbit
 from .steady_results import SteadyMotion
 
@@ -228,7 +228,7 @@ def end_state(
         # One place does not stand for all.
         misfit = _unlike(solution) & (result == int(Result.CONVERGED))
         result = jnp.where(misfit, int(Result.GRID_MISFIT), result)
-    y = known(orbit, found.y, result)
+    y = with_derivatives(orbit, found.y, result)
     told = orbit.described(
         y,
         found.solved,

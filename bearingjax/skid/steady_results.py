@@ -62,7 +62,7 @@ class SteadyMotion(eqx.Module):
         orbit_speed: Orbital speed (place,) [rad/s].
         rolling_orbit_speed: That of pure rolling (place,) [rad/s].
         film: Central films (place, contact) [m].
-        heat: Of each contact (place, contact) [W].
+        heat: Heat of each contact (place, contact) [W].
         cage_speed: Mean orbital speed [rad/s].
         friction_torque: On the ring that drives, the one that turns faster; the mean
             over the orbit, of the losses in `SkidModel` [N m].
@@ -120,7 +120,7 @@ class SteadyMotion(eqx.Module):
     def raceway_heat(self) -> np.ndarray:
         """Mean heat of all contacts of the outer and of the inner raceway (2,) [W]."""
         heat = np.asarray(self.heat)
-        # At even places a ball is for longer where it is slow.
+        # Places are even in angle; a ball spends longer where it is slow.
         orbit = np.abs(np.asarray(self.orbit_speed))
         time = 1.0 / orbit if orbit.all() else np.ones_like(orbit)
         count = len(self.solution.azimuth)  # type: ignore[attr-defined]
@@ -141,7 +141,7 @@ class SteadySkid(SteadyMotion):
     Attributes are those of `SteadyMotion`, and
         solution: The bearing under its load, in pure rolling.
         contact_angle: Angles (place, contact) [rad].
-        spin: Of the ball relative to its orbiting frame, tangential, radial, axial
+        spin: Spin of the ball relative to its orbiting frame, tangential, radial, axial
             (place, 3) [rad/s].
         sliding: Slip in the middle of the contacts, along the rolling direction and
             across (place, contact, 2) [m/s].

@@ -33,7 +33,7 @@ from .conditions import conditions_of
 from .history import SkidHistory, SkidRollerHistory
 from .integration import Options, integrated
 from .model import SkidModel
-from .motion import SkidState, each_ball, energies, mechanics, power
+from .motion import SkidState, each_ball, energies, equations_of_motion, power
 from .ring_speed import SpeedTable, as_table
 from .steady_results import driving
 
@@ -90,8 +90,8 @@ def simulate(
         load: On the moving ring, as in `solve_load` (6,) [N, N m]; or over time:
             `LoadHistory`, `SinusoidalLoad`, or another pytree that is a function of
             time [s] and returns such a load.
-        speed: Of the rings: constant, or over time.
-        duration: Of the motion [s].
+        speed: Speed of the rings: constant, or over time.
+        duration: Duration of the motion [s].
         times: When to report, rising, from 0 to `duration` (time,) [s]. Default:
             `n_times` of them, evenly spaced. Between its steps the motion is
             interpolated by cubics.
@@ -104,7 +104,7 @@ def simulate(
             along the orbits only, as its radial part is small against contact loads.
         balanced: Whether the ring is balanced at every time; of balls alone. Static.
             Default: if the load is a function of time.
-        places: Of the table, 1 where all loads are equal, or at least 6; static.
+        places: Places of the table, 1 where all loads are equal, or at least 6; static.
             Default: 1 if they are, else 96 (also if the load is traced).
         tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
             relative to the kinetic energy of rolling balls. The error of a step is held
@@ -156,16 +156,18 @@ def simulate(
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
         balance = _balance(model, solution, given)
-        around, rolling = balanced_surroundings(
+        environment, rolling = balanced_surroundings(
             model, solution, balance, over_time, table, gravity
         )
     else:
         if places is None:
             places = 1 if _alike(solution.roller_load) else _PLACES
-        around, rolling = surroundings(model, solution, at, table, gravity, places)
+        environment, rolling = surroundings(model, solution, at, table, gravity, places)
     options = Options(as_real(tolerance), max_steps, derivatives, progress)
     start = rolling if start is None else _taken_up(start, rolling)
-    found = _skid(around, solution, start, as_real(times), as_real(duration), options)
+    found = _skid(
+        environment, solution, start, as_real(times), as_real(duration), options
+    )
     if not throw:
         return found
     return raise_unless_converged(found, found.result, lambda: _message(found))
@@ -251,18 +253,20 @@ def _balance(model, solution, given):
 
 
 @program
-def _skid(around, solution, start, times, duration, options):
-    moved = integrated(around, start, times, duration, options)
-    found: Any = jax.vmap(partial(_reported, around))(times, moved.state)
+def _skid(environment, solution, start, times, duration, options):
+    moved = integrated(environment, start, times, duration, options)
+    found: Any = jax.vmap(partial(_reported, environment))(times, moved.state)
     q = jnp.broadcast_to(solution.displacement, (times.shape[0], 12))
     result = jnp.maximum(moved.result, solution.result)
-    if isinstance(around.loads, BalancedLoads):
-        q = jax.vmap(around.loads.balance.ring_freedoms)(moved.state.ring)
+    if isinstance(environment.loads, BalancedLoads):
+        q = jax.vmap(environment.loads.balance.ring_freedoms)(moved.state.ring)
         # Nothing but `_REST` slows a ring that the load pulls away.
-        away = jnp.any(jnp.abs(moved.state.ring) > around.model.bearing.ball_diameter)
+        away = jnp.any(
+            jnp.abs(moved.state.ring) > environment.model.bearing.ball_diameter
+        )
         lost = jnp.where(away, int(Result.NO_LOAD_PATH), int(Result.CONVERGED))
         result = jnp.maximum(result, lost.astype(result.dtype))
-    kind = SkidHistory if around.model.bearing.is_ball else SkidRollerHistory
+    kind = SkidHistory if environment.model.bearing.is_ball else SkidRollerHistory
     return kind(
         solution=solution,
         time=times,
@@ -272,25 +276,27 @@ def _skid(around, solution, start, times, duration, options):
     )
 
 
-def _reported(around, time, state):
+def _reported(environment, time, state):
     """Return the entries of a history at one instant."""
-    balls = each_ball(around, time, state)
+    balls = each_ball(environment, time, state)
     powers, energy = jax.tree.map(
         lambda of_balls: jnp.sum(of_balls, axis=0),
-        jax.vmap(lambda ball: (power(around, time, ball), energies(around, ball)))(
-            balls
-        ),
+        jax.vmap(
+            lambda ball: (power(environment, time, ball), energies(environment, ball))
+        )(balls),
     )
     kinetic, potential = energy
-    speed = around.speed.at(time)
+    speed = environment.speed.at(time)
     inner, outer = (-jnp.sum(torque) for torque in balls.ring_torque)
-    rolling = jax.vmap(partial(mechanics(balls.ball).rolling, speed=speed))(balls.ball)
+    rolling = jax.vmap(partial(equations_of_motion(balls.ball).rolling, speed=speed))(
+        balls.ball
+    )
     of_balls = {}
-    if around.model.bearing.is_ball:
+    if environment.model.bearing.is_ball:
         angle, spin = balls.ball.angle, balls.moving.spin
         of_balls = {"contact_angle": angle, "contact_spin": spin}
     else:
-        told = jax.vmap(partial(conditions_of, around.model))
+        told = jax.vmap(partial(conditions_of, environment.model))
         of_balls = {"conditions": told(balls.ball, balls.moving, balls.pulls.film)}
     return dict(
         **of_balls,
@@ -304,6 +310,7 @@ def _reported(around, time, state):
         friction_torque=driving(outer, inner, speed),
         ring_torque=jnp.stack([outer, inner]),
         power=powers,
-        kinetic_energy=kinetic + 0.5 * around.model.cage.inertia * state.cage_speed**2,
+        kinetic_energy=kinetic
+        + 0.5 * environment.model.cage.inertia * state.cage_speed**2,
         potential_energy=potential,
     )

@@ -45,10 +45,10 @@ def skid_warnings(
         cases = range(len(held[0].result))
         ones = (jax.tree.map(lambda leaf, k=k: leaf[k], held) for k in cases)
         kinds = zip(*(_doubts(model, *one) for one in ones), strict=True)
-        told = [_counted(kind) for kind in kinds if any(kind)]
+        texts = [_counted(kind) for kind in kinds if any(kind)]
     else:
-        told = [doubt[1] for doubt in _doubts(model, *held) if doubt]
-    return [*_pockets(model), *told]
+        texts = [doubt[1] for doubt in _doubts(model, *held) if doubt]
+    return [*_pockets(model), *texts]
 
 
 def _counted(doubts):
@@ -62,7 +62,7 @@ def _counted(doubts):
 def _doubts(model, found, state):
     """Return size and sentence of each kind of warning, or `None`."""
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
-    # Before the rings turn there is no film, and slip means nothing.
+    # Before the rings turn there is no film, and slip has no meaning.
     rolling = np.abs(found.rolling_orbit_speed)
     turning = rolling >= STARTED * np.nanmax(rolling, initial=0.0)
     turning &= rolling > 0

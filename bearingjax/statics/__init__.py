@@ -1,4 +1,4 @@
-"""Load solves, sweeps, preload, linearisation, and what they return.
+"""Load solves, sweeps, preload, linearisation, and their results.
 
 `solve_load(element, load)` finds the displacement of the rings under a load and returns
 a `Solution`: displacement, stiffness, the load and pressure of every contact.
@@ -12,9 +12,9 @@ differentiable), or `spring=PreloadSpring(force, stiffness)` on the row at +z (t
 `sweep` solves loads, displacements, speeds and designs by the thousand, in batches that
 fit the cache, over all devices and processes of JAX; each case has its own result code,
 and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pressure`,
-`largest_load`, `n_loaded`, `iterations`, `residual`; what is not named is not computed.
-Each case starts from the nearest one that is solved by then (`near`). Designs:
-`stack_designs([...])`, or an element made under `jax.vmap`.
+`largest_load`, `n_loaded`, `iterations`, `residual`; outputs that are not named are not
+computed. Each case starts from the nearest one that is solved by then (`near`).
+Designs: `stack_designs([...])`, or an element made under `jax.vmap`.
 `jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
 `sweep(..., stop=...)` is asked between blocks.
 

@@ -127,12 +127,12 @@ def _row_results(
     sides = jnp.where(loaded, jnp.sqrt(jnp.where(loaded, square, 1.0)), 0.0)
     pressure = ellipses.peak_pressure(load.T).T
     kinematics = moment = force = None
-    if ball.turning is not None:
+    if ball.ball_inertia is not None:
         kinematics = row.each(lambda ball, *at: ball.carried(*at))
-        turning = ball.turning
-        moment = gyroscopic_moment(turning.moment, kinematics)
+        inertia = ball.ball_inertia
+        moment = gyroscopic_moment(inertia.moment, kinematics)
         force = row.each(lambda ball, *at: ball.inertia(*at)[1])
-        if not turning.control.has_moment:
+        if not inertia.control.has_moment:
             moment = jnp.zeros_like(moment)
     by_contact = {
         "contact_load": load,

@@ -28,7 +28,8 @@ class Cases(eqx.Module):
     Attributes:
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring (case, 6) [N, N m].
         prescribed: Displacements given instead of loads, by freedom (case,) [m, rad].
-        fixed_displacement: That of the fixed ring (case, 6) [m, rad]; `None`: zero.
+        fixed_displacement: Displacement of the fixed ring (case, 6) [m, rad]; `None`:
+            zero.
         inner_speed: Speed of the inner ring (case,) [rad/s], or `None`. If both speeds
             are `None` there is no inertia, and none is compiled.
         outer_speed: Speed of the outer ring (case,) [rad/s], or `None`.

@@ -171,7 +171,7 @@ def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
     if not isinstance(solution, Solution):
         raise TypeError(
             f"{owner}: `solution` is a {type(solution).__name__}; it must be a"
-            " Solution, as of solve_load."
+            " Solution, as returned by solve_load."
         )
     check_single(owner, solution)
     if solution.speed is None:

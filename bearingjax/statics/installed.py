@@ -38,7 +38,7 @@ class Installed(eqx.Module):
             other [rad/s]; `None`: not known. It does not affect the solution.
         reference_speed: Thermal reference speed of its catalogue, the same way [rad/s].
 
-    Traced: all numbers. Static: what is `None`.
+    Traced: all numbers. Static: which fields are `None`.
 
     Raises:
         TypeError: If a part is of another kind.

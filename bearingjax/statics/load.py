@@ -27,7 +27,7 @@ from ..numerics.types import Scalar
 from .balance import balance_of
 from .load_case import LoadCase, Prescribed, Vector, load_case
 from .load_result import solution_of
-from .load_search import beginning, search
+from .load_search import search, search_start
 from .options import SolveOptions
 from .solution import BallSolution, RollerSolution, Solution, message
 
@@ -178,7 +178,7 @@ def _solve(
     # The search is not differentiated: derivatives are those of its end.
     frozen, still = stop(model), stop(balance)
     rows = rows_of(stop(element.bearing))
-    begin = beginning(rows, frozen, still, stop(case.start))
+    begin = search_start(rows, frozen, still, stop(case.start))
     minimum = search(frozen, still, begin, options)
 
     def solution(element, model, balance, case):

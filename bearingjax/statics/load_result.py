@@ -18,13 +18,13 @@ from ..numerics.result import Result
 from ..numerics.types import Ring
 from .balance import Balance
 from .load_case import LoadCase
-from .load_search import Beginning, differentiable
+from .load_search import SearchStart, differentiable
 from .options import SolveOptions
 from .solution import Solution, Stats, describe, solution_kind
 from .warning_sizes import stiffness_scale
 
 
-class Ending(NamedTuple):
+class LoadOutcome(NamedTuple):
     """Outcome of a load solve.
 
     Attributes:
@@ -42,7 +42,7 @@ def solution_of(
     balance: Balance,
     case: LoadCase,
     options: SolveOptions,
-    begin: Beginning,
+    begin: SearchStart,
     minimum: Minimum,
 ) -> Solution:
     """Solution at the end of a search.
@@ -69,7 +69,7 @@ def solution_of(
     most = stop(stiffness_scale(element.bearing) * balance.radius)
     strong = (begin.size > most) | (begin.inertia > most)
     far = begin.y[:5] @ begin.y[:5] >= (8.0 * balance.radius) ** 2
-    ending = _ending(
+    ending = _outcome(
         balance,
         minimum,
         evaluated.result,
@@ -131,14 +131,14 @@ def _loaded_unheld(case: LoadCase) -> Bool[Array, "6"]:
     return jnp.asarray(locked) & ~(case.load == 0)
 
 
-def _ending(
+def _outcome(
     balance: Balance,
     minimum: Minimum,
     of_elements: Int[Array, ""],
     loaded: Bool[Array, "6"],
     absurd: Bool[Array, ""],
     force: Ring,
-) -> Ending:
+) -> LoadOutcome:
     """Most severe result code of a solve, and the freedom that it concerns.
 
     Args:
@@ -165,7 +165,7 @@ def _ending(
     freedom = jnp.where(jnp.any(loaded), jnp.argmax(loaded), runaway)
     of_ring = jnp.any(loaded) | (minimum.result == Result.NO_LOAD_PATH)
     named = of_ring & (result == Result.NO_LOAD_PATH)
-    return Ending(result, jnp.where(named, freedom, -1).astype(jnp.int32))
+    return LoadOutcome(result, jnp.where(named, freedom, -1).astype(jnp.int32))
 
 
 def _runaway(y: Float[Array, "6"], free: Float[Array, "6"]) -> Int[Array, ""]:

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
-from ..numerics import lanes
+from ..numerics import batched_loop
 from ..numerics.implicit import attach_by, stop
 from ..numerics.linear import null_space, solve
 from ..numerics.minimise import (
@@ -35,7 +35,7 @@ SLOTS, IDLE = 64, 4
 """Cases of a batch that are at work at a time, and how many of them may be done."""
 
 
-class Known(NamedTuple):
+class SearchMemory(NamedTuple):
     """State kept from an evaluation of the energy.
 
     Attributes:
@@ -47,7 +47,7 @@ class Known(NamedTuple):
     stiffness: Float[Array, "6 6"]
 
 
-class Beginning(NamedTuple):
+class SearchStart(NamedTuple):
     """Start of a search.
 
     Attributes:
@@ -69,12 +69,12 @@ class Beginning(NamedTuple):
     factor: Scalar
 
 
-def beginning(
+def search_start(
     rows: tuple[SetRow, ...],
     model: BearingModel,
     balance: Balance,
     start: Float[Array, "6"] | None,
-) -> Beginning:
+) -> SearchStart:
     """First unknowns and first load of a search, from the sizes of the bearing.
 
     A load that presses the contacts by far less than the play that it takes up is
@@ -105,13 +105,13 @@ def beginning(
     # of their raceways under loads beyond all ratings.
     step = 1e-7 * radius + play + _approach_under(model, size, radius)
     inertia = _largest_inertia(model, size)
-    return Beginning(y, step, limit, load, size, inertia, factor)
+    return SearchStart(y, step, limit, load, size, inertia, factor)
 
 
 def search(
     model: BearingModel,
     balance: Balance,
-    begin: Beginning,
+    begin: SearchStart,
     options: SolveOptions,
 ) -> Minimum:
     """Minimise the energy less the work of the load. Without derivatives.
@@ -127,20 +127,20 @@ def search(
     shapes = jax.eval_shape(model.unsolved)
     problem = partial(_problem, shapes=shapes)
     loop = continuation(solver, problem, lambda given: given.begin.factor)
-    given = _Given(model, balance, begin, options)
-    return lanes.run(loop, given, slots=SLOTS, idle=IDLE)
+    given = _Inputs(model, balance, begin, options)
+    return batched_loop.run(loop, given, slots=SLOTS, idle=IDLE)
 
 
-class _Given(NamedTuple):
+class _Inputs(NamedTuple):
     """The arguments of `search`."""
 
     model: BearingModel
     balance: Balance
-    begin: Beginning
+    begin: SearchStart
     options: SolveOptions
 
 
-def _problem(given: _Given, shapes: Solved) -> Problem:
+def _problem(given: _Inputs, shapes: Solved) -> Problem:
     model, balance, begin, options = given
     # Nothing carries a load, so no solve starts from it.
     unsolved = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
@@ -149,7 +149,7 @@ def _problem(given: _Given, shapes: Solved) -> Problem:
         _energy(model, balance),
         begin.y,
         begin.step,
-        memory=Known(unsolved, none),
+        memory=SearchMemory(unsolved, none),
         direction=begin.load / jnp.where(begin.size > 0, begin.size, 1.0),
         limit=begin.limit,
         force=begin.load,
@@ -175,7 +175,7 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
             hessian=h + jnp.diag(1.0 - balance.free),
             scale=e.magnitude,
             noise=jnp.finfo(y.dtype).eps * floor,
-            memory=Known(solved, h),
+            memory=SearchMemory(solved, h),
         )
 
     return function
@@ -194,7 +194,7 @@ def differentiable(
     Args:
         model: The bearing at the speeds.
         balance: The load and what holds the rings.
-        minimum: Result of the search; its memory is `Known`.
+        minimum: Result of the search; its memory is `SearchMemory`.
     """
     # All that is traced goes through the arguments: a derivative rule must not close
     # over it.
@@ -268,8 +268,8 @@ _without_limit.defjvp(_rule, symbolic_zeros=True)
 def _residual(y, args):
     """Zero in balance."""
     model, balance, solved, _ = args
-    # A held freedom follows what is prescribed for it, not `y`: between it and the
-    # free ones the Jacobian would not be symmetric.
+    # Held freedoms take their prescribed values, not those of `y`, which would make the
+    # Jacobian between held and free ones unsymmetric.
     held = balance.held
     q = balance.ring_freedoms(balance.free * y + held)
     # gz may be prescribed: the answer follows it through the azimuths.
@@ -299,17 +299,17 @@ def _approach_under(model: BearingModel, size: Scalar, radius: Scalar) -> Scalar
     """About the approach of one raceway contact under a load of that size [m].
 
     Between the powers 2/3 of points and 9/10 of lines; at most a tenth of the radius,
-    and zero where the elements do not tell their loads.
+    and zero where the elements do not estimate their loads.
     """
     known = 1e-3 * radius
     load = _load_for(model, known)
-    told = load > 0
-    approach = known * (size / jnp.where(told, load, 1.0)) ** 0.8
-    return jnp.where(told, jnp.minimum(approach, 0.1 * radius), 0.0)
+    loaded = load > 0
+    approach = known * (size / jnp.where(loaded, load, 1.0)) ** 0.8
+    return jnp.where(loaded, jnp.minimum(approach, 0.1 * radius), 0.0)
 
 
 def _largest_inertia(model: BearingModel, like: Scalar) -> Scalar:
     """Largest inertia force of a rolling element [N]."""
-    sizes = model.of_elements(lambda one: one.hints.inertia_size())
+    sizes = model.of_elements(lambda one: one.hints.inertia_scale())
     found = [jnp.max(size) for size in sizes if size is not None]
     return jnp.max(jnp.stack(found)) if found else jnp.zeros_like(like)

@@ -54,7 +54,7 @@ class Likeness(NamedTuple):
     axial_play: bool
 
 
-class Known(NamedTuple):
+class SolvedCases(NamedTuple):
     """Solved cases, turned towards +x; behind `KEPT` room for a chunk that is not read.
 
     Attributes:
@@ -74,7 +74,7 @@ class Known(NamedTuple):
     count: Int[Array, " 1"]
 
 
-def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
+def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
     """No solved cases, of all devices one after the other, as NumPy arrays.
 
     Args:
@@ -86,7 +86,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> Known:
     tails = (6,), (coordinates,), (6,), (6, 6)
     none: list[Any] = [np.zeros((n, *tail)) for tail in tails]
     last: list[Any] = [np.zeros(n, bool), np.zeros(devices, np.int32)]
-    return Known(*none, *last)
+    return SolvedCases(*none, *last)
 
 
 def likeness(
@@ -151,7 +151,7 @@ def _shares(arrays):
 
 
 def starts(
-    known: Known, cases: Cases, other: Float[Array, "case k"], alike: Likeness
+    known: SolvedCases, cases: Cases, other: Float[Array, "case k"], alike: Likeness
 ) -> Float[Array, "case 6"]:
     """Displacements of the moving ring to start from [m, rad]; NaN: first contact.
 
@@ -205,8 +205,8 @@ def _place(load, other):
 
 
 def added(
-    known: Known, solutions: Solution, cases: Cases, other: Any, alike: Likeness
-) -> tuple[Known, Bool[Array, " case"]]:
+    known: SolvedCases, solutions: Solution, cases: Cases, other: Any, alike: Likeness
+) -> tuple[SolvedCases, Bool[Array, " case"]]:
     """Add a chunk of solved cases; return all, and which are not valid as starts.
 
     Args:
@@ -232,7 +232,7 @@ def added(
 
     new = (_turned(load, back), other, there, k, sound)
     rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
-    return Known._make([*rows, known.count + len(load)]), ~sound
+    return SolvedCases._make([*rows, known.count + len(load)]), ~sound
 
 
 def _angle(load, pitch):

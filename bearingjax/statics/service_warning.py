@@ -40,10 +40,10 @@ def seat_warnings(
 
     Source: rule of catalogues of rolling bearings: rotating load, tight fit.
     """
-    told = []
+    texts = []
     for words, state in (("mounted", mounted), ("in operation", operating)):
         if state.ring_stress > MOST_STRESS:
-            told.append(
+            texts.append(
                 f"fit: the hoop stress of the inner ring is"
                 f" {1e-6 * float(state.ring_stress):.4g} MPa {words}, above"
                 f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
@@ -59,23 +59,23 @@ def seat_warnings(
         )
         if turns and after <= 0.0:
             once = ", though tight when mounted" if before > 0.0 else ""
-            told.append(
+            texts.append(
                 f"fit: {words} turns against the load and is loose by"
                 f" {abs(after):.3g} µm in operation{once}: it creeps and wears its seat"
             )
         elif before > 0.0 >= after:
-            told.append(
+            texts.append(
                 f"fit: {words} is tight when mounted, but loose by"
                 f" {abs(after):.3g} µm in operation: its seat has no pressure"
             )
         elif loosest is not None and (turns or seat == "shaft"):
             left = 1e6 * float(getattr(loosest, f"{seat}_interference"))
             if left <= 0.0 < after:
-                told.append(
+                texts.append(
                     f"fit: {words} is loose in operation, by {abs(left):.3g} µm, at the"
                     " loosest sizes of the tolerances"
                 )
-    return told
+    return texts
 
 
 def speed_warnings(
@@ -93,7 +93,7 @@ def speed_warnings(
 
     Source: ISO 15312 of the reference speed.
     """
-    size, told = np.abs(np.asarray(turns)), []
+    size, texts = np.abs(np.asarray(turns)), []
     for limit, words in (
         (
             limiting_speed,
@@ -116,5 +116,5 @@ def speed_warnings(
         if above.ndim:
             many = f", in {above.sum()} of {above.size} cases, worst case"
             many += f" {np.argmax(size)}"
-        told.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
-    return told
+        texts.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
+    return texts

@@ -21,12 +21,12 @@ from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from .cases import Cases
 from .life import LIFE_OUTPUTS, LifeConditions
+from .names_of_zeros import names_of_zeros
 from .options import SolveOptions
 from .solution import Solution
 from .support import check_held
 from .sweep_program import WARNED, Program, Task
 from .warning import counted, given
-from .zero_names import zero_names
 
 CHUNK = 512
 """Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
@@ -228,7 +228,9 @@ def sweep(
     # The looser tolerance of float32 would leave near starts a digit less.
     near = near and jax.config.read("jax_enable_x64")
     found = program.run(every, near, progress, stop)
-    return Sweep(every, found, options.moving_ring, zero_names(element, every, options))
+    return Sweep(
+        every, found, options.moving_ring, names_of_zeros(element, every, options)
+    )
 
 
 class Keep(eqx.Module):

@@ -73,21 +73,23 @@ class Task(eqx.Module):
         """Outputs of a solution by name; floats of a failed solve are NaN."""
         solved = solution.converged
 
-        def told(value):
+        def nan_if_failed(value):
             if jnp.issubdtype(value.dtype, jnp.floating):
                 return jnp.where(solved, value, jnp.nan)
             return value
 
-        kept = {name: told(v) for name, v in _arrays(self.keep(solution)).items()}
+        kept = {
+            name: nan_if_failed(v) for name, v in _arrays(self.keep(solution)).items()
+        }
         warned = sizes(solution) if self.warn else {}
         if self.life is not None:
             life = life_of(solution.element, solution, self.life)
             lives = life_outputs(life, self.lives)
-            kept |= {name: told(v) for name, v in lives.items()}
+            kept |= {name: nan_if_failed(v) for name, v in lives.items()}
             if self.warn:
                 bearing = solution.element.bearing
                 doubts = life_sizes(bearing, life.ratings, vars(life))
-                warned |= {name: told(size) for name, size in doubts.items()}
+                warned |= {name: nan_if_failed(size) for name, size in doubts.items()}
         always = {name: getattr(solution, name) for name in ALWAYS}
         return {**kept, **always, **{WARNED + k: size for k, size in warned.items()}}
 

@@ -62,7 +62,7 @@ _FIELD_OF = {
 
 
 def columns(
-    sweep: Sweep, beside: Mapping[str, np.ndarray] | None = None
+    sweep: Sweep, extra: Mapping[str, np.ndarray] | None = None
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
@@ -73,7 +73,7 @@ def columns(
 
     Args:
         sweep: From `sweep`.
-        beside: Further columns, placed first (case,).
+        extra: Further columns, placed first (case,).
 
     Returns:
         Header -> array (case,), in SI.
@@ -87,7 +87,7 @@ def columns(
     }
     labels = np.array([code.label for code in Result])
     return {
-        **(beside or {}),
+        **(extra or {}),
         **asked(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
         **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
@@ -130,7 +130,7 @@ def check_writable(path: Path, rows: int = 0) -> None:
 
     Args:
         path: Path of the table.
-        rows: How many it will have, if that is known.
+        rows: Number of rows that it will have, if known.
 
     Raises:
         ValueError: For an ending other than .csv, .parquet and .xlsx; for more rows
@@ -152,20 +152,20 @@ def check_writable(path: Path, rows: int = 0) -> None:
 def write(
     sweep: Sweep,
     path: str | Path,
-    beside: Mapping[str, np.ndarray] | None = None,
+    extra: Mapping[str, np.ndarray] | None = None,
 ) -> None:
     """Write `columns` to a file.
 
     Args:
         sweep: From `sweep`.
         path: Its ending, .csv, .parquet or .xlsx, sets the format.
-        beside: As in `columns`.
+        extra: As in `columns`.
 
     Raises:
         ValueError, ImportError: As `check_writable`.
         OSError: If the file cannot be written.
     """
-    write_columns(columns(sweep, beside), path)
+    write_columns(columns(sweep, extra), path)
 
 
 def write_columns(found: Mapping[str, np.ndarray], path: str | Path) -> None:

@@ -56,8 +56,8 @@ def loose(solution: Solution) -> str:
     Args:
         solution: Concrete, of one case.
     """
-    told = [text for text in warnings(solution) if text.startswith("no stiffness")]
-    return told[0] if told else ""
+    texts = [text for text in warnings(solution) if text.startswith("no stiffness")]
+    return texts[0] if texts else ""
 
 
 def sizes(solution: Solution) -> dict[str, Any]:

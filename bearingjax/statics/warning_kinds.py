@@ -19,7 +19,7 @@ from ..element.bearing_element import BearingElement
 from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
-from . import warning_sizes as of
+from . import warning_sizes as sizes
 from .rollers import EDGE_PRESSURE
 from .solution import Solution
 
@@ -110,7 +110,7 @@ def _spring_words(size, where):
 def _pressure_words(size, where):
     return (
         f"contact pressure of {1e-6 * size:.5g} MPa: beyond"
-        f" {1e-6 * of.LARGEST_PRESSURE:.0f} MPa steel is no longer elastic"
+        f" {1e-6 * sizes.LARGEST_PRESSURE:.0f} MPa steel is no longer elastic"
         f"{_in_brackets(where)}"
     )
 
@@ -125,14 +125,14 @@ def _static_words(size, where):
 def _width_words(size, where):
     return (
         f"half width of a contact {size:.2g} of its radius: Hertz's theory is for small"
-        f" strains, up to about {of.LARGEST_WIDTH:g}"
+        f" strains, up to about {sizes.LARGEST_WIDTH:g}"
     )
 
 
 def _ellipse_words(size, where):
     return (
         f"semi-axis of a contact ellipse {size:.2g} of the ball's radius: beyond"
-        f" {of.LARGEST_ELLIPSE:g} Hertz's parabolas are a tenth off ball and groove"
+        f" {sizes.LARGEST_ELLIPSE:g} Hertz's parabolas are a tenth off ball and groove"
     )
 
 
@@ -174,8 +174,8 @@ def _prescribed_tilt_words(size, where):
 def _radial_words(size, where):
     return (
         f"radial load of {size:.3g} times the axial one: beyond"
-        f" {of.LARGEST_RADIAL_SHARE:g} makers of spherical roller thrust bearings ask"
-        " for another bearing that carries it"
+        f" {sizes.LARGEST_RADIAL_SHARE:g} makers of spherical roller thrust bearings"
+        " ask for another bearing that carries it"
     )
 
 
@@ -189,8 +189,8 @@ def _clearance_words(size, where):
 def _speed_words(size, where):
     return (
         f"n·dm of {size:.3g} mm/min: most greases and oil baths end at"
-        f" {of.LARGEST_SPEED:.0e} mm/min; it takes oil jet or oil-air, and a cage made"
-        " for it"
+        f" {sizes.LARGEST_SPEED:.0e} mm/min; it takes oil jet or oil-air, and a cage"
+        " made for it"
     )
 
 
@@ -212,7 +212,7 @@ def _truncated_words(size, where):
 def _land_words(size, where):
     return (
         "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
-        f" more than {100.0 * of.LAND_SHARE:g} % of a contact's load:"
+        f" more than {100.0 * sizes.LAND_SHARE:g} % of a contact's load:"
         f" {where or f'{size:.0f} balls'}; pressure and stiffness there are worked out"
         " with the curvature of the groove, a land presses harder and is softer"
     )
@@ -221,7 +221,7 @@ def _land_words(size, where):
 def _lifted_words(size, where):
     return (
         "lifted off the inner raceway by centrifugal force, more than"
-        f" {100.0 * of.SMALLEST_LIFT:g} % of the largest load: "
+        f" {100.0 * sizes.SMALLEST_LIFT:g} % of the largest load: "
         f"{where or f'{size:.0f} balls'}"
     )
 
@@ -234,43 +234,49 @@ def _edge_words(size, where):
 
 
 KINDS: dict[str, Kind] = {
-    "implausible_number": Kind(_always, of.oddities, 0.0, _odd_words, of.odd_names),
-    "no_stiffness": Kind(_always, of.loose, 0.0, _loose_words, of.loose_names),
+    "implausible_number": Kind(
+        _always, sizes.oddities, 0.0, _odd_words, sizes.odd_names
+    ),
+    "no_stiffness": Kind(_always, sizes.loose, 0.0, _loose_words, sizes.loose_names),
     "unloaded_row": Kind(
         lambda element, _: len(rows_of(element.bearing)) > 1,
-        of.idle_rows,
+        sizes.idle_rows,
         0.0,
         _idle_words,
-        of.idle_numbers,
+        sizes.idle_numbers,
     ),
     "slack_spring": Kind(
         lambda element, _: any(r.spring is not None for r in rows_of(element.bearing)),
-        of.slack_springs,
+        sizes.slack_springs,
         0.0,
         _spring_words,
-        of.slack_numbers,
+        sizes.slack_numbers,
     ),
     "contact_pressure": Kind(
         _always,
         lambda solution: solution.roller_pressure.max(),
-        of.LARGEST_PRESSURE,
+        sizes.LARGEST_PRESSURE,
         _pressure_words,
-        lambda s: of.of_raceways(s, s.roller_pressure > of.LARGEST_PRESSURE),
+        lambda s: sizes.of_raceways(s, s.roller_pressure > sizes.LARGEST_PRESSURE),
     ),
     "static_limit": Kind(
         _always,
-        lambda s: s.roller_pressure.max() / of.static_limit(s.element.bearing),
+        lambda s: s.roller_pressure.max() / sizes.static_limit(s.element.bearing),
         1.0,
         _static_words,
-        lambda s: f"{1e-6 * of.static_limit(s.element.bearing):.0f} MPa",
+        lambda s: f"{1e-6 * sizes.static_limit(s.element.bearing):.0f} MPa",
     ),
-    "contact_width": Kind(_of_rollers, of.widths, of.LARGEST_WIDTH, _width_words),
-    "contact_ellipse": Kind(_of_balls, of.ellipses, of.LARGEST_ELLIPSE, _ellipse_words),
-    "contact_angle": Kind(_of_balls, of.groove_angles, of.LARGEST_ANGLE, _groove_words),
+    "contact_width": Kind(_of_rollers, sizes.widths, sizes.LARGEST_WIDTH, _width_words),
+    "contact_ellipse": Kind(
+        _of_balls, sizes.ellipses, sizes.LARGEST_ELLIPSE, _ellipse_words
+    ),
+    "contact_angle": Kind(
+        _of_balls, sizes.groove_angles, sizes.LARGEST_ANGLE, _groove_words
+    ),
     "tilt": Kind(
         _is_linearised,
-        of.tilt_error,
-        of.LARGEST_TILT_ERROR,
+        sizes.tilt_error,
+        sizes.LARGEST_TILT_ERROR,
         _tilt_words,
         lambda s: (
             "the motion"
@@ -280,73 +286,75 @@ KINDS: dict[str, Kind] = {
     ),
     "arc_travel": Kind(
         _is_linearised_barrel,
-        of.travel_error,
-        of.LARGEST_TILT_ERROR,
+        sizes.travel_error,
+        sizes.LARGEST_TILT_ERROR,
         _travel_words,
     ),
     "free_tilt": Kind(
         _always,
-        of.free_tilt,
+        sizes.free_tilt,
         1.0,
         _free_tilt_words,
-        lambda s: of.tilt_in_words(s, of.free_tilt(s)),
+        lambda s: sizes.tilt_in_words(s, sizes.free_tilt(s)),
     ),
     "prescribed_tilt": Kind(
         _always,
-        of.prescribed_tilt,
+        sizes.prescribed_tilt,
         1.0,
         _prescribed_tilt_words,
-        lambda s: of.tilt_in_words(s, of.prescribed_tilt(s)),
+        lambda s: sizes.tilt_in_words(s, sizes.prescribed_tilt(s)),
     ),
     "speed": Kind(
         lambda _, speed: speed is not None,
-        of.speed_factor,
-        of.LARGEST_SPEED,
+        sizes.speed_factor,
+        sizes.LARGEST_SPEED,
         _speed_words,
     ),
     "negative_clearance": Kind(
-        lambda element, speed: speed is not None and of.has_clearance(element.bearing),
-        of.clearance_lost,
+        lambda element, speed: (
+            speed is not None and sizes.has_clearance(element.bearing)
+        ),
+        sizes.clearance_lost,
         0.0,
         _clearance_words,
     ),
     "radial_share": Kind(
         _is_spherical_thrust,
-        of.radial_share,
-        of.LARGEST_RADIAL_SHARE,
+        sizes.radial_share,
+        sizes.LARGEST_RADIAL_SHARE,
         _radial_words,
     ),
-    "rib_interference": Kind(_has_ribs, of.interference, 0.0, _rib_words),
+    "rib_interference": Kind(_has_ribs, sizes.interference, 0.0, _rib_words),
     "truncated_ellipse": Kind(
         _has_shoulder,
-        of.truncation,
+        sizes.truncation,
         0.0,
         _truncated_words,
-        of.truncated_balls,
+        sizes.truncated_balls,
     ),
     "beyond_groove": Kind(
         lambda element, _: any(
             isinstance(row.bearing, AngularContactBallBearing)
             for row in rows_of(element.bearing)
         ),
-        of.on_land_count,
+        sizes.on_land_count,
         0.0,
         _land_words,
-        lambda s: of.of_raceways(s, of.on_land(s)),
+        lambda s: sizes.of_raceways(s, sizes.on_land(s)),
     ),
     "lifted_ball": Kind(
         lambda element, speed: _of_balls(element, speed) and speed is not None,
-        of.lifted_count,
+        sizes.lifted_count,
         0.0,
         _lifted_words,
-        lambda s: f"balls {of.listed(np.flatnonzero(of.lifted(s)))}",
+        lambda s: f"balls {sizes.listed(np.flatnonzero(sizes.lifted(s)))}",
     ),
     "edge_loaded": Kind(
         _of_rollers,
-        of.edge_pressure,
+        sizes.edge_pressure,
         EDGE_PRESSURE,
         _edge_words,
-        lambda s: of.of_raceways(s, of.ends_over(s)),
+        lambda s: sizes.of_raceways(s, sizes.ends_over(s)),
     ),
 }
 """Every kind of warning, by name, in the order in which they are reported."""

@@ -47,7 +47,7 @@ def test_clipping_is_wrong_and_more_so_with_a_wider_band(roller, grid, exact):
     for band in (2, 4, None):
         solver = Strips(band, clip=True)
         found = roller.solve(approach=exact.approach, grid=grid, solver=solver)
-        # It comes to rest, and its residual tells.
+        # It comes to rest, away from the solution: its residual is large.
         assert found.residual > 1e-4
         errors.append(error(found, exact))
     assert 0.01 < errors[0] < errors[1] < errors[2] < 0.5

@@ -148,7 +148,7 @@ def test_row_shifts_of_spaced_rows():
     outer = 12e-6 * 20.0 * 0.015 + 23e-6 * 10.0 * 0.085
     shifts = [float(x) for x in row_shifts(pair, seats, warm)]
     assert shifts == near([-0.5 * (inner - outer), 0.5 * (inner - outer)])
-    # Rows that touch have rings alone between them, in whatever order they are told.
+    # Rows that touch have only rings between them, in any order of the rows.
     near_by = bj.BearingSet.tandem(ANGULAR, 0.015, 3)
     turned = bj.BearingSet(near_by.rows[::-1])
     step = 12e-6 * (30.0 - 20.0) * 0.015

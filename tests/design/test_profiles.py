@@ -257,7 +257,9 @@ def test_tabulated_profile_around_matches_drop():
     profile = Tabulated(points, 1e-6 * np.array([3.0, 0.0, 1.0, 2.0]))
     t = jnp.linspace(0.0, 1.0, 5)[None]
     s = points[:-1, None] + np.diff(points)[:, None] * t
-    got = profile.around(jnp.mean(s, axis=1, keepdims=True)).drop(s, LENGTH, DIAMETER)
+    got = profile.between_knots(jnp.mean(s, axis=1, keepdims=True)).drop(
+        s, LENGTH, DIAMETER
+    )
     want = profile.drop(s, LENGTH, DIAMETER)
     np.testing.assert_allclose(got, want, rtol=1e-9, atol=1e-18)
 

@@ -86,7 +86,7 @@ def test_fact_4_quasi_newton_reaches_the_newton_point(roller, solver):
     def function(x, with_hessian):
         known = response(model, rings, x)
         d = derivatives(model, rings, x, known, of_own=True)
-        scale = jnp.sum(known.beside)
+        scale = jnp.sum(known.aux)
         hessian = d.hessian if with_hessian else d.hessian[:0]
         noise = 1e-9 * jnp.ones_like(scale)
         return bj.numerics.Evaluation(d.energy, d.gradient, hessian, scale, noise)

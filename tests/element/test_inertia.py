@@ -172,7 +172,7 @@ def test_cage_torque_of_forces_without_potential_is_their_virtual_work():
     for row, azimuth, state in parts:
         local = row.local(q)
         # Ring motions in the balls' axes, the balls turned on.
-        ends = [row.seen(local, azimuth + sign * step) for sign in (1, -1)]
+        ends = [row.in_element_axes(local, azimuth + sign * step) for sign in (1, -1)]
         work = jnp.sum(state.energies.gradient * (ends[0] - ends[1])) / (2 * step)
         ratio = 0.0095 * np.cos(np.deg2rad(25)) / 0.052
         torque = torque + 0.5 * float(work) * np.array([1 + ratio, 1 - ratio])

@@ -104,10 +104,10 @@ class TorusRoller(AbstractRollingElement):
 
         found = by_autodiff(energy, coordinates)
         load = jnp.sqrt(jnp.sum(found.gradient**2, axis=1))
-        return found._replace(beside=load)
+        return found._replace(aux=load)
 
-    def energy(self, rings, x, known=None):
-        contacts = contact_energy(self, self.coordinates(rings, x), known)
+    def energy(self, rings, x, contact_response=None):
+        contacts = contact_energy(self, self.coordinates(rings, x), contact_response)
         return contacts + 0.5 * self.tether * jnp.sum(x**2)
 
     def motion(self, rings, x):
@@ -237,10 +237,10 @@ class FixedAngleBall(AbstractRollingElement):
 
         found = by_autodiff(energy, coordinates)
         load = jnp.concatenate([found.gradient[:, 0], found.gradient[:, 0]])
-        return found._replace(beside=load)
+        return found._replace(aux=load)
 
-    def energy(self, rings, x, known=None):
-        return contact_energy(self, self.coordinates(rings, x), known)
+    def energy(self, rings, x, contact_response=None):
+        return contact_energy(self, self.coordinates(rings, x), contact_response)
 
     def motion(self, rings, x):
         place = rings.mean

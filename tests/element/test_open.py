@@ -1,4 +1,4 @@
-"""Rollers that are told to be open before they are solved."""
+"""Rollers that are known to be open before they are solved."""
 
 import jax
 import jax.numpy as jnp
@@ -27,7 +27,7 @@ def taper(profile):
 
 
 class MaybeProtrudingCrown(bj.CircularCrown):
-    """Of rollers with this profile nothing is told: all are evaluated."""
+    """Rollers with this profile are never known to be open: all are evaluated."""
 
     protruding = True
 
@@ -41,7 +41,7 @@ def nup(profile):
     return cylindrical(roller_profile=profile, ribs=ribs)
 
 
-# A bearing, with its roller profile and with one of which nothing is told.
+# A bearing, with its roller profile and with one never known to be open.
 DESIGNS = {
     "crowned": (
         lambda profile: cylindrical(roller_profile=profile),
@@ -91,7 +91,7 @@ def test_open_rollers_carry_no_load(design):
     is_open = np.asarray(jax.vmap(jax.vmap(told))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9
     assert np.all(np.asarray(row.state.result) == bj.Result.CONVERGED)
-    assert np.all(np.asarray(row.energies.beside.contact_load)[is_open] == 0.0)
+    assert np.all(np.asarray(row.energies.aux.contact_load)[is_open] == 0.0)
     # One reference: that a batch is a loop is an identity of every element.
     want = evaluated(bj.BearingElement(build(untold)), q, jax.lax.map)
     for over in (jax.lax.map, in_a_batch):

@@ -18,7 +18,7 @@ from bearingjax.noise import (
     vibration,
 )
 from bearingjax.noise.cage import cage_forces, cage_loads, fastest_of_cage
-from bearingjax.noise.standing import standing
+from bearingjax.noise.static_start import static_start
 from bearingjax.noise.stepping import stepped
 
 RADIUS = 0.026
@@ -76,7 +76,7 @@ def moved():
     @jax.jit
     def run(model, rate):
         system = model.system(8)
-        start, _ = standing(model, system)
+        start, _ = static_start(model, system)
         masses = system.masses
         start = jnp.pad(start, (0, masses.shape[0] - start.shape[0]))
         velocity = jnp.zeros_like(start).at[-1].set(rate)
@@ -183,7 +183,7 @@ def test_derivatives_of_forces():
         )
         changed = dataclasses.replace(turning, cage=cage)
         system = changed.system(8)
-        start, _ = standing(turning, system)
+        start, _ = static_start(turning, system)
         start = jnp.pad(start, (0, n - start.shape[0]))
         velocity = 1e-2 * jnp.asarray(rng.normal(size=n))
         time = jnp.asarray(1e-3)

@@ -15,7 +15,7 @@ from bearingjax.design.form_error import (
     Surfaces,
 )
 from bearingjax.noise import NoiseModel, bridged, contact_half_width
-from bearingjax.noise.standing import standing
+from bearingjax.noise.static_start import static_start
 from bearingjax.noise.warning import _short_waves
 
 YOUNG = 206e9 / (1.0 - 0.3**2)
@@ -79,7 +79,7 @@ def test_bridged_model_attenuates_short_waves():
     assert given.half_width is not None
     (half,) = given.half_width
     system = given.still_system()
-    start, _ = standing(given, system)
+    start, _ = static_start(given, system)
     loads = np.asarray(system.contact_loads(start, jnp.zeros(())))
     assert half == pytest.approx(contact_half_width(row, loads), rel=1e-9)
     x = order * float(half) / float(Surfaces.of(row).outer.radius)
@@ -87,7 +87,7 @@ def test_bridged_model_attenuates_short_waves():
     assert left[1] < 0.9
     time = jnp.asarray(1.3e-3)
     found, wanted = (
-        np.asarray(m.system().met(m.system().azimuth(time), time))
+        np.asarray(m.system().deviations(m.system().azimuth(time), time))
         for m in (given, model(1e-6 * left))
     )
     np.testing.assert_allclose(found, wanted, atol=1e-6 * np.abs(wanted).max())

@@ -69,7 +69,7 @@ def test_errors_turn_with_their_parts():
     azimuth = jnp.linspace(0.0, 5.0, 7)
     outer, inner, rolled = jnp.asarray(0.2), jnp.asarray(1.5), jnp.linspace(-3, 3, 7)
     given = surfaces, azimuth, outer, inner, rolled
-    found = errors.met(*given)
+    found = errors.deviations(*given)
     np.testing.assert_allclose(found[:, 0, 0], 1e-6 * np.cos(3 * (azimuth - 0.2)))
     np.testing.assert_allclose(found[:, 1, 1], 1e-6 * np.cos(2 * (azimuth - 1.5)))
     # Both contacts of an element see an even wave alike, an odd one oppositely.
@@ -78,7 +78,7 @@ def test_errors_turn_with_their_parts():
     np.testing.assert_allclose(found[:, 0, 2], even + odd, atol=1e-20)
     np.testing.assert_allclose(found[:, 1, 2], own + even - odd, atol=1e-20)
     tables = errors.tabulated(surfaces, 2048)
-    np.testing.assert_allclose(tables.met(*given), found, atol=1e-13)
+    np.testing.assert_allclose(tables.deviations(*given), found, atol=1e-13)
 
 
 @pytest.mark.parametrize(

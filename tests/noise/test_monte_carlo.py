@@ -1,4 +1,4 @@
-"""Random bearings: what is drawn, the levels of many, and which source makes them."""
+"""Random bearings: sampled errors, the levels of many, and contributions of sources."""
 
 import dataclasses
 
@@ -16,15 +16,15 @@ from bearingjax.noise import (
     Hann,
     NoiseModel,
     RandomWaves,
-    Shares,
+    SourceContributions,
     Tolerances,
-    draw,
-    drawn,
+    contribution_warnings,
     level,
     monte_carlo,
     octave_bands,
-    share_warnings,
-    shares,
+    sample_errors,
+    sampled_model,
+    source_contributions,
     spectrum,
     total_root_mean_square,
     vibration,
@@ -65,12 +65,12 @@ def test_waves_have_the_root_mean_square_asked_for():
     surface = Surface(jnp.asarray(0.02), jnp.asarray(0.004))
 
     def height(key):
-        return waves.draw(key).height(angle, surface)
+        return waves.sample(key).height(angle, surface)
 
     heights = jax.vmap(height)(jax.random.split(KEY, 4000))
     assert jnp.sqrt(jnp.mean(heights**2)) == pytest.approx(3e-6, rel=0.045)
     even = RandomWaves.of_root_mean_square(3e-6, 2, 6, 1.5, varies=False)
-    square = 0.5 * jnp.sum(even.draw(KEY).amplitude ** 2)
+    square = 0.5 * jnp.sum(even.sample(KEY).amplitude ** 2)
     assert jnp.sqrt(square) == pytest.approx(3e-6, rel=ROUNDING)
 
 
@@ -84,7 +84,7 @@ def test_form_of_a_grade_is_seldom_exceeded():
     surface = Surface(jnp.asarray(0.004), jnp.asarray(0.004))
 
     def reading(key):
-        height = found.elements.draw(key).height(angle, surface)
+        height = found.elements.sample(key).height(angle, surface)
         return jnp.max(height) - jnp.min(height)
 
     readings = np.asarray(jax.lax.map(reading, jax.random.split(KEY, 300)))
@@ -96,7 +96,9 @@ def test_runout_of_a_class():
     accuracy = running_accuracy("P5", 0.03, 0.062)
     found = Tolerances.of_grade("G10", BEARING, runout=accuracy)
     assert "inner_eccentricity" in found.sources
-    draws = jax.vmap(lambda key: draw(found, BEARING, key))(jax.random.split(KEY, 1000))
+    draws = jax.vmap(lambda key: sample_errors(found, BEARING, key))(
+        jax.random.split(KEY, 1000)
+    )
     (wave,) = draws.errors.inner.outwards
     assert isinstance(wave, Harmonics)
     # Rayleigh: exp(-9/2) = 1.1 % of all are beyond three standard deviations.
@@ -104,9 +106,11 @@ def test_runout_of_a_class():
     assert 0.003 < beyond < 0.03
 
 
-def test_draw_scales_each_source_alone():
-    one = draw(SMALL, BEARING, KEY)
-    other = draw(SMALL.scaled({"diameter": 0.0, "outer_axial": 3.0}), BEARING, KEY)
+def test_sample_errors_scales_each_source_alone():
+    one = sample_errors(SMALL, BEARING, KEY)
+    other = sample_errors(
+        SMALL.scaled({"diameter": 0.0, "outer_axial": 3.0}), BEARING, KEY
+    )
     assert np.all(other.diameter == 0.0)
     diameter = np.asarray(one.diameter)
     assert np.max(np.abs(diameter)) <= 20e-9
@@ -127,7 +131,11 @@ def test_levels_are_those_of_each_bearing_alone():
     assert found.level.shape == (4, 3) and found.failed == 0
     assert found.bands.shape == (4, len(octave_bands().centre), 3)
     alone = vibration(
-        drawn(MODEL, SMALL, found.keys[3]), turns=1, settle=3, samples=128, steps=6
+        sampled_model(MODEL, SMALL, found.keys[3]),
+        turns=1,
+        settle=3,
+        samples=128,
+        steps=6,
     )
     lines = spectrum(
         alone.acceleration,
@@ -143,8 +151,8 @@ def test_levels_are_those_of_each_bearing_alone():
 
 
 @pytest.mark.slow
-def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
-    found = shares(MODEL, SMALL, 6, KEY, **HOW)
+def test_source_contributions_by_switching_off_and_by_gradient_agree_for_small_errors():
+    found = source_contributions(MODEL, SMALL, 6, KEY, **HOW)
     assert found.used == 6 and found.sources == SMALL.sources
     assert found.ranking == found.ranking_by_gradient
     # Of six bearings the sources' motions are not quite independent of each other.
@@ -156,44 +164,47 @@ def test_shares_by_switching_off_and_by_gradient_agree_for_small_errors():
     np.testing.assert_allclose(
         found.gain_together({first: 0.5}), np.max(found.gain(0.5)), rtol=ROUNDING
     )
-    half = shares(MODEL, SMALL, 6, KEY, factor=0.5, gradient=False, **HOW)
+    half = source_contributions(MODEL, SMALL, 6, KEY, factor=0.5, gradient=False, **HOW)
     assert half.ranking == found.ranking
     assert half.by_gradient is None
 
 
 @pytest.mark.slow
-def test_shares_along_a_line_and_by_band():
+def test_source_contributions_along_a_line_and_by_band():
     bands, how = octave_bands(), HOW | {"turns": 4}
-    found = shares(
+    found = source_contributions(
         MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, gradient=False, **how
     )
-    axial = shares(MODEL, SMALL, 3, KEY, direction=2, gradient=False, **how)
+    axial = source_contributions(
+        MODEL, SMALL, 3, KEY, direction=2, gradient=False, **how
+    )
     np.testing.assert_allclose(found.share, axial.share, rtol=ROUNDING)
     assert axial.by_band is None
-    every = [drawn(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
+    every = [sampled_model(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
     counts = {"turns": 4, "settle": 3, "samples": 128, "steps": 6}
-    square = [np.var(vibration(m, **counts).acceleration[:, 2]) for m in every]
-    np.testing.assert_allclose(found.mean_square, np.mean(square), rtol=1e-9)
+    heard = np.array([vibration(m, **counts).acceleration[:, 2] for m in every])
+    square = heard.var(axis=1)
+    np.testing.assert_allclose(found.mean_square, square.mean(), rtol=1e-9)
     parts = np.asarray(found.by_band)
     assert parts.shape == (len(found.sources), len(bands.centre))
     held = np.isfinite(parts[0])
     assert held.any() and not held.all() and np.all(parts[:, held] <= 1.0)
     with pytest.raises(ValueError, match="a vector or None"):
-        shares(MODEL, SMALL, 3, KEY, direction=3, **HOW)
+        source_contributions(MODEL, SMALL, 3, KEY, direction=3, **HOW)
 
 
-def test_products_of_sources_are_told():
+def test_contribution_warnings_for_products_of_sources():
     """Mean square 1 of a product of two sources: nothing goes without either."""
     parts = {"outer_axial": 0.0, "inner_axial": 0.0, "diameter": 1.0}
-    found = Shares(
+    found = SourceContributions(
         jnp.asarray(1.0), jnp.array([*parts.values()]), jnp.full(3, 0.01), None, None,
         jnp.asarray(0.0), 6, tuple(parts),
     )  # fmt: skip
     assert found.together == 2.0
-    (told,) = share_warnings(found)
+    (told,) = contribution_warnings(found)
     assert told.startswith("parts of the sources sum to 200 % of the mean square")
     alone = dataclasses.replace(found, smaller=jnp.array([0.0, 1.0, 1.0]))
-    assert share_warnings(alone) == []
+    assert contribution_warnings(alone) == []
 
 
 def test_monte_carlo_rejects_invalid_tolerances():
@@ -204,4 +215,4 @@ def test_monte_carlo_rejects_invalid_tolerances():
     with pytest.raises(ValueError, match="first order, or more"):
         RandomWaves(1e-6, 5, 4)
     with pytest.raises(ValueError, match="without a source"):
-        shares(MODEL, Tolerances(), 2, KEY, **HOW)
+        source_contributions(MODEL, Tolerances(), 2, KEY, **HOW)

@@ -157,7 +157,7 @@ def test_band_levels_beside_strong_line_need_resolution():
         found = spectrum(y, turns / SHAFT, SHAFT, window=Hann())
         levels = np.asarray(band_levels(found, bands))
         held[turns] = ~np.isnan(levels[:2])
-        # What is told is right, whatever is left out.
+        # Bands that are given are right; others are left out.
         told = np.array([line - 60.0, line])[held[turns]]
         np.testing.assert_allclose(levels[:2][held[turns]], told, atol=LEAST_SHIFT)
     assert not held[8].any() and held[24].all()

@@ -17,14 +17,14 @@ from bearingjax.design import FormErrors, Harmonics, RacewayErrors, with_raceway
 from bearingjax.noise import (
     NoiseModel,
     Tolerances,
-    drawn,
     excitation,
     linear_model,
     name_lines,
+    sampled_model,
     spectrum,
 )
-from bearingjax.noise.free_row import of_rows
-from bearingjax.noise.standing import standing
+from bearingjax.noise.dynamic_row import of_rows
+from bearingjax.noise.static_start import static_start
 from bearingjax.noise.warning import _gyroscopic
 
 SPEED = bj.Speed(inner=300.0)
@@ -114,7 +114,7 @@ def test_a_set_of_one_row_is_the_row():
     moving = [
         m.system().forces(start, 0 * start, jnp.array(1e-3), start)
         for m in (alone, mirrored)
-        for start in [standing(m, m.still_system())[0]]
+        for start in [static_start(m, m.still_system())[0]]
     ]
     moving[1] = moving[1].at[2].multiply(-1)
     size = np.abs(moving[0]).max()
@@ -130,7 +130,7 @@ def test_a_self_aligning_bearing_stands_in_balance():
     load = [0.0, -500.0, -50.0, 0.0, 0.0, 0.0]
     one = model(bearing, load, None)
     system = one.still_system()
-    start, result = standing(one, system)
+    start, result = static_start(one, system)
     assert result == 0
     left = system.contact_forces(start, jnp.zeros(())).at[:3].add(-one.load[:3])
     assert np.abs(left).max() < SOLVER * 500.0
@@ -139,7 +139,7 @@ def test_a_self_aligning_bearing_stands_in_balance():
 
 
 def test_rows_are_drawn_on_their_own():
-    found = drawn(
+    found = sampled_model(
         model(OFF_CENTRE), Tolerances(diameter=1e-6), jax.random.key(0)
     ).element.bearing.rows
     one, other = (np.asarray(row.bearing.ball_deviation) for row in found)

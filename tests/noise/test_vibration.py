@@ -19,7 +19,7 @@ from bearingjax.noise import (
     needed_steps,
 )
 from bearingjax.noise import vibration as in_time
-from bearingjax.noise.standing import standing
+from bearingjax.noise.static_start import static_start
 
 SPEED = bj.Speed(inner=600.0)
 BALLS = bj.BearingElement(
@@ -73,7 +73,7 @@ def test_damping_follows_the_rate_of_loads_along_their_normals():
         AXIAL, load=load, speed=turning, errors=FormErrors(), retardation=1e-4
     )
     system = model.still_system()
-    start, result = standing(model, system)
+    start, result = static_start(model, system)
     assert result == 0
     h, zero = 1e-7, jnp.zeros(())
     loads = [np.asarray(system.contact_loads(start, zero + k * h)) for k in (-1, 0, 1)]
@@ -110,7 +110,7 @@ def test_in_time_without_form_errors_stays_at_rest():
 
 
 def test_lines_of_waves_and_of_a_large_ball():
-    z, carried = 7, float(AXIAL.system(8).turning[2])
+    z, carried = 7, float(AXIAL.system(8).speeds[2])
     wavy = in_time(with_waves(outer=(1e-8, 0.0)), **SHORT)
     # Outer order z - 1: radial, at z times the cage, which no whole turns hold: the
     # motion of the ring's centre turns, so that z A cos and sin of z ω_c t remain.

@@ -15,7 +15,7 @@ import bearingjax as bj
 from bearingjax.optimise import design_numbers
 from bearingjax.optimise.design_problem import Problem, Run
 from bearingjax.optimise.optimise import verdict
-from bearingjax.optimise.search import Ending
+from bearingjax.optimise.search import SearchOutcome
 from bearingjax.optimise.smooth import smooth_maximum, smooth_minimum
 from bearingjax.optimise.trials import Trial, Trials, optimality
 from bearingjax.optimise.variable import changed
@@ -300,7 +300,9 @@ def test_optimise_reports_variables_without_influence(straight, one_case, wanted
     # All of them: a gradient of zero that says nothing of an optimum.
     flat = Trial(np.array([0.5]), 1.0, np.zeros(1), np.zeros(0), np.zeros((0, 1)))
     start = Trials(lambda unit, slopes: flat, flat)
-    result, text = verdict(start, Ending(flat.unit, True, ""), flat, True, 200, 1e-5)
+    result, text = verdict(
+        start, SearchOutcome(flat.unit, True, ""), flat, True, 200, 1e-5
+    )
     assert result == "stalled" and text.startswith("nothing changed: no variable moves")
 
 
@@ -550,7 +552,7 @@ def test_step_limit_counts_steps_without_movement():
         np.array([0.0]), 1.0, np.array([-1.0]), np.zeros(0), np.zeros((0, 1))
     )
     start = Trials(lambda unit, slopes: sloped, sloped)
-    ending = Ending(sloped.unit, False, "", True)
+    ending = SearchOutcome(sloped.unit, False, "", True)
     result, text = verdict(start, ending, sloped, True, 100, 1e-5)
     assert result == "step_limit"
     assert text.startswith("step limit reached after 100 steps, 0 of which changed")

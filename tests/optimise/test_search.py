@@ -4,7 +4,7 @@ import numpy as np
 import optax
 import pytest
 
-from bearingjax.optimise.search import Ending, arrived, search
+from bearingjax.optimise.search import SearchOutcome, arrived, search
 from bearingjax.optimise.trials import Trial, Trials, optimality
 
 TOLERANCE = 1e-5
@@ -45,7 +45,7 @@ def nowhere(unit):
 @pytest.mark.parametrize("method", ["l-bfgs-b", "slsqp", "sgd"])
 def test_minimum_is_found_to_the_gradient_asked_for(method):
     ending, best = run(method, trials(nowhere))
-    assert ending.settled and optimality(best, TOLERANCE) <= TOLERANCE
+    assert ending.converged and optimality(best, TOLERANCE) <= TOLERANCE
     # Within the gradient over the least curvature.
     assert np.all(np.abs(best.unit - BEST) <= TOLERANCE / 0.5)
 
@@ -77,7 +77,7 @@ def test_search_not_converged_at_wall_of_rejected_designs(method):
     # So many are tried, not thousands.
     assert tried.n_evaluations < 500
     if method != "nelder-mead":
-        assert not ending.settled and optimality(best, TOLERANCE) > 0.01
+        assert not ending.converged and optimality(best, TOLERANCE) > 0.01
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0), (1.0, 0.0), (0.95, 0.95)])
@@ -85,7 +85,7 @@ def test_constraint_holds_the_gradient_with_a_multiplier_of_the_right_sign(start
     row, least = np.array([-1.0, -0.5]), -0.8
     tried = trials(nowhere, start, (row, least))
     ending, best = run("slsqp", tried, 1)
-    assert ending.settled and arrived(best, TOLERANCE)
+    assert ending.converged and arrived(best, TOLERANCE)
     assert abs(best.unit @ row - least) <= TOLERANCE
     # The same point with the sense of the constraint turned round is no minimum.
     turned = best._replace(margin_slopes=-row[None])
@@ -95,7 +95,7 @@ def test_constraint_holds_the_gradient_with_a_multiplier_of_the_right_sign(start
 def test_search_with_infeasible_constraint():
     tried = trials(nowhere, kept=(np.array([1.0, 1.0]), 3.0))
     ending, best = run("slsqp", tried, 1)
-    assert not ending.settled and not arrived(best, TOLERANCE)
+    assert not ending.converged and not arrived(best, TOLERANCE)
     # As near to it as the bounds allow.
     assert np.isclose(best.violation, 1.0) and np.allclose(best.unit, 1.0)
 
@@ -104,7 +104,7 @@ def test_search_with_infeasible_constraint():
 def test_start_at_the_minimum_is_left_alone(method):
     tried = trials(nowhere, BEST)
     ending, _ = run(method, tried)
-    assert ending.settled and "the start" in ending.text
+    assert ending.converged and "the start" in ending.text
     assert tried.n_evaluations == 1
 
 
@@ -116,7 +116,9 @@ def test_step_limit_is_no_minimum():
 def test_custom_search_callable_arguments():
     def own(attempt, start, max_steps, tolerance, step):
         step(start + 0.1)
-        return Ending(start, attempt(start).objective < 0, f"{max_steps} {tolerance}")
+        return SearchOutcome(
+            start, attempt(start).objective < 0, f"{max_steps} {tolerance}"
+        )
 
     tried = trials(nowhere)
     ending = search(own, tried, 0, 7, TOLERANCE)

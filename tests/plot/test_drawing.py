@@ -208,7 +208,7 @@ def test_drawing_of_set_lists_rows_and_distinct_bearings():
         f"rows.0.bearing, rows.2.bearing: {kind}",
         f"rows.1.bearing: {kind}",
     ]
-    # Rows that are alike but for their azimuth are drawn once, that is told of each.
+    # Rows that differ only in azimuth are drawn once, with the azimuth of each.
     assert count(drawn, "rows.2.bearing.first_azimuth") == 1
     assert count(drawn, "contact_angle") == 2
 
@@ -243,7 +243,7 @@ def test_sections_are_to_scale(name):
 
 @pytest.mark.parametrize("name", [*DESIGNS, "set", "pair"])
 def test_words_stand_on_the_page_and_not_on_each_other(name):
-    """Those of all views: a label that is cut or covered tells nothing."""
+    """Those of all views: a label that is cut or covered cannot be read."""
     sets = {"set": THREE, "pair": PAIR}
     figure = plot.drawing(sets[name]) if name in sets else page(name)
     words = list(figure.texts)

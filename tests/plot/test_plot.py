@@ -457,7 +457,7 @@ def test_ellipses_have_their_true_shape(of_balls, name):
     shapes = {round(p.width / p.height / scale_of(ax), 9) for p in drawn}
     assert shapes == {0.1}  # as made
     assert max(p.height for p in drawn) == pytest.approx(2.0, rel=0.05)
-    # The scale that is told: mm of the drawing for a mm on the raceway.
+    # The stated scale: mm of the drawing for a mm on the raceway.
     turn = np.pi * (52.0 + 9.5 * (name != "thrust"))
     told = scale_of(ax) * turn / 360.0
     assert f"{told:.2g} times" in ax.get_xlabel() and "true shape" in ax.get_xlabel()
@@ -542,7 +542,7 @@ def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
         *curves(x, [[1, 2]] * 3, "a"),
     ]
     time, force = Axis("time", "s"), Axis("force", "N")
-    ax = Panel("title", time, force, marks, (0, 2), room=0.5, beside=beside).draw()
+    ax = Panel("title", time, force, marks, (0, 2), room=0.5, twin=beside).draw()
     other = ax.figure.axes[1]
     assert [line.get_label() for line in ax.lines] == ["a", "_curve 1"]
     assert np.allclose(ax.lines[1].get_ydata(), 2e-3) and len(ax.collections) == 1
@@ -550,7 +550,7 @@ def test_a_panel_draws_curves_bars_bands_and_a_second_axis():
     assert np.allclose(other.lines[0].get_ydata(), x)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["a", "z"]
     assert ax.get_ylim()[1] > 4e-3 * 1.4 and ax.get_xlim() == (0.0, 2.0)
-    bars = [Bars([1e3, 3e3], "b", told="%.0f")]
+    bars = [Bars([1e3, 3e3], "b", labels="%.0f")]
     ax = Panel("", time, force, bars, names="pq", legend=None).draw()
     drawn: Any = ax.patches
     assert [bar.get_height() for bar in drawn] == [1.0, 3.0]

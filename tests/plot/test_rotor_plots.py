@@ -13,7 +13,7 @@ from bearingjax.plot.rotor_parts import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
 from bearingjax.rotor.nonlinear import (
     Branch,
-    Ending,
+    BranchEnd,
     Event,
     Waterfall,
     envelope,
@@ -99,7 +99,7 @@ def test_disc_size_recovers_dimensions(width):
     found = disc_size(disc, 0.05, STEEL)
     assert found is not None
     assert np.allclose(found, [200.0, 25.0, MM * width], rtol=1e3 * ROUNDING)
-    # A thin disc, as of the paper: its mass tells its width.
+    # A thin disc, as in the paper: its width follows from its mass.
     thin = disc_size(bj.rotor.Disc(0, 10.0, 0.2, 0.1), 0.025, STEEL)
     assert thin is not None
     solid = 7810.0 * np.pi * 1e-9 * (thin.outer**2 - thin.bore**2) * thin.width
@@ -192,7 +192,8 @@ def branch(events=()):
     hertz = np.array([10.0, 11, 12, 13, 12.5, 12, 13, 14])
     return Branch(
         2.0 * np.pi * hertz, 1e-6 * (1.0 + x[:, None]), np.zeros((8, 4, 1)), empty,
-        ~np.isin(x, [3, 4]), empty, np.zeros(8), np.zeros(8), events, 0, Ending.LIMIT,
+        ~np.isin(x, [3, 4]), empty, np.zeros(8), np.zeros(8), events, 0,
+        BranchEnd.LIMIT,
     )  # fmt: skip
 
 

@@ -14,8 +14,8 @@ from vibrations import Spring, duffing, oscillator, rotor
 
 from bearingjax.rotor.nonlinear import (
     Arclength,
+    BranchEnd,
     ChangeOfParameter,
-    Ending,
     HarmonicBalance,
     Shooting,
     Steps,
@@ -24,7 +24,7 @@ from bearingjax.rotor.nonlinear import (
     trace,
 )
 from bearingjax.rotor.nonlinear.branch import _flip, _pairs
-from bearingjax.rotor.nonlinear.continuation import Place
+from bearingjax.rotor.nonlinear.continuation import BranchPoint
 
 BALANCE, SHOOTING = HarmonicBalance(7, 32, steps=24), Shooting(24)
 STEPS = Steps(first=0.05, largest=0.5)
@@ -62,7 +62,7 @@ def branches():
 @pytest.mark.slow
 def test_duffing(branches):
     for branch in branches.values():
-        assert branch.ending == Ending.LIMIT and branch.frequency[-1] == 1.6
+        assert branch.ending == BranchEnd.LIMIT and branch.frequency[-1] == 1.6
         assert branch.residual.max() < 1e-8
         assert [event.kind for event in branch.events] == ["fold", "fold"]
         folds = sorted(event.frequency for event in branch.events)
@@ -83,12 +83,12 @@ def test_duffing(branches):
 
 def test_hundreds_of_pairs_of_multipliers():
     """Their product, of 820 factors near 0.05, is no number above zero."""
-    blank: Any = len(Place._fields) * [None]
+    blank: Any = len(BranchPoint._fields) * [None]
     for last, sign in ((0.99, 1.0), (1.01, -1.0)):
         turned = last * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
         matrix = np.diag([*np.linspace(0.95, 0.98, 39), 0.0, 0.0])
         matrix[39:, 39:] = turned
-        point = Place(*blank)._replace(monodromy=matrix)
+        point = BranchPoint(*blank)._replace(monodromy=matrix)
         assert np.isclose(sign * _pairs(point), abs(last**2 - 1.0))
         assert _flip(point) > 0
 
@@ -96,7 +96,7 @@ def test_hundreds_of_pairs_of_multipliers():
 def test_a_branch_ends_at_frequency_zero(branches):
     system = duffing(CUBIC, FORCE, RATIO)
     branch = follow(system, 0.6, -0.6, BALANCE, steps=STEPS)
-    assert branch.ending == Ending.REST
+    assert branch.ending == BranchEnd.REST
     assert 0 < branch.frequency[-1] < 0.5 and (branch.frequency > 0).all()
     with pytest.raises(ValueError, match="`begin` is 0 rad/s"):
         follow(system, 0.0, 0.6, BALANCE, steps=STEPS)
@@ -163,7 +163,7 @@ def test_the_rotor_softens_and_becomes_almost_periodic():
     unit = float(system.reference_frequency)
     method = HarmonicBalance(6, 32, steps=24)
     branch = follow(system, 1.05 * unit, 0.8 * unit, method, points=120)
-    assert branch.ending == Ending.LIMIT and branch.residual.max() < 1e-8
+    assert branch.ending == BranchEnd.LIMIT and branch.residual.max() < 1e-8
     kinds = [event.kind for event in branch.events]
     assert kinds.count("neimark_sacker") == 2 and kinds.count("fold") == 4
     # It softens: the peak of y at B lies below the natural frequency.
@@ -193,12 +193,12 @@ class Wall(eqx.Module):
 def test_follow_reports_ending():
     system = oscillator(Wall(), 0.2, 0.05)
     branch = follow(system, 0.6, 1.6, BALANCE, steps=STEPS)
-    assert branch.ending == Ending.SMALL_STEP
+    assert branch.ending == BranchEnd.SMALL_STEP
     assert 0.9 < branch.amplitude.max() < 1.01 and branch.refused > 5
     short = follow(system, 0.6, 1.6, BALANCE, steps=STEPS, points=3)
-    assert short.ending == Ending.POINTS and len(short.frequency) == 3
+    assert short.ending == BranchEnd.POINTS and len(short.frequency) == 3
     none = follow(system, 1.0, 1.6, BALANCE, steps=STEPS)
-    assert none.ending == Ending.NO_START and len(none.frequency) == 0
+    assert none.ending == BranchEnd.NO_START and len(none.frequency) == 0
 
 
 def test_many_systems_at_once():
@@ -212,7 +212,7 @@ def test_many_systems_at_once():
         return trace(system, BALANCE, begin, jnp.asarray(1.6), Arclength(), steps, 60)
 
     found = run(jnp.array([0.05, 0.2]))
-    assert (np.asarray(found.ending) == Ending.LIMIT).all()
+    assert (np.asarray(found.ending) == BranchEnd.LIMIT).all()
     assert found.count[1] > found.count[0]
     ends = found.x[jnp.arange(2), found.count - 1, -1]
     assert np.allclose(ends, 1.6)

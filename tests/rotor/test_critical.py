@@ -67,7 +67,7 @@ def test_critical_speeds_lie_on_campbell_diagram():
     with pytest.warns(match=near):
         speed = -1.05 * float(critical.speed[1])
         bj.rotor.critical_speeds(rotor, count=4, operating_speed=speed)
-    # Had the search not found the second one, the count would have told.
+    # A search that misses the second one has a wrong count.
     rate = -critical.damping_ratio * critical.speed
     point = jnp.stack([rate, critical.speed], axis=1)
     for found, missed in (([1, 1, 1, 1], 0), ([1, 0, 1, 1], 1)):

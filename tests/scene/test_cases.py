@@ -87,7 +87,7 @@ def test_cases_grid_varies_last_key_fastest(scene):
     tilts = np.repeat([0.0, 0.5e-3, 1e-3, 0.0, 0.5e-3, 1e-3], 2)
     np.testing.assert_allclose(cases.prescribed["gx"], tilts, atol=1e-18)
     np.testing.assert_array_equal(cases.design, np.repeat([0, 1], 6))
-    (structure,) = table.structures
+    (structure,) = table.design_groups
     stacked = structure.element.bearing.radial_internal_clearance
     np.testing.assert_allclose(stacked, [0.0, 20e-6], atol=1e-18)
     (header,) = table.settings[1]
@@ -384,7 +384,7 @@ def test_designs_of_several_structures(run, scene, tmp_path):
 
 def test_profiles_may_vary(scene):
     table = read_cases(scene(COUNTS + PROFILES))
-    assert [list(part.designs) for part in table.structures] == [[0], [1], [2], [3]]
+    assert [list(part.designs) for part in table.design_groups] == [[0], [1], [2], [3]]
     column = design_columns(table)["bearing.roller_profile"]
     assert column[2] == "{'type': 'logarithmic'}" and column.size == 8
 
@@ -396,8 +396,8 @@ def test_the_echo_is_the_scene(scene, tmp_path):
     again = read_cases(echo)
     assert again.inputs == table.inputs and again.settings == table.settings
     for one, other in zip(
-        jax.tree.leaves((table.cases, table.structures[0].element)),
-        jax.tree.leaves((again.cases, again.structures[0].element)),
+        jax.tree.leaves((table.cases, table.design_groups[0].element)),
+        jax.tree.leaves((again.cases, again.design_groups[0].element)),
         strict=True,
     ):
         np.testing.assert_array_equal(one, other)

@@ -212,7 +212,7 @@ def test_sweep_over_designations_ratings(tmp_path):
     assert [made["bearing.designation"] for made in table.settings] == names
     found = {
         names[number]: rated(life_conditions(part.scene))[0]
-        for part in table.structures
+        for part in table.design_groups
         for number in np.asarray(part.designs)
     }
     assert found == {n: bj.catalogue_entry(n).dynamic_capacity for n in names}
@@ -224,7 +224,7 @@ def test_sweep_over_row_count_ratings(tmp_path):
     text = CATALOGUED.replace("[cases", tandem + "[cases")
     counts = "{ start = 1, stop = 2, count = 2 }"
     table = cases(tmp_path, f"{text}set.count = {counts}")
-    one, two = (rated(life_conditions(part.scene))[0] for part in table.structures)
+    one, two = (rated(life_conditions(part.scene))[0] for part in table.design_groups)
     assert two == pytest.approx(2**0.7 * one, rel=1e-12)  # ISO 281, 5.1.2.2
 
 
@@ -238,7 +238,7 @@ def test_rows_with_bearings_of_their_own_are_rated_by_the_standards(read):
 def test_sweep_over_clearance_of_catalogue_bearing(tmp_path):
     key = "bearing.radial_internal_clearance"
     text = CATALOGUED.replace("7208 B", "6205") + f'{key} = ["10 um", "12.5 um"]'
-    (part,) = (table := cases(tmp_path, text)).structures
+    (part,) = (table := cases(tmp_path, text)).design_groups
     clearances = [10e-6, 12.5e-6]
     assert [made[f"{key} [m]"] for made in table.settings] == clearances
     left = part.element.bearing.radial_internal_clearance

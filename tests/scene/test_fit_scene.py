@@ -262,7 +262,7 @@ def test_the_drive_up_varies_and_is_sought(scene):
     text = text.replace('"270 mm"', '"80 mm"')
     grid = '[cases.grid]\nfit.drive_up = ["0.1 mm", "0.2 mm"]\n'
     table = read_cases(scene(text + grid))
-    row: Any = rows_of(table.structures[0].element.bearing)[0].bearing
+    row: Any = rows_of(table.design_groups[0].element.bearing)[0].bearing
     left = row.radial_internal_clearance
     seats = table.scene.fits.mounting
     inner = float(raceway_diameters(rows_of(bj.load_bearing("1205 EK"))[0].bearing)[0])
@@ -403,7 +403,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
         ' "20000 rpm", count = 2 } }\n'
     )
     table = read_cases(scene(BEARING + FIT + grid))
-    (structure,) = table.structures
+    (structure,) = table.design_groups
     left = np.asarray(structure.element.bearing.radial_internal_clearance)
     assert left.shape == (8,) and np.unique(left.round(12)).size == 8
     assert set(table.settings[0]) == {"fit.shaft", "temperature.inner_ring [K]"}
@@ -432,7 +432,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     table = read_cases(scene(plain))
     assert table.cases.design is None
     solved = Sweep(table.cases, {"result": np.zeros(2, int)}, "inner", ())
-    assert _on_seats(table.structures[0], solved) is solved
+    assert _on_seats(table.design_groups[0], solved) is solved
 
 
 def test_fit_key_varied_by_cases_may_be_absent(scene):
@@ -442,13 +442,13 @@ def test_fit_key_varied_by_cases_may_be_absent(scene):
     table = read_cases(scene(BEARING + fit + grid))
     assert table.scene.inputs["fit"]["shaft_interference"] == "4e-06 m"
     of_scene = table.scene.running().bearing
-    left = table.structures[0].element.bearing.radial_internal_clearance
+    left = table.design_groups[0].element.bearing.radial_internal_clearance
     assert float(of_scene.radial_internal_clearance) == float(left[0])
     assert left[0] - left[1] == pytest.approx(5 * MICRON * 25 / 31, rel=0.1)
     given = read_cases(scene(BEARING + fit + grid), ["fit.shaft_interference=7 um"])
     assert given.scene.inputs["fit"]["shaft_interference"] == "7e-06 m"
     np.testing.assert_array_equal(
-        given.structures[0].element.bearing.radial_internal_clearance, left
+        given.design_groups[0].element.bearing.radial_internal_clearance, left
     )
 
 

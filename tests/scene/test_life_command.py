@@ -191,7 +191,7 @@ def two_cases():
         bearing=bj.DeepGrooveBallBearing(7, 0.04, 0.008, **GROOVES)
     )
     scene = SimpleNamespace(name="two", element=element, catalogue=None, life=None)
-    scene.set_preload = None
+    scene.preload_of_set = None
     settings = (
         {"temperature.inner_ring [K]": 333.15, "fit.shaft": "k5", "fit.housing": "H7"},
         {"temperature.inner_ring [K]": 363.15, "fit.shaft": "m5", "fit.housing": "H7"},

@@ -536,7 +536,9 @@ def test_random_bearings(run, scene, tmp_path):
     again = run_noise(task).many
     assert np.array_equal(again.levels.level, level)
     assert np.allclose(
-        found["part"], again.shares.share / again.shares.mean_square, rtol=ROUNDING
+        found["part"],
+        again.contributions.share / again.contributions.mean_square,
+        rtol=ROUNDING,
     )
     assert "3 random bearings\n" in done.out and "50 % are below" in done.out
     assert "what makes the noise along the sensor (0, 0.6, 0.8), of 3" in done.out

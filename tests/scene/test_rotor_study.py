@@ -16,7 +16,7 @@ from tolerances import PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import harmonic_response
-from bearingjax.rotor.nonlinear import Ending
+from bearingjax.rotor.nonlinear import BranchEnd
 from bearingjax.scene import (
     SceneError,
     read_rotor,
@@ -608,7 +608,7 @@ def test_rotor_command_unfinished_branch(run, tmp_path):
     assert found["result"] == "step_limit"
     assert "step_limit: response: at 50" in done.err
     assert "raise `rotor.response.points`" in done.err
-    assert found["response"]["ending"] == Ending.POINTS.label
+    assert found["response"]["ending"] == BranchEnd.POINTS.label
     assert len(found["response"]["frequency"]) == 2
     assert "the branch ends: points" in done.out
 

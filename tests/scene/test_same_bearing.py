@@ -166,11 +166,14 @@ def of_drawing(path, monkeypatch):
 
 ENTRIES = {
     "solve": ("", lambda path: bj.scene.run_scene(bj.read_scene(path)).element.bearing),
-    "sweep of loads": ("cases", lambda p: read_cases(p).structures[0].element.bearing),
+    "sweep of loads": (
+        "cases",
+        lambda p: read_cases(p).design_groups[0].element.bearing,
+    ),
     "sweep of designs": (
         "designs",
         lambda p: jax.tree.map(
-            lambda leaf: leaf[0], read_cases(p).structures[0].element.bearing
+            lambda leaf: leaf[0], read_cases(p).design_groups[0].element.bearing
         ),
     ),
     "optimise": ("optimise", of_optimise),

@@ -17,12 +17,12 @@ from bearingjax.scene import (
     scene_of_design,
     sweep_report,
 )
-from bearingjax.scene.set_preload import (
-    SetPreload,
+from bearingjax.scene.preload_of_set import (
+    PreloadOfSet,
+    preload_of_set,
     preload_report,
     preload_warnings,
     range_warnings,
-    set_preload,
 )
 from bearingjax.scene.sweep_run import set_warnings
 from bearingjax.statics.sweep_table import columns
@@ -110,7 +110,7 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     shallow = ["bearing.contact_angle=14 deg", "fit.shaft=k5"]
     steep = bj.read_scene(scene, shallow)
     ground = bj.preload(steep.element, 200.0)
-    ends = set_preload(steep.fits, ground, None).operating_range
+    ends = preload_of_set(steep.fits, ground, None).operating_range
     assert ends[0] > 0.0 and np.isnan(ends[1])
     # (Its first warning is of the loosest fit on the shaft.)
     # A shaft of 45 °C in a cold housing: O arrangement, its rows come loose axially,
@@ -118,7 +118,7 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     shorter = bj.read_scene(scene, ["set.spacing=16 mm"])
     assert left(shorter, shorter) > 1.05 * found["operating"]
     assert numbers["warnings"][1:] == preload_warnings(
-        SetPreload(
+        PreloadOfSet(
             found["ground"],
             found["mounted"],
             found["operating"],
@@ -170,7 +170,7 @@ def test_read_optimisation_preload_force_variable(scene):
 
 def test_preload_and_range_warnings():
     def told(*numbers):
-        return preload_warnings(SetPreload(*numbers))
+        return preload_warnings(PreloadOfSet(*numbers))
 
     assert told(200.0, 250.0, 300.0, None, None) == []
     assert told(200.0, 250.0, 300.0, (50.0, 400.0), (40.0, 500.0)) == []
@@ -196,5 +196,5 @@ def test_preload_and_range_warnings():
     )
     ends = (50.0, nan), (40.0, nan)
     grid: Any
-    (grid,) = preload_report(SetPreload(200.0, 250.0, 300.0, *ends))
+    (grid,) = preload_report(PreloadOfSet(200.0, 250.0, 300.0, *ends))
     assert grid.rows()[-1] == ("operating", "300 N", "40 N to not possible")

@@ -122,7 +122,7 @@ def test_measures(problem):
 
 @pytest.mark.slow
 def test_case_without_equilibrium(problem):
-    """Is told with its number; its design is rejected."""
+    """The case is named by its number; its design is rejected."""
     other, power = copy.copy(problem), problem.cases.values[0]
     lost = power.at[1].set(jnp.nan)
     other.cases = eqx.tree_at(lambda c: c.values, problem.cases, (lost,))
@@ -177,7 +177,7 @@ def test_with_parts_keeps_plans():
 
 
 def test_warnings_are_those_of_the_system_too():
-    """Idle bearings, lost preloads and shafts located twice, as `shaft` tells them."""
+    """Idle bearings, lost preloads and shafts located twice, as `shaft` reports."""
     design = powered(12e3)
     system = eqx.tree_at(
         lambda s: s.seats[0].preload,

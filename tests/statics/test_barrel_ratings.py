@@ -241,7 +241,7 @@ def test_crossed_rollers_of_a_published_example():
     assert 150e3 / p0 == pytest.approx(26.8, rel=2e-3)
     factors = load_factors(bearing, jnp.asarray(1.0))
     np.testing.assert_allclose(factors.dynamic, [[1, 0.45], [0.67, 0.67]], rtol=1e-12)
-    # A moment is in P; of one orientation alone it is not, and is told.
+    # P includes a moment, but not with one orientation; `left_out` reports it then.
     load = jnp.asarray([0.0, 0, 0, 300.0, 400.0, 0])
     assert [float(x) for x in left_out(bearing, load)] == [0.0, 0.0, 0.0]
     assert p_of(bearing, 0, 0, 0, 300, 400) == pytest.approx(2 * (1e3 / 0.2775,))

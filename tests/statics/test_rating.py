@@ -213,7 +213,7 @@ def test_published_examples():
     cases = (
         (balls(), 14020.7),
         (balls(n=7, pitch=0.0435, size=0.0115), 22381.5),
-        # Published as of one row.
+        # Published as those of one row.
         (EXAMPLES["four point"], 2**0.7 * 50189.9),
     )
     for bearing, c in cases:

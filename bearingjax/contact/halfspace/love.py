@@ -48,8 +48,8 @@ def corner(u: Any, v: Any, xp: Any = jnp) -> Any:
 def strip(u: Any, v: Any, xp: Any = jnp) -> Any:
     """∫₀ᵛ `corner`(u, v') dv' [m²] up to what does not depend on v; even in v.
 
-    Its second differences over the ends of two cells are what a cell of pressure does
-    to the mean over the other cell.
+    Its second differences over the ends of two cells give the influence of one cell on
+    the mean over the other.
 
     Args:
         u, v, xp: As in `corner`; u is not zero.

@@ -13,7 +13,7 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from ...design.checks import check
-from ...numerics import lanes
+from ...numerics import batched_loop
 from ...numerics.implicit import attach_by, stop
 from ...numerics.linear import solve_symmetric
 from ...numerics.programs import program
@@ -213,7 +213,7 @@ def solve_pressure(
 @program
 def _solved(problem, solver):
     dtype = problem.gap.dtype
-    pressed = lanes.run(solver.loop(), stop(problem))
+    pressed = batched_loop.run(solver.loop(), stop(problem))
     result = pressed.result
     solved = result == int(Result.CONVERGED)
     misfit = solved & ~_fits(problem.grid, pressed)
@@ -253,12 +253,12 @@ def _cells(grid, touching):
 def _fits(grid, pressed):
     """Whether the grid holds the contact, and its cells are small enough for it."""
     across, along = _cells(grid, pressed.touching)
-    told = across >= LEAST_CELLS
-    told = told & (along >= min(LEAST_CELLS, grid.shape[1]))
+    resolved = across >= LEAST_CELLS
+    resolved = resolved & (along >= min(LEAST_CELLS, grid.shape[1]))
     loads = jnp.sum(grid.area * pressed.pressure, axis=1)
     sides = loads[-1] if grid.symmetric else loads[0] + loads[-1]
     held = sides <= AT_SIDES * jnp.sum(loads)
-    return (told & held) | ~jnp.any(pressed.touching)
+    return (resolved & held) | ~jnp.any(pressed.touching)
 
 
 def message(solution: ContactSolution) -> str:
@@ -289,7 +289,7 @@ def _misfit(solution):
     across, along = (int(count) for count in solution.cells)
     if min(across, along) < min(LEAST_CELLS, solution.grid.shape[1]):
         return (
-            f"The contact is {across} by {along} cells, too few to tell its pressure:"
+            f"The contact is {across} by {along} cells, too few for its pressure:"
             f" at least {LEAST_CELLS} across it and along. Take a narrower grid, or"
             " more cells; if it is short beside the roller, even ones (`grading` 1)."
         )

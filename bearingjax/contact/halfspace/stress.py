@@ -194,7 +194,7 @@ def _angle(rise, run):
 
 
 def _corners(grid: Grid, pressure):
-    """Places of all corners of cells, and what they count (m+1, n+1) [Pa]."""
+    """Positions of all corners of cells, and their weights (m+1, n+1) [Pa]."""
     pressure, m = grid.whole(pressure), grid.n_across
     xs = 2.0 * grid.half_x * (jnp.arange(m + 1, dtype=pressure.dtype) - 0.5 * m)
     padded = jnp.pad(pressure, 1)

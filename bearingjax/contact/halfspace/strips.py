@@ -1,4 +1,4 @@
-"""The paper's iteration strip by strip, as printed and mended, to judge its claims."""
+"""The paper's iteration strip by strip, as printed and corrected, for comparison."""
 
 from typing import NamedTuple
 

@@ -39,8 +39,8 @@ from .branch import Branch as Branch
 from .branch import Event as Event
 from .branch import follow as follow
 from .continuation import Arclength as Arclength
+from .continuation import BranchEnd as BranchEnd
 from .continuation import ChangeOfParameter as ChangeOfParameter
-from .continuation import Ending as Ending
 from .continuation import Steps as Steps
 from .continuation import trace as trace
 from .harmonic_balance import HarmonicBalance as HarmonicBalance

@@ -56,7 +56,7 @@ class Backbone(eqx.Module):
             (point, sample, n) [m, rad].
         velocity: Likewise (point, sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak (point, n) [m, rad].
-        residual: Of the method's equations, largest (point,) [1].
+        residual: Residual of the method's equations, largest (point,) [1].
         steps: Newton steps (point,).
         result: `Result` codes (point,).
     """
@@ -189,7 +189,7 @@ def _at_rest(system):
         return left(u, stop(system)), jax.jacfwd(left)(u, stop(system)), ()
 
     def correction(of_u, u, change, _):
-        # What nothing holds stays where it is.
+        # Motions without stiffness stay where they are.
         return -pseudoinverse(jax.jacfwd(of_u)(u)) @ change
 
     found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)

@@ -14,9 +14,9 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (
     Arclength,
+    BranchEnd,
+    BranchPoint,
     ChangeOfParameter,
-    Ending,
-    Place,
     Steps,
     Traced,
     place,
@@ -63,9 +63,9 @@ class Branch(NamedTuple):
         amplitude: Half of peak to peak over the period (point, n) [m, rad].
         displacement: At even phases from 0 on (point, sample, n) [m, rad].
         multipliers: Floquet multipliers (point, 2n) [1].
-        stable: Whether none is beyond the unit circle (point,).
+        stable: Whether all multipliers lie within the unit circle (point,).
         unknowns: Unknowns of the method (point, m) [1].
-        residual: Of its equations, largest (point,) [1].
+        residual: Residual of its equations, largest (point,) [1].
         newton: Newton steps (point,).
         events: Marked points, in order.
         refused: Steps that were tried in vain.
@@ -82,7 +82,7 @@ class Branch(NamedTuple):
     newton: np.ndarray
     events: tuple[Event, ...]
     refused: int
-    ending: Ending
+    ending: BranchEnd
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -132,7 +132,7 @@ def follow(
     motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
     found = _traced(system, method, motion, begin, end, parameter, steps, points)
     *every, count, refused, ending = jax.tree.map(np.asarray, found)
-    at = Place(*(x[:count] for x in every))
+    at = BranchPoint(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
     multipliers = np.linalg.eigvals(at.monodromy)
     stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
@@ -147,7 +147,7 @@ def follow(
         newton=np.asarray(at.newton),
         events=_events(system, method, at) if locate else (),
         refused=int(refused),
-        ending=Ending(int(ending)),
+        ending=BranchEnd(int(ending)),
     )
 
 
@@ -171,15 +171,15 @@ def _along(system, method, x, tangent, length):
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
-def _fold(point: Place) -> float:
+def _fold(point: BranchPoint) -> float:
     return float(point.tangent[-1])
 
 
-def _flip(point: Place) -> float:
+def _flip(point: BranchPoint) -> float:
     return _least(np.linalg.eigvals(point.monodromy) + 1.0)
 
 
-def _pairs(point: Place) -> float:
+def _pairs(point: BranchPoint) -> float:
     """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
     i, j = np.triu_indices(len(k), 1)
@@ -196,11 +196,11 @@ def _least(factors: np.ndarray) -> float:
     return float(np.copysign(sizes.min(), np.prod(signs).real))
 
 
-def _side(point: Place) -> float:
+def _side(point: BranchPoint) -> float:
     return float(point.side)
 
 
-_TESTS: dict[str, Callable[[Place], float]] = {
+_TESTS: dict[str, Callable[[BranchPoint], float]] = {
     "fold": _fold,
     "flip": _flip,
     "neimark_sacker": _pairs,
@@ -209,8 +209,8 @@ _TESTS: dict[str, Callable[[Place], float]] = {
 """Test functions, which change sign at events."""
 
 
-def _events(system, method, points: Place) -> tuple[Event, ...]:
-    every = [Place(*(x[k] for x in points)) for k in range(len(points.x))]
+def _events(system, method, points: BranchPoint) -> tuple[Event, ...]:
+    every = [BranchPoint(*(x[k] for x in points)) for k in range(len(points.x))]
     events = []
     for kind, test in _TESTS.items():
         signs = np.sign([test(point) for point in every])
@@ -223,7 +223,7 @@ def _events(system, method, points: Place) -> tuple[Event, ...]:
 
 def _located(system, method, every, k, kind, test):
     """Locate an event: return its position along the branch, in points, and itself."""
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     from scipy.optimize import brentq
 
     here, there = every[k], every[k + 1]
@@ -258,6 +258,6 @@ def _located(system, method, every, k, kind, test):
     return k + float(here.tangent @ (point.x - here.x)) / span, event
 
 
-def _beyond(point: Place) -> int:
+def _beyond(point: BranchPoint) -> int:
     """Return the number of multipliers outside the unit circle."""
     return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

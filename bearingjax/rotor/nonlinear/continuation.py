@@ -30,7 +30,7 @@ from .orbit import along_frequency, amplitudes, correct
 from .system import AbstractVibratingSystem
 
 
-class Ending(enum.IntEnum):
+class BranchEnd(enum.IntEnum):
     """Reason for the end of a branch."""
 
     LIMIT = 0
@@ -59,7 +59,7 @@ class Arclength(eqx.Module):
         """Return the unit vector of prediction and the normal of the correction plane.
 
         Args:
-            tangent: Of the branch at the last point, a unit vector.
+            tangent: Tangent of the branch at the last point, a unit vector.
             before: From the last point but one to the last, a unit vector.
         """
         return tangent, tangent
@@ -120,7 +120,7 @@ class Traced(NamedTuple):
         newton: Newton steps (point,).
         count: Points.
         refused: Steps that were tried in vain.
-        ending: `Ending` code.
+        ending: `BranchEnd` code.
     """
 
     x: Float[Array, "point x"]
@@ -136,7 +136,7 @@ class Traced(NamedTuple):
     ending: Int[Array, ""]
 
 
-class Place(NamedTuple):
+class BranchPoint(NamedTuple):
     """Point of a branch; fields as in `Traced`."""
 
     x: Float[Array, " x"]
@@ -150,8 +150,8 @@ class Place(NamedTuple):
 
 
 class _State(NamedTuple):
-    points: Place
-    last: Place
+    points: BranchPoint
+    last: BranchPoint
     before: Float[Array, " x"]
     step: Scalar
     count: Int[Array, ""]
@@ -175,12 +175,12 @@ def place(
     direction: Float[Array, " x"],
     towards: Float[Array, " x"],
     limit: int | Int[Array, ""] = _NEWTON,
-) -> tuple[Place, Int[Array, ""]]:
+) -> tuple[BranchPoint, Int[Array, ""]]:
     """Return the point of a branch in the plane through `x`, and its `Result` code.
 
     Args:
         system: The system.
-        method: How orbits are sought.
+        method: Method that finds the orbits.
         x: Predicted unknowns and frequency ratio [1].
         direction: Normal of the plane.
         towards: The tangent points to its side.
@@ -196,7 +196,7 @@ def place(
     z, ratio = found.x[:-1], found.x[-1]
     monodromy = method.monodromy(system, ratio, found.jacobian, found.slopes)
     motion, _ = method.motion(system, z, ratio)
-    point = Place(
+    point = BranchPoint(
         x=found.x,
         tangent=tangent,
         monodromy=monodromy,
@@ -222,7 +222,7 @@ def trace(
 
     Args:
         system: The system.
-        method: How orbits are sought.
+        method: Method that finds the orbits.
         begin: Unknowns and frequency ratio to begin with (m + 1,) [1].
         end: Frequency ratio to go to [1].
         parameter: Quantity held between points.
@@ -296,11 +296,11 @@ def trace(
         count = state.count + good.astype(jnp.int32)
         outside = (new.x[-1] <= low) | (new.x[-1] >= high)
         ended = [
-            (good & ~first & (at_limit | outside), Ending.LIMIT),
-            (~good & first, Ending.NO_START),
-            (rest, Ending.REST),
-            (step < steps.smallest, Ending.SMALL_STEP),
-            (count >= points, Ending.POINTS),
+            (good & ~first & (at_limit | outside), BranchEnd.LIMIT),
+            (~good & first, BranchEnd.NO_START),
+            (rest, BranchEnd.REST),
+            (step < steps.smallest, BranchEnd.SMALL_STEP),
+            (count >= points, BranchEnd.POINTS),
         ]
         ending = jnp.int32(_GOING)
         for why, code in reversed(ended):

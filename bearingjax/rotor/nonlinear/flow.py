@@ -73,7 +73,7 @@ def _begins(steps, dtype):
     return jnp.asarray(2.0 * np.pi / steps * np.arange(steps), dtype)
 
 
-class Beginning(NamedTuple):
+class StepStart(NamedTuple):
     """Motion at the beginning of a step.
 
     Attributes:
@@ -209,7 +209,7 @@ def integrate(
 
     def step(state, phase):
         u, rate, guess = state
-        second, _ = _solved(at, Beginning(system, ratio, phase, u, rate), guess)
+        second, _ = _solved(at, StepStart(system, ratio, phase, u, rate), guess)
         guess = jnp.broadcast_to(stop(second[-1]), guess.shape)
         return (*_ended(at, u, rate, second), guess), jnp.concatenate([u, rate])
 
@@ -234,7 +234,7 @@ def flow_slopes(
 
     def step(state, phase):
         u, rate, du, drate, guess = state
-        begin = Beginning(system, ratio, phase, u, rate)
+        begin = StepStart(system, ratio, phase, u, rate)
         second, slopes = _solved(at, begin, guess)
         change = slopes[0] @ (du[None] + at.nodes[:, None, None] * drate[None])
         change = change + slopes[1] @ drate

@@ -133,8 +133,8 @@ class HarmonicBalance(AbstractMethod):
         return (at.analysis @ left).reshape(-1)
 
     def slopes(self, system, z, ratio):
-        """Return what is left out of balance at all phases (sample, n), and its
-        Jacobians in u, u', u'' (sample, n, n) and ν (sample, n)."""
+        """Return the residual of the equations of motion (sample, n), and its Jacobians
+        in u, u', u'' (sample, n, n) and ν (sample, n)."""
 
         def one(phase, *motion):
             def both(*given):

@@ -34,14 +34,14 @@ class PeriodicOrbit(eqx.Module):
     """Periodic orbit: a motion with the period of its excitation.
 
     Attributes:
-        frequency: Of the excitation [rad/s].
+        frequency: Frequency of the excitation [rad/s].
         displacement: At even phases from 0 on (sample, n) [m, rad].
         velocity: Likewise (sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak over the period (n,) [m, rad].
         multipliers: Floquet multipliers (2n,) [1].
-        stable: Whether none is beyond the unit circle.
+        stable: Whether all multipliers lie within the unit circle.
         unknowns: Unknowns of the method (m,) [1].
-        residual: Of its equations, largest [1].
+        residual: Residual of its equations, largest [1].
         steps: Newton steps.
         result: `Result` code.
     """
@@ -64,7 +64,7 @@ class Corrected(NamedTuple):
     Attributes:
         x: Unknowns, the frequency ratio last [1].
         left: Residual of the equations [1].
-        jacobian: Of them, in x [1].
+        jacobian: Jacobian of them, in x [1].
         slopes: What else the equations tell there.
         steps: Newton steps.
         result: `Result` code.
@@ -93,7 +93,7 @@ def correct(
 
     Args:
         system: The system.
-        method: How the orbit is sought.
+        method: Method that finds the orbit.
         x: Unknowns and frequency ratio to begin with (m + 1,) [1].
         direction: Normal of the plane (m + 1,) [1].
         limit: Most Newton steps.
@@ -144,8 +144,8 @@ def newton(
         return x, left, jacobian, jnp.max(jnp.abs(left)), step, slopes
 
     def solved(here):
-        # Of a stiff shaft the forces that cancel leave more than the tolerance in
-        # round-off; how far that is from the orbit the step tells.
+        # Forces of a stiff shaft cancel to more than the tolerance of round-off; the
+        # step shows how far that is from the orbit.
         x, _, jacobian, size, step, _ = here
         cancels = round_off * jnp.max(jnp.abs(jacobian) @ jnp.abs(x))
         near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
@@ -159,7 +159,7 @@ def newton(
     def step(state):
         here, move, steps = state
         there = evaluated(here[0] + move)
-        # Half a step where a whole one leads away; a number that is none does.
+        # Half a step where a whole one leads away or to NaN.
         better = (there[3] <= 2.0 * here[3]) | (steps < 0)
         kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
         return kept, jnp.where(better, there[4], 0.5 * move), steps + 1
@@ -195,7 +195,7 @@ def solve_orbit(
 
     Args:
         system: The system.
-        frequency: Of the excitation [rad/s].
+        frequency: Frequency of the excitation [rad/s].
         method: `Shooting` or `HarmonicBalance`.
         start: Displacements to begin with, at even phases from 0 on, such as an
             orbit's by any method (sample, n) [m, rad]; `None`: rest.
@@ -275,7 +275,7 @@ def reported(
 
     Args:
         system: The system.
-        method: How it was sought.
+        method: Method that found it.
         x: Unknowns and frequency ratio (m + 1,) [1].
         residual, steps, result: As in `PeriodicOrbit`.
     """

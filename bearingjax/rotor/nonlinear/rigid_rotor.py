@@ -29,7 +29,7 @@ class RigidRotor(eqx.Module):
     Attributes:
         length: Distance of the bearings, l [m].
         shaft_diameter: d [m].
-        density: Of the shaft [kg/m³].
+        density: Density of the shaft [kg/m³].
         disc_mass: m0 [kg].
         disc_polar_inertia: I0 [kg m²].
         disc_diametral_inertia: I1 [kg m²].
@@ -152,10 +152,10 @@ def rigid_rotor(
         rotor: Shaft and disc.
         a, b: Laws of both bearings.
         scale: Displacement that is called one, such as z0 [m].
-        damping_ratio: Of every mode at rest [1].
+        damping_ratio: Damping ratio of every mode at rest [1].
         unbalance: m0·e at the disc [kg m].
         base_acceleration: Amplitude of the base's acceleration along y [m/s²].
-        speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
     """
     mass, pair = rotor.mass(), OpposedPair(a, b)
     stiffness = jax.hessian(pair.potential)(jnp.zeros(5))

@@ -12,7 +12,7 @@ from ...numerics.units import unit
 from ...skid.ring_load import rising_and_finite
 
 
-class Turned(NamedTuple):
+class ExcitationState(NamedTuple):
     """State of an excitation.
 
     Attributes:
@@ -72,9 +72,9 @@ class FrequencyTable(eqx.Module):
         k = jnp.searchsorted(self.time, time, side="right")
         t = time - begin[k]
         turned = phase[k] + (frequency[k] + 0.5 * slope[k] * t) * t
-        return Turned(turned, frequency[k] + slope[k] * t, slope[k])
+        return ExcitationState(turned, frequency[k] + slope[k] * t, slope[k])
 
-    def at(self, time: Scalar) -> Turned:
+    def at(self, time: Scalar) -> ExcitationState:
         """Return phase since time zero, frequency and acceleration.
 
         Args:
@@ -114,7 +114,7 @@ def as_frequency_table(
 
     Args:
         owner: Function that was called.
-        frequency: Of the excitation [rad/s], or a table.
+        frequency: Frequency of the excitation [rad/s], or a table.
         duration: [s].
         end_frequency: At its end [rad/s]; `None`: as at its beginning.
     """

@@ -65,7 +65,7 @@ class _Preloaded(NamedTuple):
     Attributes:
         constant: Load of a ball over the 3/2 power of its approach [N/m^(3/2)].
         angle: Contact angle [rad].
-        approach: Of a ball, both raceways together [m].
+        approach: Approach of a ball, both raceways together [m].
     """
 
     constant: Scalar
@@ -126,7 +126,7 @@ class FixedAngle(AbstractSupportLaw):
 
         Args:
             element: The bearing, one row of balls; ball 0 is taken to stand at +x.
-            offset: Axial displacement of its inner ring under the preload, as of
+            offset: Axial displacement of its inner ring under the preload, as in
                 `preload_offset` [m].
         """
         constant, angle, approach = _preloaded(element, offset)
@@ -242,13 +242,13 @@ class Grooves(eqx.Module):
     """Groove geometry of an angular contact ball bearing, and preloaded angle.
 
     Attributes:
-        inner_radius: Of the bottom of the inner groove, R1 [m].
-        outer_radius: Of the bottom of the outer groove, R2 [m].
+        inner_radius: Radius of the bottom of the inner groove, R1 [m].
+        outer_radius: Radius of the bottom of the outer groove, R2 [m].
         groove_radius: Radius of curvature of both grooves, R_K [m].
         ball_diameter: d_B [m].
         contact_angle: α under preload [rad].
         n_balls: Number of balls.
-        material: Of balls and rings.
+        material: Material of balls and rings.
 
     Traced: all but `n_balls`.
     """

@@ -38,11 +38,11 @@ class History(eqx.Module):
 
     Attributes:
         time: (time,) [s].
-        frequency: Of the excitation (time,) [rad/s].
-        phase: Of the excitation since time zero (time,) [rad].
+        frequency: Frequency of the excitation (time,) [rad/s].
+        phase: Phase of the excitation since time zero (time,) [rad].
         displacement: (time, n) [m, rad].
         velocity: (time, n) [m/s, rad/s].
-        steps: Steps of the integration, with those that were rejected.
+        steps: Steps of the integration, rejected ones included.
         result: `Result` code.
     """
 
@@ -83,7 +83,7 @@ def simulate(
     Args:
         system: The system.
         duration: [s].
-        frequency: Of the excitation [rad/s], or a `FrequencyTable`.
+        frequency: Frequency of the excitation [rad/s], or a `FrequencyTable`.
         start: Displacement [m, rad] and velocity [m/s, rad/s] at time zero, (n,) each;
             `None`: rest.
         end_frequency: At the end of the duration, the frequency changing evenly until
@@ -144,7 +144,7 @@ def poincare(
 
     Args:
         system: The system.
-        frequency: Of the excitation [rad/s], or a `FrequencyTable`.
+        frequency: Frequency of the excitation [rad/s], or a `FrequencyTable`.
         n_points: Number of points. Static.
         settle: Periods before the first of them. Static.
         start: As in `simulate`.
@@ -231,7 +231,7 @@ def moved(
     options: Options,
 ) -> History:
     """`simulate`, compiled by the caller."""
-    # Late, so that the package is imported as fast without it.
+    # Imported here, which keeps the import of the package fast.
     import diffrax
 
     fast = system.reference_frequency

@@ -84,7 +84,7 @@ class VibratingRotor(AbstractVibratingSystem):
         """Return the least-squares freedoms of given motions.
 
         Args:
-            motion: Of all nodes and housings, such as `StaticEquilibrium.motion`
+            motion: Motion of all nodes and housings, such as `StaticEquilibrium.motion`
             (motion,)
                 [m, rad].
         """
@@ -112,7 +112,7 @@ def vibrating_rotor(
         scale: Unit of displacement, such as a clearance [m]; that of tilts is `scale`
             over the length of the shaft.
         reference_frequency: Unit of frequency [rad/s].
-        speed: Of the rotor [rad/s]; `None`: that of the excitation.
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
         rotation: Turns of the rotor in one period of the excitation [1]; `None`: one.
             With 2/(Z(1 - G)) the excitation is the passage of Z rolling elements, G as
             in `BearingElement.as_function`; there is no unbalance then.

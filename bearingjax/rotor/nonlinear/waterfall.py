@@ -21,7 +21,7 @@ class Waterfall(eqx.Module):
     """Amplitudes of the lines of a spectrum, at every frequency of the excitation.
 
     Attributes:
-        frequency: Of the excitation (frequency,) [rad/s].
+        frequency: Frequency of the excitation (frequency,) [rad/s].
         order: Frequency of each line over that of the excitation (line,) [1].
         amplitude: Half of peak to peak of each line; at order zero the mean
             (frequency, line, n) [m, rad].
@@ -47,13 +47,13 @@ def waterfall(
 ) -> Waterfall:
     """Return spectra of the vibration that remains after some periods.
 
-    Every frequency begins anew, all are integrated at once. Lines are at whole
-    multiples of 1/`periods` of the excitation: subharmonics of up to that many periods
-    have lines of their own; almost periodic motion spreads over its neighbours.
+    Every frequency starts from the same motion; all are integrated at once. Lines are
+    at whole multiples of 1/`periods` of the excitation: subharmonics of up to that many
+    periods have lines of their own; almost periodic motion spreads over its neighbours.
 
     Args:
         system: The system.
-        frequencies: Of the excitation, above zero (frequency,) [rad/s].
+        frequencies: Frequencies of the excitation, above zero (frequency,) [rad/s].
         settle: Periods until the vibration is taken for steady. Static.
         periods: Periods that a spectrum is of. Static.
         samples: A period; lines reach half of it in order. Static.
@@ -120,12 +120,12 @@ def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Sp
 
     Args:
         time: Even (time,) [s].
-        speed: Of the rotor (time,) [rad/s].
+        speed: Speed of the rotor (time,) [rad/s].
         motion: (time,) [m, rad].
         count: Windows.
 
     Returns:
-        Amplitudes as of `hann_lines`.
+        Amplitudes as returned by `hann_lines`.
 
     Raises:
         ValueError: For times that are not even, or too few of them.

@@ -25,7 +25,7 @@ _MUCH = 2.0
 
 
 @dataclasses.dataclass(frozen=True)
-class SetPreload:
+class PreloadOfSet:
     """Axial preload force between the rows of a set, without external load [N].
 
     Attributes:
@@ -46,11 +46,11 @@ class SetPreload:
     operating_range: tuple[float, float] | None
 
 
-def set_preload(
+def preload_of_set(
     fits: Fits,
     ground: BearingElement[Any],
     speed: Speed | None,
-) -> SetPreload | None:
+) -> PreloadOfSet | None:
     """Compute the preload of a set on its seats; `None` if its rows are not opposed.
 
     Args:
@@ -89,7 +89,7 @@ def set_preload(
         pair = [force[f"{place} {state}"] for place in ("loosest", "tightest")]
         return (pair[0], pair[1])
 
-    return SetPreload(
+    return PreloadOfSet(
         force["ground"],
         force["mounted"],
         force["operating"],
@@ -140,11 +140,11 @@ def _on(mounting, conditions, ground) -> BearingElement | None:
         return None
 
 
-def preload_warnings(found: SetPreload) -> list[str]:
+def preload_warnings(found: PreloadOfSet) -> list[str]:
     """Return warnings about the preload of a set on its seats, one sentence each.
 
     Args:
-        found: From `set_preload`.
+        found: From `preload_of_set`.
     """
     ground, operating = found.ground, found.operating
     least, most = found.operating_range or (operating, operating)
@@ -188,11 +188,11 @@ def range_warnings(ground: float, least: float, most: float) -> list[str]:
     ]
 
 
-def preload_as_dict(found: SetPreload) -> dict[str, Any]:
+def preload_as_dict(found: PreloadOfSet) -> dict[str, Any]:
     """Return the preload of a set as plain numbers [N]; impossible values are null.
 
     Args:
-        found: From `set_preload`.
+        found: From `preload_of_set`.
 
     Returns:
         ground, mounted, operating; with tolerances also worst: mounted, operating,
@@ -211,11 +211,11 @@ def _plain(force: float) -> float | None:
     return force if np.isfinite(force) else None
 
 
-def preload_report(found: SetPreload) -> list[Part]:
+def preload_report(found: PreloadOfSet) -> list[Part]:
     """Return the report of the preload of a set.
 
     Args:
-        found: From `set_preload`.
+        found: From `preload_of_set`.
     """
     states = {
         "ground": (found.ground, None),
@@ -228,8 +228,8 @@ def preload_report(found: SetPreload) -> list[Part]:
     ]
     ends = [r for _, r in states.values()]
     if any(ends):
-        told = [" to ".join(map(_newtons, r)) if r else "-" for r in ends]
-        columns.append(Column("over the tolerances", told))
+        texts = [" to ".join(map(_newtons, r)) if r else "-" for r in ends]
+        columns.append(Column("over the tolerances", texts))
     return [Grid(columns, "preload of the set, unloaded")]
 
 

@@ -5,13 +5,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from bearingjax.numerics import lanes
+from bearingjax.numerics import batched_loop
 
 ROWS, COLUMNS = 7, 100  # 700 problems: more than there are slots
 
 
 # Twice the sum of slope·k over k < count, in `count` steps.
-SUM = lanes.Loop(
+SUM = batched_loop.Loop(
     init=lambda given: (jnp.zeros(()), jnp.zeros((), int)),
     step=lambda given, s: (s[0] + given[1] * s[1].astype(float), s[1] + 1),
     terminate=lambda given, s: s[1] >= given[0],
@@ -20,7 +20,7 @@ SUM = lanes.Loop(
 
 
 def one(count, slope):
-    return lanes.run(SUM, (count, slope))
+    return batched_loop.run(SUM, (count, slope))
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_few_slots(count, slots, idle):
     idle than there are."""
     steps = np.arange(count) % 13
     slope = np.linspace(-1.0, 1.0, count)
-    got = jax.vmap(lambda n, s: lanes.run(SUM, (n, s), slots, idle))(
+    got = jax.vmap(lambda n, s: batched_loop.run(SUM, (n, s), slots, idle))(
         jnp.asarray(steps), jnp.asarray(slope)
     )
     np.testing.assert_allclose(got[0], slope * steps * (steps - 1), rtol=1e-13)
@@ -77,15 +77,15 @@ def test_resting_problems_are_not_begun(count, resting):
     odd = jnp.arange(count) % 2 == 1
     rests = {"none": odd & False, "some": odd, "all": odd | True}[resting]
 
-    loop = lanes.Loop(
+    loop = batched_loop.Loop(
         init=lambda given: given[0],
         step=lambda given, s: jnp.where(given[1], s, s - 1.0),
         terminate=lambda given, s: s <= 0.5,
         finish=lambda given, s: (s, given[0]),
-        blank=lambda given: (-given[0], jnp.zeros(())),
-        rests=lambda given: given[1],
+        trivial_result=lambda given: (-given[0], jnp.zeros(())),
+        is_trivial=lambda given: given[1],
     )
-    left, was = jax.vmap(lambda n, r: lanes.run(loop, (n, r)))(number, rests)
+    left, was = jax.vmap(lambda n, r: batched_loop.run(loop, (n, r)))(number, rests)
     np.testing.assert_array_equal(left, np.where(rests, -number, 0.0))
     np.testing.assert_array_equal(was, np.where(rests, 0.0, number))
 
@@ -94,9 +94,9 @@ def test_lanes_within_lanes():
     """A loop whose every step runs another; both in slots."""
 
     def inner(count):
-        return lanes.run(SUM, (count, jnp.ones(())), 4, 1)[0]
+        return batched_loop.run(SUM, (count, jnp.ones(())), 4, 1)[0]
 
-    outer = lanes.Loop(
+    outer = batched_loop.Loop(
         init=lambda given: (given[1], jnp.zeros(())),
         step=lambda given, s: (s[0] - 1, s[1] + jnp.sum(jax.vmap(inner)(given[0]))),
         terminate=lambda given, s: s[0] <= 0,
@@ -104,7 +104,7 @@ def test_lanes_within_lanes():
     )
     counts = np.arange(60).reshape(20, 3) % 7
     times = np.arange(20) % 5
-    got = jax.vmap(lambda c, t: lanes.run(outer, (c, t), 4, 1))(
+    got = jax.vmap(lambda c, t: batched_loop.run(outer, (c, t), 4, 1))(
         jnp.asarray(counts), jnp.asarray(times)
     )
     np.testing.assert_allclose(got, times * np.sum(counts * (counts - 1), axis=1))
@@ -123,16 +123,16 @@ def test_packing():
         "flag": jnp.asarray(True),
         "count": jnp.int32(-1),
         "matrix": jnp.arange(6.0).reshape(2, 3),
-        "large": jnp.arange(lanes.SMALL + 1.0),
+        "large": jnp.arange(batched_loop.SMALL + 1.0),
         "none": jnp.zeros((0,)),
     }
-    pack, unpack = lanes.packing(jax.eval_shape(lambda: state))
+    pack, unpack = batched_loop.packing(jax.eval_shape(lambda: state))
     packed = pack(state)
-    assert [a.shape for a in packed] == [(lanes.SMALL + 1,), (8,)]
+    assert [a.shape for a in packed] == [(batched_loop.SMALL + 1,), (8,)]
     back = unpack(packed)
     other = jax.tree.map(jnp.zeros_like, state)
     for flag, want in ((True, state), (False, other)):
-        either = unpack(pack(lanes.Either(jnp.asarray(flag), state, other)))
+        either = unpack(pack(batched_loop.Either(jnp.asarray(flag), state, other)))
         jax.tree.map(np.testing.assert_array_equal, either, want)
     assert jax.tree.structure(back) == jax.tree.structure(state)
     for name, value in state.items():

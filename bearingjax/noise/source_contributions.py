@@ -2,13 +2,15 @@
 
 The motion follows small form errors in proportion: the mean square of the acceleration
 is then P₀ + Σ s² P over the sources of scale s, once it is averaged over bearings,
-since sources are independent of each other. P₀ is what a perfect bearing has. A share P
+since sources are independent of each other. P₀ is the mean square of a perfect bearing.
+A share P
 is found in two ways that agree for small errors: from the same bearings with the source
 smaller or switched off, and from the derivative, P = (s/2) ∂/∂s.
 
 Where sources act through each other, as two that only beat together or that open
 contacts, the mean square has products of them. Both ways then count a product for each
-of its sources: shares sum to more than the mean square (`Shares.together`).
+of its sources: shares sum to more than the mean square
+    (`SourceContributions.together`).
 """
 
 from collections.abc import Mapping
@@ -27,13 +29,13 @@ from ..numerics.types import Scalar
 from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .monte_carlo import Progress, Records, drawn
+from .monte_carlo import Progress, Records, sampled_model
 from .scatter import Tolerances
 from .spectrum import Hann, spectrum
 from .vibration import bandwidth, vibration
 
 
-class Shares(eqx.Module):
+class SourceContributions(eqx.Module):
     """Mean squares of the acceleration, each the mean over the same bearings.
 
     Attributes:
@@ -86,7 +88,7 @@ class Shares(eqx.Module):
     def ranking_by_gradient(self) -> tuple[str, ...]:
         """Sources ranked by the derivatives."""
         if self.by_gradient is None:
-            raise ValueError("Shares: the derivatives were not asked for.")
+            raise ValueError("SourceContributions: the derivatives were not asked for.")
         return self._ranked(self.by_gradient)
 
     def gain(self, factor: Any = 0.5) -> Float[Array, " source"]:
@@ -116,7 +118,7 @@ class Shares(eqx.Module):
         return tuple(self.sources[k] for k in np.argsort(-np.asarray(values)))
 
 
-def shares(
+def source_contributions(
     model: NoiseModel,
     tolerances: Tolerances,
     n: int,
@@ -132,7 +134,7 @@ def shares(
     steps: int | None = None,
     batch: int = 16,
     progress: Progress | None = None,
-) -> Shares:
+) -> SourceContributions:
     """Return the share of every source of scatter in the mean square acceleration.
 
     The same random bearings run once unchanged, once for every source with this one
@@ -143,7 +145,7 @@ def shares(
             `monte_carlo`.
         direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
             `None`: all directions together.
-        bands: Of which the parts are wanted too; `None`: none.
+        bands: Bands of which the parts are wanted too; `None`: none.
         factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
             gives the exact effect of halving.
         gradient: Whether shares by derivatives are wanted: about the time of five more
@@ -155,19 +157,30 @@ def shares(
             direction or factor.
         FloatingPointError: If no bearing has a result in all runs.
     """
-    records = Records(model, tolerances, n, turns, settle, samples, steps, "shares")
+    records = Records(
+        model, tolerances, n, turns, settle, samples, steps, "source_contributions"
+    )
     sources = tolerances.sources
     if not sources:
-        raise ValueError("shares: `tolerances` is without a source; give at least one.")
+        raise ValueError(
+            "source_contributions: `tolerances` is without a source; give at least one."
+        )
     along = _directions(direction)
-    check("shares", "factor", 0.0 <= factor < 1.0, "from 0 to below 1", factor, "")
+    check(
+        "source_contributions",
+        "factor",
+        0.0 <= factor < 1.0,
+        "from 0 to below 1",
+        factor,
+        "",
+    )
     keys = jax.random.split(key, n)
     runs = [{}, *({name: factor} for name in sources)]
     whole = len(runs) + gradient
     done = 0
     shaft = float(model.shaft_speed) / (2.0 * np.pi)
 
-    def told(count, _):
+    def report_progress(count, _):
         if progress is not None:
             progress(done + count, whole * n)
 
@@ -185,7 +198,7 @@ def shares(
     for change in runs:
         found = [
             (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r), part)
-            for part, a, r in records.batches(keys, batch, told, change)
+            for part, a, r in records.batches(keys, batch, report_progress, change)
         ]
         parts = ([a[:part] for a in one] for *one, part in found)
         square, of_each, result = (np.concatenate(a) for a in zip(*parts, strict=True))
@@ -198,11 +211,11 @@ def shares(
         for part, at in records.parts(n, batch):
             slope = _slopes(*records.given, keys[at], records.counts, along)
             slopes.append([slope[name][:part] for name in sources])
-            told(min(len(slopes) * batch, n), n)
+            report_progress(min(len(slopes) * batch, n), n)
     if not fine.any():
         raise FloatingPointError(
-            f"shares: of {n} bearings none has a result in all runs; see the codes of"
-            " `monte_carlo`."
+            f"source_contributions: of {n} bearings none has a result in all runs;"
+            " see the codes of `monte_carlo`."
         )
     each = np.array(squares)[:, fine]
     mean = jnp.asarray(np.mean(each, axis=1))
@@ -222,7 +235,7 @@ def shares(
         holds = _holds(bands, means[0], turns / shaft, bandwidth(samples, shaft))
         whole_band = np.where(holds & (means[0, 0] > 0.0), means[0, 0], np.nan)
         by_band = (1.0 - means[1:, 0] / whole_band) / (1.0 - factor**2)
-    return Shares(
+    return SourceContributions(
         mean[0],
         mean[1:],
         jnp.asarray(error),
@@ -250,7 +263,14 @@ def _directions(direction: Any) -> np.ndarray:
         return three[:, direction, None]
     vector = np.asarray(direction, dtype=float)
     right = vector.shape == (3,) and np.isfinite(vector).all() and vector.any()
-    check("shares", "direction", right, "0, 1, 2, a vector or None", direction, "")
+    check(
+        "source_contributions",
+        "direction",
+        right,
+        "0, 1, 2, a vector or None",
+        direction,
+        "",
+    )
     return (vector / np.linalg.norm(vector))[:, None]
 
 
@@ -268,7 +288,7 @@ def _slopes(model, tolerances, keys, counts, along):
 
     def square(factors, key):
         found = vibration(
-            drawn(model, tolerances.scaled(factors), key),
+            sampled_model(model, tolerances.scaled(factors), key),
             turns=turns,
             settle=settle,
             samples=samples,

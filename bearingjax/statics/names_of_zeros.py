@@ -9,7 +9,7 @@ from .options import SolveOptions
 from .support import restrained_freedoms
 
 
-def zero_names(
+def names_of_zeros(
     element: BearingElement, cases: Cases, options: SolveOptions
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Names along the last axis of outputs whose numbers are zero by construction.

@@ -11,7 +11,6 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from ..design import rows_of
 from ..design.form_error import Surfaces
@@ -19,8 +18,8 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import orbit, rotation
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
-from ..element.row import Row
-from .free_element import free_element
+from ..element.row import Row, RowPlacement
+from .dynamic_element import dynamic_element
 
 
 class Untilted(Linearised):
@@ -44,53 +43,40 @@ def of_small_motions(element: BearingElement) -> BearingElement:
     return dataclasses.replace(element, choices=choices)
 
 
-class Sites(NamedTuple):
-    """Positions of the rows of a set, for each of their elements.
-
-    Attributes:
-        position: z of the origin of its row in the set (element,) [m].
-        sign: -1 in a mirrored row, else 1 (element,) [1].
-        offset: Axial position of the inner ring relative to the outer, in the row's
-            axes (element,) [m].
-    """
-
-    position: Float[Array, " element"]
-    sign: Float[Array, " element"]
-    offset: Float[Array, " element"]
-
-
-class FreeRow(NamedTuple):
+class DynamicRow(NamedTuple):
     """All rolling elements of a bearing.
 
     Attributes:
-        row: Their `FreeElement`s, the rows of a set one after the other; its ratio and
-            pitch radius are those of the first.
-        sites: `None`: the row is the bearing.
+        row: Their `DynamicElement`s, the rows of a set one after the other; its ratio
+            and pitch radius are those of the first.
+        placements: Placement of its row for each element, numbers (element,); `None`:
+            the row is the bearing.
         carried: Speed of the orbit; of a set for every element [rad/s].
-        own: Speed of the elements about their own axes against the orbit, likewise.
+        own: Speed of the elements about their own axes against the orbit; of a set for
+            every element [rad/s].
         surfaces: Contact tracks of each row.
     """
 
     row: Row
-    sites: Sites | None
+    placements: RowPlacement | None
     carried: Any
     own: Any
     surfaces: tuple[Surfaces, ...]
 
     @classmethod
-    def of(cls, element: BearingElement, speed: Speed) -> "FreeRow":
-        """Create the free row of a bearing at given ring speeds.
+    def of(cls, element: BearingElement, speed: Speed) -> "DynamicRow":
+        """Create the row of a bearing at given ring speeds.
 
         Args:
             element: The bearing, with linearised kinematics.
-            speed: Of the rings.
+            speed: Speed of the rings.
 
         Raises:
             ValueError: If its rows are of unlike structure.
         """
         rows = element.model().rows
         found = [
-            _free(row, part.bearing, speed)
+            _dynamic_row(row, part.bearing, speed)
             for row, part in zip(rows, rows_of(element.bearing), strict=True)
         ]
         if len(found) == 1 and found[0].row.place is None:
@@ -110,7 +96,9 @@ class FreeRow(NamedTuple):
             )
 
         # Its rows have places: that of a set is never `None`.
-        sites = Sites(*map(all_of, zip(*(row.place for row in rows), strict=True)))
+        placements = RowPlacement(
+            *map(all_of, zip(*(row.place for row in rows), strict=True))
+        )
         elements = [row.element for row in rows]
         joined = Row(
             element=jax.tree.map(lambda *parts: jnp.concatenate(parts), *elements),
@@ -120,13 +108,13 @@ class FreeRow(NamedTuple):
             pitch_radius=rows[0].pitch_radius,
             place=None,
             spring=None,
-            unlike=True,
+            per_element=True,
         )
         carried, own = (
             all_of([getattr(f, k) for f in found]) for k in cls._fields[2:4]
         )
         surfaces = tuple(s for one in found for s in one.surfaces)
-        return cls(joined, sites, carried, own, surfaces)
+        return cls(joined, placements, carried, own, surfaces)
 
 
 def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
@@ -142,24 +130,26 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
     return cut.split(values, np.cumsum(counts)[:-1], axis=axis)
 
 
-def _free(row: Row, bearing: Any, speed: Speed) -> FreeRow:
-    """Return one row of free elements."""
+def _dynamic_row(row: Row, bearing: Any, speed: Speed) -> DynamicRow:
+    """Return one row of elements with inertia."""
     surfaces = Surfaces.of(bearing)
     rings = speed.outer, speed.inner
     carried = orbit(row.ratio, *rings)
     diameters = 2.0 * surfaces.element.radius, 2.0 * row.pitch_radius
     own = rotation(row.ratio, *diameters, *rings)
 
-    def free(element):
-        return free_element(element, bearing.material, row.pitch_radius, speed, carried)
+    def with_inertia(element):
+        return dynamic_element(
+            element, bearing.material, row.pitch_radius, speed, carried
+        )
 
-    row = eqx.tree_at(lambda r: r.element, row, row.each(free))
-    return FreeRow(row, None, carried, own, (surfaces,))
+    row = eqx.tree_at(lambda r: r.element, row, row.each(with_inertia))
+    return DynamicRow(row, None, carried, own, (surfaces,))
 
 
 def _unlike(row: Row) -> Row:
     """Return the row with a leading axis on its elements."""
-    if row.unlike:
+    if row.per_element:
         return row
     count = row.azimuth.shape[0]
     element = jax.tree.map(lambda a: _repeated(a, count), row.element)

@@ -1,9 +1,9 @@
-"""Explicit forces of all free balls of a row at once.
+"""Explicit forces of all balls of a dynamic row at once.
 
-The derivatives of `FreeElement.energy` of balls whose contact constants do not follow
-the angle. Arrays have the axes (contact, element): a compiler works on many contacts
-with one instruction, and a step of a vibration costs a third of what it does ball by
-ball, with the derivative of the energy taken by `jax.grad`.
+The derivatives of `DynamicElement.energy` of balls whose contact constants do not
+follow the angle. Arrays have the axes (contact, element): a compiler works on many
+contacts with one instruction, and a step of a vibration costs a third of what it does
+ball by ball, with the derivative of the energy taken by `jax.grad`.
 """
 
 from functools import partial
@@ -18,43 +18,43 @@ from ..contact.hertz import EXPONENT
 from ..element.ball import Ball
 from ..element.ball_contacts import add
 from ..numerics.power import positive_power
-from .encounter import Section
-from .free_element import FreeElement
+from .dynamic_element import DynamicElement
+from .element_positions import Section
 
 _N, _D = EXPONENT
 
 
-def is_written_out(free: FreeElement) -> bool:
+def is_written_out(balls: DynamicElement) -> bool:
     """Return whether `ball_forces` is valid for elements of this kind. Static."""
-    ball = free.element
+    ball = balls.element
     return (
         isinstance(ball, Ball)
         and not (ball.follows_angle or ball.has_reaction or ball.grooves.straight)
-        and ball.turning is None
+        and ball.ball_inertia is None
     )
 
 
 def ball_forces(
-    free: FreeElement,
+    balls: DynamicElement,
     outer: Section,
     inner: Section,
     places: Float[Array, "element 2"],
-    raised: Float[Array, "2 element"] | None,
+    heights: Float[Array, "2 element"] | None,
 ) -> tuple[tuple[Section, Section], Float[Array, "element 2"]]:
     """Return the derivatives of the energy of all balls [N, N m].
 
     Args:
-        free: One ball, or balls with a leading axis.
+        balls: One ball, or balls with a leading axis.
         outer, inner: Motions of the rings at every ball [m, rad].
-        places: Of the balls (z, r) [m].
-        raised: Material added in the contacts of the raceways [m], or `None`.
+        places: Places of the balls (z, r) [m].
+        heights: Material added in the contacts of the raceways [m], or `None`.
 
     Returns:
         By the motions of outer and inner ring, and by the places of the balls.
 
     Source: of a contact c (l - L)^(3/2) along the line of centres, as in `Ball`.
     """
-    grooves, geometry = free.element.grooves, free.element.geometry
+    grooves, geometry = balls.element.grooves, balls.element.geometry
     of = [0 if on_outer else 1 for on_outer in grooves.on_outer]
 
     def each(numbers):
@@ -62,9 +62,9 @@ def ball_forces(
         return numbers[:, None] if numbers.ndim == 1 else numbers.T
 
     start_z, start_r = each(grooves.start[..., 0]), each(grooves.start[..., 1])
-    reach, constant = each(grooves.reach), each(free.element.constant)
-    if raised is not None:
-        reach = reach - jnp.stack([raised[k] for k in of])
+    reach, constant = each(grooves.reach), each(balls.element.constant)
+    if heights is not None:
+        reach = reach - jnp.stack([heights[k] for k in of])
     z, r = [outer.axial, inner.axial], [outer.outwards, inner.outwards]
     arm = geometry.pitch_radius
     tilts = [ring.tilt for ring in (outer, inner)]
@@ -93,7 +93,7 @@ def ball_forces(
             moment = turned * add(tilt_z * force_z + tilt_r * force_r) - arm * axial
         on_rings.append(Section(axial, outwards, moment))
     # The tether holds a ball where nothing else does, and does not pull the rings.
-    spring = free.element.tether
+    spring = balls.element.tether
     on_z = add(force_z) + spring * (places[:, 0] - 0.5 * (z[0] + z[1]))
     on_r = add(force_r) + spring * (places[:, 1] - 0.5 * (r[0] + r[1]))
     return (on_rings[0], on_rings[1]), jnp.stack([on_z, on_r], axis=1)

@@ -52,24 +52,24 @@ class Loop(NamedTuple):
         step: (given, state) -> next state.
         terminate: (given, state) -> whether to stop.
         finish: (given, last state) -> result.
-        blank: given -> arrays of the same shapes and types as the result of `finish`,
-            which then need not be traced to find them; `None`: it is traced.
-        rests: given -> whether the problem needs no iteration; its result is then
-            `blank`. `None`: every problem is iterated.
+        trivial_result: given -> arrays of the same shapes and types as the result of
+            `finish`, which then need not be traced to find them; `None`: it is traced.
+        is_trivial: given -> whether the problem needs no iteration; its result is then
+            `trivial_result`. `None`: every problem is iterated.
     """
 
     init: Callable[[Any], Any]
     step: Callable[[Any, Any], Any]
     terminate: Callable[[Any, Any], Any]
     finish: Callable[[Any, Any], Any]
-    blank: Callable[[Any], Any] | None = None
-    rests: Callable[[Any], Bool[Array, ""]] | None = None
+    trivial_result: Callable[[Any], Any] | None = None
+    is_trivial: Callable[[Any], Bool[Array, ""]] | None = None
 
     def run(self, given) -> Any:
         """Run the iteration on one problem and return its result."""
         begin = self.init(given)
         pack, unpack = packing(begin)
-        resting = None if self.rests is None else self.rests(given)
+        resting = None if self.is_trivial is None else self.is_trivial(given)
 
         def ended(packed):
             done = self.terminate(given, unpack(packed))
@@ -83,13 +83,15 @@ class Loop(NamedTuple):
         found = self.finish(given, unpack(last))
         if resting is None:
             return found
-        assert self.blank is not None, "`rests` needs `blank`"
-        nothing = self.blank(given)
+        assert self.trivial_result is not None, "`is_trivial` needs `trivial_result`"
+        nothing = self.trivial_result(given)
         return jax.tree.map(lambda a, b: jnp.where(resting, a, b), nothing, found)
 
     def shapes(self, given) -> Any:
         """Shapes and types of the result of `run`."""
-        return jax.eval_shape(self.run if self.blank is None else self.blank, given)
+        return jax.eval_shape(
+            self.run if self.trivial_result is None else self.trivial_result, given
+        )
 
 
 class Either(NamedTuple):
@@ -204,7 +206,9 @@ def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
     # With more than all of them it would wait for ever.
     pair = slots, min(idle, slots)
     task = _Task(loop, whole, pair, [(a.shape, a.dtype) for a in shapes])
-    out = _lanes.bind(*leaves, task=task, flags=(False,) * len(leaves), count=None)
+    out = _batched_loop.bind(
+        *leaves, task=task, flags=(False,) * len(leaves), count=None
+    )
     return jax.tree.unflatten(returned, out)
 
 
@@ -250,16 +254,16 @@ class _Task:
         return [ShapedArray((*front, *a), dtype) for a, dtype in self.out]
 
 
-_lanes = Primitive("lanes")
-_lanes.multiple_results = True
+_batched_loop = Primitive("batched_loop")
+_batched_loop.multiple_results = True
 
 
-@_lanes.def_impl
+@_batched_loop.def_impl
 def _called(*leaves, task, **choices):
     return jax.jit(functools.partial(task.program, **choices))(*leaves)
 
 
-@_lanes.def_abstract_eval
+@_batched_loop.def_abstract_eval
 def _abstract(*leaves, task, flags, count):
     return task.avals(count)
 
@@ -275,9 +279,11 @@ def _lowered_wide(*leaves, task, **choices):
     )
 
 
-mlir.register_lowering(_lanes, mlir.lower_fun(_lowered))
+mlir.register_lowering(_batched_loop, mlir.lower_fun(_lowered))
 for _platform in ("cuda", "rocm"):
-    mlir.register_lowering(_lanes, mlir.lower_fun(_lowered_wide), platform=_platform)
+    mlir.register_lowering(
+        _batched_loop, mlir.lower_fun(_lowered_wide), platform=_platform
+    )
 
 
 def _batched(leaves, axes, *, task, flags, count):
@@ -302,13 +308,13 @@ def _batched(leaves, axes, *, task, flags, count):
 
     joint = [joined(*x) for x in zip(leaves, flags, more, strict=True)]
     lanes = size if count is None else size * count
-    out = _lanes.bind(*joint, task=task, flags=both, count=lanes)
+    out = _batched_loop.bind(*joint, task=task, flags=both, count=lanes)
     if count is not None:
         out = [a.reshape(size, count, *a.shape[1:]) for a in out]
     return out, [0] * len(out)
 
 
-batching.primitive_batchers[_lanes] = _batched
+batching.primitive_batchers[_batched_loop] = _batched
 
 
 def _in_lanes(task, flags, leaves, count):
@@ -352,9 +358,11 @@ def _queued(task, given, own, count):
 
     def resting(mine):
         problem = given(mine)
-        return loop.rests(problem), pack_end(jax.tree.leaves(loop.blank(problem)))
+        return loop.is_trivial(problem), pack_end(
+            jax.tree.leaves(loop.trivial_result(problem))
+        )
 
-    if loop.rests is None:
+    if loop.is_trivial is None:
         idle = jnp.zeros((count,), bool)
         out = _blank(pack_end, end, count)
     else:
@@ -392,9 +400,9 @@ def _queued(task, given, own, count):
         out = [a.at[to].set(b, mode="drop") for a, b in zip(out, found, strict=True)]
         return out, *refilled(taken, place, state, going)
 
-    nobody = jnp.zeros((width,), bool)
+    at_work = jnp.zeros((width,), bool)
     none = jnp.zeros_like(waiting), jnp.zeros((width,), queue.dtype)
-    begin = refilled(*none, _blank(pack, begin, width), nobody)
+    begin = refilled(*none, _blank(pack, begin, width), at_work)
     carry = lax.while_loop(lambda c: jnp.any(c[2] < count), turn, (out, *begin))
     return jax.vmap(unpack_end)(carry[0])
 

@@ -25,13 +25,13 @@ from ..numerics.linear import combined
 from ..numerics.types import Scalar
 
 
-class FreeElement(eqx.Module):
+class DynamicElement(eqx.Module):
     """One rolling element with freedoms of its own.
 
     Attributes:
         element: The rolling element.
-        mass: Of each coordinate of its place (n,) [kg, kg m²].
-        force: Of inertia, from its orbit, at the drawing's place (n,) [N, N m].
+        mass: Mass of each coordinate of its place (n,) [kg, kg m²].
+        force: Force of inertia, from its orbit, at the drawing's place (n,) [N, N m].
         scale: x per unit of p (n,) [1, m].
         own: Motion of a ring in the element's axes, from that in the axial section
             (h, 3) [1, m, 1/m].
@@ -45,7 +45,9 @@ class FreeElement(eqx.Module):
     scale: Float[Array, " n"]
     own: Float[Array, "h 3"]
 
-    def seen(self, outer: Float[Array, "3"], inner: Float[Array, "3"]) -> RingMotion:
+    def in_element_axes(
+        self, outer: Float[Array, "3"], inner: Float[Array, "3"]
+    ) -> RingMotion:
         """Return ring motions in its axes, from those in the axial section [m, rad].
 
         Args:
@@ -68,9 +70,9 @@ class FreeElement(eqx.Module):
         """
         return (place - rings.mean[: place.shape[0]]) * self.scale
 
-    def raised(self, heights: Float[Array, "2"]) -> "FreeElement":
+    def with_heights(self, heights: Float[Array, "2"]) -> "DynamicElement":
         """Return a copy with material added in its contacts [m]."""
-        return dataclasses.replace(self, element=self.element.raised(heights))
+        return dataclasses.replace(self, element=self.element.with_heights(heights))
 
     def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
         """Return the strain energy of its contacts [J]; arguments as in `unknowns`."""
@@ -81,7 +83,7 @@ class FreeElement(eqx.Module):
     ) -> Float[Array, " contact"]:
         """Return the load of each contact [N]; arguments as in `unknowns`."""
         at = self.element.coordinates(rings, self.unknowns(rings, place))
-        return self.element.respond(at).beside
+        return self.element.respond(at).aux
 
     def carried(
         self, rings: RingMotion, place: Float[Array, " n"]
@@ -92,7 +94,7 @@ class FreeElement(eqx.Module):
         Arguments as in `unknowns`.
         """
         x = self.unknowns(rings, place)
-        load = self.element.respond(self.element.coordinates(rings, x)).beside
+        load = self.element.respond(self.element.coordinates(rings, x)).aux
         cosines = jnp.abs(self.element.contacts(rings, x).normal[:, 1])
         total = jnp.sum(load)
         loose = total == 0.0
@@ -101,16 +103,16 @@ class FreeElement(eqx.Module):
 
 
 @functools.singledispatch
-def free_element(
+def dynamic_element(
     element: Any, material: Material, pitch_radius: Scalar, speed: Speed, orbit: Scalar
-) -> FreeElement:
+) -> DynamicElement:
     """Create a rolling element with its inertia.
 
     Args:
         element: The rolling element, made without speed.
-        material: Of the rolling elements.
-        pitch_radius: Of the circle of their centres [m].
-        speed: Of the rings.
+        material: Material of the rolling elements.
+        pitch_radius: Radius of the circle of their centres [m].
+        speed: Speed of the rings.
         orbit: Speed of their orbit [rad/s].
 
     Raises:
@@ -122,23 +124,23 @@ def free_element(
     )
 
 
-@free_element.register
-def _(element: Ball, material, pitch_radius, speed, orbit) -> FreeElement:
+@dynamic_element.register
+def _(element: Ball, material, pitch_radius, speed, orbit) -> DynamicElement:
     mass, _ = ball_mass(element.diameter, material.density)
     both, none = jnp.stack([mass, mass]), jnp.zeros_like(mass)
     force = jnp.stack([none, mass * pitch_radius * orbit**2])
-    return FreeElement(element, both, force, jnp.ones_like(both), _own(element))
+    return DynamicElement(element, both, force, jnp.ones_like(both), _own(element))
 
 
-@free_element.register
-def _(element: Roller, material, pitch_radius, speed, orbit) -> FreeElement:
+@dynamic_element.register
+def _(element: Roller, material, pitch_radius, speed, orbit) -> DynamicElement:
     c = element.constants
     mass, _, tilting = mass_and_inertia(c)
     one = jnp.ones_like(mass)
     masses = jnp.stack([mass, mass, tilting])
     scale = jnp.stack([one, one, c.half_length])
     force = inertia_force(c, speed)
-    return FreeElement(element, masses, force, scale, _own(element))
+    return DynamicElement(element, masses, force, scale, _own(element))
 
 
 def _own(element):
@@ -148,7 +150,7 @@ def _own(element):
 
 
 def forces(
-    free: FreeElement, rings: RingMotion, place: Float[Array, " n"]
+    element: DynamicElement, rings: RingMotion, place: Float[Array, " n"]
 ) -> tuple[RingMotion, Float[Array, " n"]]:
     """Return derivatives of the energy by both ring motions and by place [N, N m]."""
-    return jax.grad(FreeElement.energy, argnums=(1, 2))(free, rings, place)
+    return jax.grad(DynamicElement.energy, argnums=(1, 2))(element, rings, place)

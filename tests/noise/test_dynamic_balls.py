@@ -8,7 +8,7 @@ import numpy as np
 import bearingjax as bj
 from bearingjax.noise import NoiseModel
 from bearingjax.noise import system as equations
-from bearingjax.noise.encounter import Encounter
+from bearingjax.noise.element_positions import ElementPositions
 
 BALLS = 5
 MODEL = NoiseModel(
@@ -25,7 +25,7 @@ MODEL = NoiseModel(
 
 
 def test_forces_of_balls_are_derivatives_of_their_energy(monkeypatch):
-    """With their own derivatives, of which the damping is made."""
+    """Their own derivatives too, from which the damping follows."""
     system = MODEL.system(8)
 
     def own(system):
@@ -37,13 +37,15 @@ def test_forces_of_balls_are_derivatives_of_their_energy(monkeypatch):
     motion[3:5] *= 10.0
     # One ball beyond the centres of its grooves, outwards and along the axis.
     motion[5], motion[5 + BALLS] = 3e-4, -6e-4
-    met = 5e-6 * rng.standard_normal((BALLS, 2, 3))
+    deviations = 5e-6 * rng.standard_normal((BALLS, 2, 3))
     azimuth = 2 * np.pi / BALLS * np.arange(BALLS) + 0.3
-    at = own(system), jnp.asarray(motion), jnp.asarray(azimuth), jnp.asarray(met)
+    at = own(system), jnp.asarray(motion), jnp.asarray(azimuth), jnp.asarray(deviations)
 
-    def resistance(numbers, motion, azimuth, met):
+    def resistance(numbers, motion, azimuth, deviations):
         moved = eqx.tree_at(own, system, numbers)
-        return moved.resistance(motion, Encounter.at(azimuth).meeting(met))
+        return moved.resistance(
+            motion, ElementPositions.at(azimuth).with_deviations(deviations)
+        )
 
     change = jax.tree.map(
         lambda x: jnp.asarray(np.asarray(x) * rng.uniform(-1.0, 1.0, np.shape(x))), at

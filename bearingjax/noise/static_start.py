@@ -13,7 +13,7 @@ from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics.load import solve, solve_load
 from ..statics.solution import message
-from .encounter import Encounter
+from .element_positions import ElementPositions
 from .model import NoiseModel
 from .system import NoiseSystem
 
@@ -22,7 +22,7 @@ _CARRIES = 1e-7
 [1]: round-off of a search without load."""
 
 
-def standing(
+def static_start(
     model: NoiseModel, system: NoiseSystem, orbits: bool = True
 ) -> tuple[Float[Array, " n"], Int[Array, ""]]:
     """Return the equilibrium of ring and elements under load, without form errors.
@@ -53,11 +53,15 @@ def standing(
     q = solution.displacement
     rows = element.rows(q, speed)
     u, v, tilt = jnp.concatenate([found.motions() for found in rows]).T
-    if (sites := system.sites) is not None:
-        u, v, tilt = sites.sign * u, v + sites.position * tilt, sites.sign * tilt
+    if (placements := system.placements) is not None:
+        u, v, tilt = (
+            placements.sign * u,
+            v + placements.position * tilt,
+            placements.sign * tilt,
+        )
 
-    def place(free, *motion):
-        return combined(free.own.T, jnp.stack(motion))[: free.mass.shape[0]]
+    def place(element, *motion):
+        return combined(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
 
     places = system.row.each(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
@@ -71,7 +75,7 @@ def standing(
 def _carried(system, motion) -> tuple[Scalar, Scalar]:
     """Return the largest load through an element, and the largest of all [N]."""
     motion = stop(motion)
-    found = Encounter.at(system.azimuth(jnp.zeros((), motion.dtype)))
+    found = ElementPositions.at(system.azimuth(jnp.zeros((), motion.dtype)))
     outer, inner = (
         jnp.linalg.norm(force.stacked[:, :2], axis=1)
         for force in system.on_raceways(motion, found)

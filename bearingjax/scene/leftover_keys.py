@@ -19,7 +19,7 @@ _FAR = 0.05
 bearing; neighbours of a series differ by more [1]."""
 
 
-def catalogue_doubts(
+def leftover_warnings(
     keys: Mapping[str, Any], taken: FromCatalogue, varied: Iterable[str] = ()
 ) -> tuple[str, ...]:
     """Warn of lines that belong to another designation, one sentence each.

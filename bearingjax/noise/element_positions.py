@@ -5,7 +5,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .free_row import Sites
+from ..element.row import RowPlacement
 
 
 class Section(NamedTuple):
@@ -28,8 +28,8 @@ class Section(NamedTuple):
         return jnp.stack([self.axial, self.outwards, tilt], axis=1)
 
 
-class Encounter(NamedTuple):
-    """Raceway deviations at every rolling element.
+class ElementPositions(NamedTuple):
+    """Positions of the rolling elements, and the raceway deviations there.
 
     The axis of the elements is the last one: a compiler works on neighbours at once.
 
@@ -38,8 +38,8 @@ class Encounter(NamedTuple):
         cosine, sine: Of the azimuth (element,) [1].
         axial: Axial deviation of outer and inner raceway there, (2, element) [m];
             `None`: none.
-        outwards: Radial deviation, away from the axis, likewise.
-        raised: Height of their surfaces towards the element (2, element) [m]; `None`:
+        outwards: Radial deviation, away from the axis, (2, element) [m]; `None`: none.
+        heights: Height of their surfaces towards the element (2, element) [m]; `None`:
             none.
     """
 
@@ -48,39 +48,39 @@ class Encounter(NamedTuple):
     sine: Float[Array, " element"]
     axial: Float[Array, "2 element"] | None = None
     outwards: Float[Array, "2 element"] | None = None
-    raised: Float[Array, "2 element"] | None = None
+    heights: Float[Array, "2 element"] | None = None
 
     @classmethod
-    def at(cls, azimuth: Float[Array, " element"]) -> "Encounter":
-        """Create encounters on raceways without deviations."""
+    def at(cls, azimuth: Float[Array, " element"]) -> "ElementPositions":
+        """Create positions on raceways without deviations."""
         return cls(azimuth, jnp.cos(azimuth), jnp.sin(azimuth))
 
-    def meeting(
-        self, met: Float[Array, "element 2 3"], raised: bool = True
-    ) -> "Encounter":
+    def with_deviations(
+        self, deviations: Float[Array, "element 2 3"], raise_surfaces: bool = True
+    ) -> "ElementPositions":
         """Return a copy on raceways with deviations.
 
         Args:
-            met: `Deviation.raceway` of every element [m].
-            raised: Whether surfaces are raised anywhere. Static.
+            deviations: `Deviation.raceway` of every element [m].
+            raise_surfaces: Whether surfaces are raised anywhere. Static.
         """
-        axial, outwards, heights = met.transpose(2, 1, 0)
+        axial, outwards, heights = deviations.transpose(2, 1, 0)
         return self._replace(
-            axial=axial, outwards=outwards, raised=heights if raised else None
+            axial=axial, outwards=outwards, heights=heights if raise_surfaces else None
         )
 
     def motion(
         self,
         ring: Float[Array, " k"] | None,
         raceway: int,
-        sites: Sites | None = None,
+        placements: RowPlacement | None = None,
     ) -> Section:
         """Return raceway motions in the axial section of every element [m, rad].
 
         Args:
             ring: Motion of the ring, three freedoms or five [m, rad]; `None`: none.
             raceway: 0 for the outer one, 1 for the inner one. Static.
-            sites: Positions of the elements' rows; the motion is in the rows' own axes.
+            placements: Placements of the rows; the motion is in their own axes.
         """
         axial = outwards = jnp.zeros_like(self.azimuth)
         tilt = None
@@ -89,33 +89,33 @@ class Encounter(NamedTuple):
             outwards = ring[0] * self.cosine + ring[1] * self.sine
             if ring.shape[0] > 3:
                 tilt = ring[4] * self.cosine - ring[3] * self.sine
-            if sites is not None:
-                axial = sites.sign * axial
+            if placements is not None:
+                axial = placements.sign * axial
                 if tilt is not None:
-                    outwards = outwards + sites.position * tilt
-                    tilt = sites.sign * tilt
-        if sites is not None and raceway == 1:
-            axial = axial + sites.offset
+                    outwards = outwards + placements.position * tilt
+                    tilt = placements.sign * tilt
+        if placements is not None and raceway == 1:
+            axial = axial + placements.offset
         if self.axial is not None and self.outwards is not None:
             axial = axial + self.axial[raceway]
             outwards = outwards + self.outwards[raceway]
         return Section(axial, outwards, tilt)
 
     def push(
-        self, forces: Section, freedoms: int, sites: Sites | None = None
+        self, forces: Section, freedoms: int, placements: RowPlacement | None = None
     ) -> Float[Array, " k"]:
         """Return the load on the ring from forces on all sections [N, N m].
 
         Args:
             forces: On every element's section [N, N m].
-            freedoms: Of the ring, three or five. Static.
-            sites: As in `motion`.
+            freedoms: Number of freedoms of the ring, three or five. Static.
+            placements: As in `motion`.
         """
         axial, outwards, moment = forces
-        if sites is not None:
-            axial = sites.sign * axial
+        if placements is not None:
+            axial = placements.sign * axial
             if moment is not None:
-                moment = sites.sign * moment + sites.position * outwards
+                moment = placements.sign * moment + placements.position * outwards
         along = [outwards * self.cosine, outwards * self.sine, axial]
         if moment is not None and freedoms > 3:
             along = [*along, -moment * self.sine, moment * self.cosine]
