@@ -7,7 +7,7 @@ import pytest
 
 from bearingjax import SceneError, read_scene
 from bearingjax.scene import shipped_scenes
-from bearingjax.scene.bearing_table import BALLS, ROLLERS
+from bearingjax.scene.design_keys import BALLS, ROLLERS
 
 TAPER = """
 [bearing]
