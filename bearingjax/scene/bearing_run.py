@@ -11,7 +11,7 @@ from ..statics.load import solve
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from .cases_table import turns_of
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .optimise_table import Optimisation
 from .quantity import SceneError
 from .read import Scene

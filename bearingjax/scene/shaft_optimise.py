@@ -21,7 +21,7 @@ from ..shafts import (
     load_cases,
 )
 from .heat_table import friction_of
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .optimise_table import (
     BoundKeys,
     SearchKeys,

@@ -34,8 +34,8 @@ from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
 from .fit_table import turning
+from .life_ratings import rating_origins
 from .life_report import life_as_dict
-from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_told
