@@ -7,8 +7,7 @@ from ..numerics.programs import called
 from ..numerics.types import as_array
 from ..optimise.life import OfLife, RatingLife
 from ..optimise.optimise import Optimised, optimise
-from ..statics.load import solve
-from ..statics.options import SolveOptions
+from ..statics.load import solve_load
 from ..statics.solution import Solution
 from .cases_table import turns_of
 from .life_ratings import life_conditions
@@ -43,9 +42,12 @@ def run_scene(scene: Scene) -> Solution:
         _solved,
         scene.running(),
         as_array(scene.load, float),
-        SolveOptions(scene.free, scene.fixed_ring, scene.points, scene.tolerance),
         {name: as_array(value, float) for name, value in scene.prescribed.items()},
+        scene.free,
+        scene.fixed_ring,
         scene.speed,
+        scene.points,
+        None if scene.tolerance is None else as_array(scene.tolerance, float),
     )
 
 
@@ -81,8 +83,18 @@ def with_set_preload(scene: Scene) -> Scene:
     return dataclasses.replace(scene, set_preload=found, warnings=told)
 
 
-def _solved(element, load, options, prescribed, speed):
-    return solve(element, load, options, prescribed=prescribed, speed=speed)
+def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
+    return solve_load(
+        element,
+        load,
+        prescribed=prescribed,
+        free=free,
+        fixed_ring=fixed_ring,
+        speed=speed,
+        points=points,
+        tolerance=tolerance,
+        throw=False,
+    )
 
 
 def run_optimisation(
