@@ -365,7 +365,7 @@ def written_numbers(owner: Any) -> dict[str, str | float]:
     }
 
 
-def axes_of(annotation: Any) -> list[str]:
+def axes_of(annotation: Any) -> Sequence[str]:
     """Return the axes of a field: none of a number, digits of a fixed length.
 
     Args:

@@ -151,7 +151,9 @@ def simulate(
         at = load_speed
     options = SolveOptions(free, fixed_ring)
     first = load(zero) if callable(load) else load
-    solution = solve(model.element, first, options, prescribed=prescribed, speed=at)
+    solution: Any = solve(
+        model.element, first, options, prescribed=prescribed, speed=at
+    )
     if throw:
         solution = raise_if_failed(solution)
     gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
