@@ -211,7 +211,6 @@ def _shaft_scene() -> dict[str, Any]:
         must += ["teeth"] if key == "gear" else []
         tables[key] = _by_name({**found, "required": must})
     heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
-    heat["properties"].pop("diameters")
     beside = {
         **place,
         "preload": {
