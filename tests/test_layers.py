@@ -8,6 +8,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -49,6 +50,44 @@ def test_module_imports_respect_layers(path):
     allowed = set(LAYERS[: LAYERS.index(own) + 1]) - NOT_SEEN.get(own, set())
     foreign = set(imported_layers(path)) & set(LAYERS) - allowed
     assert not foreign, f"{path.name} imports {foreign}"
+
+
+def own_imports(path, tree):
+    """Files of the package that the import statements of a syntax tree name."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = path.parents[node.level - 1].joinpath(
+                *(node.module or "").split(".")
+            )
+            for place in [base / alias.name for alias in node.names] + [base]:
+                files = place.with_suffix(".py"), place / "__init__.py"
+                yield from (file for file in files if file.is_file())
+
+
+# Fast starts: commands import what they need, and `rosenbrock` imports Diffrax.
+LATE_IMPORTS = {"cli", "skid/integration.py"}
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_module_imports_stand_at_its_top(path):
+    name = path.relative_to(PACKAGE)
+    functions = [n for n in ast.walk(ast.parse(path.read_text())) if is_function(n)]
+    late = {file for node in functions for file in own_imports(path, node)}
+    assert not late or LATE_IMPORTS & {name.as_posix(), name.parts[0]}, late
+
+
+def is_function(node):
+    return isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+
+
+def test_imports_of_modules_form_no_circle():
+    """Those for types alone count, but for the energy's: it is written for elements
+    that import it."""
+    graph = {p: set(own_imports(p, ast.parse(p.read_text()))) for p in modules()}
+    graph = {p: found - {p} for p, found in graph.items() if p.name != "__init__.py"}
+    elements = {PACKAGE / "element" / f"{name}.py" for name in ("ball", "roller")}
+    graph[PACKAGE / "element" / "energy.py"] -= elements
+    assert len(list(TopologicalSorter(graph).static_order())) > 300
 
 
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))

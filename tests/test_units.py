@@ -18,6 +18,7 @@ from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import stated_units, unit, unit_of
 from bearingjax.scene.quantity import KINDS, kind_of
 from bearingjax.statics.solution import BallSolution, RollerSolution
+from bearingjax.statics.sweep import SUMMARIES
 from bearingjax.statics.sweep_table import _label
 
 MEASURES = [
@@ -168,5 +169,9 @@ def test_a_column_of_another_shape_than_the_field_has_no_unit_of_one_entry():
     assert _label("displacement", (1,), (2,)) == ("displacement_1", "")
     assert _label("stiffness", (), ()) == ("stiffness", "")
     assert _label("roller_load", (3,), (7,)) == ("roller_load_3", "N")
-    assert _label("largest_load", (), ()) == ("largest_load", "N")
+    units = {name: _label(name, (), ())[1] for name in SUMMARIES}  # each is stated
+    assert {name: unit for name, unit in units.items() if unit} == {
+        "largest_load": "N",
+        "peak_pressure": "Pa",
+    }
     assert _label("power", (), ()) == ("power", "")

@@ -28,6 +28,9 @@ from .cage_contact import CageContact
 class GuidedCage(eqx.Module):
     """A cage guided by a ring, for balls.
 
+    Its centre moves; `skid.Cage`, which turns alone, has other freedoms and another
+    law of its pockets.
+
     Attributes:
         mass: [kg].
         inertia: Moment of inertia about the bearing's axis [kg m²].

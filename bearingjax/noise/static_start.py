@@ -11,7 +11,7 @@ from ..numerics.implicit import stop
 from ..numerics.linear import combined
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from ..statics.load import solve, solve_load
+from ..statics.load import solve
 from ..statics.solution import message
 from .element_positions import ElementPositions
 from .model import NoiseModel
@@ -89,14 +89,7 @@ def why(model: NoiseModel) -> str:
     Args:
         model: The bearing; concrete.
     """
-    options = model.solve_options
-    solution = solve_load(
-        model.small,
-        model.load,
-        free=options.free,
-        fixed_ring=options.fixed_ring,
-        throw=False,
-    )
+    solution = solve(model.small, model.load, model.solve_options)
     if int(solution.result) == Result.CONVERGED:
         return (
             "nothing presses the rolling elements between the rings, and the"

@@ -65,7 +65,7 @@ class Pieces(AbstractQuadrature):
         return stop((bounds, slope))
 
     def nodes(self, offset, args, table, a, b, arcs=False):
-        ends = _monotone(partial(offset, stop(args)), *stop((table, a, b)))
+        ends = _monotone(partial(offset, stop(args)), *stop((table, b)))
         left, right = ends[:, :-1], ends[:, 1:]
 
         def argument(x, traced):
@@ -109,7 +109,7 @@ def of_intervals(rule: ContactMapped, intervals: int) -> Pieces:
     return Pieces(min(rule.points, max(_LEAST, share)))
 
 
-def _monotone(offset, table, a, b):
+def _monotone(offset, table, b):
     """Ends of the pieces (interval, 5) on which a + b ξ - h only rises or falls."""
     bounds, slope = table
     start, end = bounds[:, :-1], bounds[:, 1:]

@@ -66,10 +66,6 @@ class _Stuck(Exception):
     """A method has tried too many designs that were rejected."""
 
 
-Try = Callable[[np.ndarray], Trial]
-Step = Callable[[np.ndarray], None]
-
-
 def search(
     method: Any,
     trials: Trials,

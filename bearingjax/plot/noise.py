@@ -94,7 +94,7 @@ def noise_spectrum(
     ax.set_ylim(bottom - 5.0, top + 0.5 * (top - bottom))
     ax.set_xscale("log")
     ax.set_xlim(frequency[0], frequency[-1])
-    _names(ax, named, decibel, top)
+    _names(ax, named, decibel)
     finish(ax, "Spectrum", "frequency [Hz]", _level("level of lines", reference).label)
     return ax
 
@@ -103,7 +103,7 @@ def _level(name, reference) -> Axis:
     return Axis(name, f"dB over {reference:.3g} m/s²")
 
 
-def _names(ax, lines, decibel, top):
+def _names(ax, lines, decibel):
     """Write names above the spectrum without overlap."""
     if not lines:
         return

@@ -37,6 +37,7 @@ from .files import write_outputs as write_outputs
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
+from .life_ratings import rating_origins as rating_origins
 from .life_report import life_as_dict as life_as_dict
 from .life_run import LifeRun as LifeRun
 from .life_run import has_cases as has_cases
@@ -46,7 +47,6 @@ from .life_run import spectrum_as_dict as spectrum_as_dict
 from .life_run import spectrum_page as spectrum_page
 from .life_run import spectrum_report as spectrum_report
 from .life_run import unsolved as unsolved
-from .life_table import rating_origins as rating_origins
 from .noise_output import noise_as_dict as noise_as_dict
 from .noise_output import noise_columns as noise_columns
 from .noise_output import write_noise_sound as write_noise_sound

@@ -10,7 +10,7 @@ from ..optimise.optimise import Optimised, optimise
 from ..statics.load import solve_load
 from ..statics.solution import Solution
 from .cases_table import turns_of
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .optimise_table import Optimisation
 from .preload_of_set import preload_of_set, preload_warnings
 from .quantity import SceneError

@@ -5,74 +5,19 @@ import difflib
 from typing import Any
 
 from ..design import (
-    ARRANGEMENTS,
-    MATERIALS,
-    RIB_NAMES,
     AbstractBearing,
-    AbstractProfile,
-    AbstractRollerBearing,
-    AngularContactBallBearing,
     BearingSet,
-    CircularCrown,
-    CrossedRollerRow,
-    CrownedEnds,
-    CylindricalRollerBearing,
-    CylindricalThrustRollerBearing,
-    DeepGrooveBallBearing,
-    FourPointBallBearing,
-    FujiwaraKawase,
-    JohnsGohar,
-    Logarithmic,
-    Lundberg,
-    Material,
-    NeedleRollerBearing,
     PreloadSpring,
-    Rib,
-    Ribs,
-    SelfAligningBallRow,
     SetRow,
-    SphericalRollerRow,
-    SphericalThrustRollerBearing,
-    Straight,
-    Tabulated,
-    TaperedRollerBearing,
-    TaperedThrustRollerBearing,
-    ThrustBallBearing,
-    ToroidalRollerBearing,
-    pitch_on_sphere,
     shares_rings,
 )
-from ..element import RINGS
 from ..statics.preload import check_preload
 from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
+from .design_keys import BALLS, ROLLERS, read_row, two_row_name, with_both_rows
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
-from .table import Table, written, written_numbers
+from .table import Table
 
-ROLLERS = {
-    "cylindrical_roller": CylindricalRollerBearing,
-    "needle_roller": NeedleRollerBearing,
-    "tapered_roller": TaperedRollerBearing,
-    "spherical_roller": SphericalRollerRow,
-    "toroidal_roller": ToroidalRollerBearing,
-    "cylindrical_thrust_roller": CylindricalThrustRollerBearing,
-    "tapered_thrust_roller": TaperedThrustRollerBearing,
-    "spherical_thrust_roller": SphericalThrustRollerBearing,
-    "crossed_roller": CrossedRollerRow,
-}
-BALLS = {
-    "deep_groove_ball": DeepGrooveBallBearing,
-    "angular_contact_ball": AngularContactBallBearing,
-    "four_point_ball": FourPointBallBearing,
-    "self_aligning_ball": SelfAligningBallRow,
-    "thrust_ball": ThrustBallBearing,
-}
-"""Bearings by `type` in a scene; readers, schema and messages follow from `ROLLERS` and
-`BALLS`."""
-SPHERES = "spherical_roller", "spherical_thrust_roller"
-"""Rollers in an outer raceway whose radius may stand for the pitch diameter."""
-WITH_LETTERS = "cylindrical_roller", "needle_roller"
-"""Rollers whose ribs have an `arrangement` by letters."""
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
 EXTRA_KEYS = (
@@ -85,17 +30,6 @@ EXTRA_KEYS = (
     "friction_coefficient",
 )
 """Keys of a rotor's [bearings.NAME] that do not belong to [bearing]."""
-
-PROFILES = {
-    "straight": Straight,
-    "circular_crown": CircularCrown,
-    "crowned_ends": CrownedEnds,
-    "logarithmic": Logarithmic,
-    "lundberg": Lundberg,
-    "johns_gohar": JohnsGohar,
-    "fujiwara_kawase": FujiwaraKawase,
-    "tabulated": Tabulated,
-}
 
 
 def read_bearing(
@@ -113,30 +47,14 @@ def read_bearing(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    bearing = _single(table)
-    if shares_rings(bearing):
-        if "set" in beside:
-            problem = f"a {_named(bearing)} bearing has both its rows already"
-            raise beside.error("set", problem)
-        if isinstance(bearing, CrossedRollerRow):
-            return BearingSet.crossed(bearing), None
-        staggered = bearing.is_ball or table.flag("staggered", True)
-        with table.building():
-            return BearingSet.self_aligning(bearing, staggered=staggered), None
+    table = _completed(table)
+    bearing = read_row(table)
     if "set" not in beside:
-        return bearing, None
+        return with_both_rows(table, bearing), None
+    if shares_rings(bearing):
+        problem = f"a {two_row_name(bearing)} bearing has both its rows already"
+        raise beside.error("set", problem)
     return _set(beside.table("set"), bearing)
-
-
-def _named(bearing: AbstractBearing) -> str:
-    """Name the kind of a bearing of two rows."""
-    if bearing.is_ball:
-        return "self-aligning"
-    return (
-        "crossed roller"
-        if isinstance(bearing, CrossedRollerRow)
-        else "spherical roller"
-    )
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
@@ -172,8 +90,8 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     return taken_from(entry, given)
 
 
-def _single(table: Table) -> AbstractBearing:
-    """Read a bearing of one row."""
+def _completed(table: Table) -> Table:
+    """Return the keys of a bearing, with those of its designation."""
     found = designated(table)
     if found is None and "type" not in table:
         meant = difflib.get_close_matches("designation", table.keys(), 1, 0.7)
@@ -182,15 +100,13 @@ def _single(table: Table) -> AbstractBearing:
             raise table.error(meant[0], problem)
         problem = "is missing; give it, or a `type` with all sizes, one of"
         raise table.error("designation", f"{problem} {', '.join((*ROLLERS, *BALLS))}")
-    if found is not None:
-        table.skip("designation")
-        table = table.completed(found[0])
-        # The echo states whose ratings apply, and the clearance.
-        table.fill("designation", found[1].entry.designation)
-    kind = table.choice("type", (*ROLLERS, *BALLS))
-    if found is not None and kind == "spherical_roller":
-        table.skip("staggered")  # of both rows, read with them
-    return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
+    if found is None:
+        return table
+    table.skip("designation")
+    whole = table.completed(found[0])
+    # The echo states whose ratings apply, and the clearance.
+    whole.fill("designation", found[1].entry.designation)
+    return whole
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -236,9 +152,9 @@ class RowKeys(SpringKeys):
         """
         bearing = common
         if "bearing" in self.table:
-            bearing = _single(self.table.table("bearing"))
+            bearing = read_row(_completed(self.table.table("bearing")))
         if shares_rings(bearing):
-            problem = f"a {_named(bearing)} bearing is no row of a set"
+            problem = f"a {two_row_name(bearing)} bearing is no row of a set"
             raise self.table.error("bearing", problem)
         place = {"position": self.position, "inner_offset": self.inner_offset}
         with self.table.building():
@@ -309,119 +225,3 @@ def _set(table: Table, bearing: AbstractBearing) -> tuple[BearingSet, float | No
         with table.building():
             check_preload(pack, force)
     return pack, force
-
-
-def required_numbers(kind: str) -> tuple[str, ...]:
-    """Return the numbers that a [bearing] must give despite a class default.
-
-    Args:
-        kind: `type` of the bearing.
-    """
-    if kind in ("tapered_roller", "tapered_thrust_roller"):
-        return ("roller_axis_angle", "roller_half_angle")
-    grooved = kind in BALLS and kind != "self_aligning_ball"
-    return ("outer_osculation",) if grooved else ()
-
-
-def _balls(table: Table, kind: str) -> AbstractBearing:
-    values = {
-        "n_balls": table.integer("n_balls"),
-        **table.fields(BALLS[kind], *required_numbers(kind)),
-        **_materials(table),
-    }
-    with table.building():
-        return BALLS[kind](**values)
-
-
-def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
-    derived = kind in SPHERES and "pitch_diameter" not in table
-    if derived and "outer_raceway_radius" not in table:
-        problem = "is missing, and so is `outer_raceway_radius`; one of them must be a"
-        raise table.error("pitch_diameter", f"{problem} length, a text with its unit")
-    left_out = ("pitch_diameter",) if derived else ()
-    values = {
-        "n_rollers": table.integer("n_rollers"),
-        **table.fields(ROLLERS[kind], *required_numbers(kind), left_out=left_out),
-        "roller_profile": read_profile(table.table("roller_profile")),
-    }
-    if derived:
-        values["pitch_diameter"] = pitch_on_sphere(**values)
-        table.fill("pitch_diameter", written(values["pitch_diameter"], "m"))
-    raceways = table.table("raceway_profile")
-    for ring in RINGS:
-        values[f"{ring}_raceway_profile"] = read_profile(raceways.table(ring))
-    values["ribs"] = _ribs(table, kind)
-    values |= _materials(table)
-    with table.building():
-        return ROLLERS[kind](**values)
-
-
-def _materials(table: Table) -> dict[str, Material | None]:
-    found = {
-        "material": read_material(table, "material") or Material(),
-        "ring_material": read_material(table, "ring_material"),
-    }
-    for key, material in found.items():
-        if material is not None:
-            table.fill(key, written_numbers(material))
-    return found
-
-
-def read_material(table: Table, key: str) -> Material | None:
-    """Read the material at a key, by its name or its numbers; `None` if absent."""
-    given = table.table_or_word(key, tuple(MATERIALS))
-    if given is None:
-        return None
-    if isinstance(given, str):
-        return MATERIALS[given]()
-    values = given.fields(Material)
-    with given.building():
-        return Material(**values)
-
-
-def _ribs(table: Table, kind: str) -> Ribs:
-    if kind == "crossed_roller":
-        for key in ("ribs", "rib", "arrangement"):
-            if key in table:
-                raise table.error(key, "is for others; crossed rollers have no ribs")
-        return Ribs()
-    if "arrangement" not in table:
-        for key in ("rib", "axial_internal_clearance"):
-            if key in table:
-                raise table.error(key, "belongs to an `arrangement`, which is missing")
-        ribs = table.table("ribs")
-        given = {name: ribs.table(name) for name in RIB_NAMES}
-        return Ribs(**{name: _rib(given[name]) for name in RIB_NAMES if name in ribs})
-    if "ribs" in table:
-        raise table.error("ribs", "give either `arrangement` or `ribs`, not both")
-    if kind not in WITH_LETTERS:
-        problem = "is for cylindrical and needle rollers; others name their `ribs`"
-        raise table.error("arrangement", problem)
-    name = table.choice("arrangement", tuple(ARRANGEMENTS))
-    play = table.quantity("axial_internal_clearance", "length", None)
-    common = table.table("rib", required=True)
-    rib = _rib(common)
-    if play is not None and "axial_gap" in common:
-        problem = "give either `rib.axial_gap` or this, not both"
-        raise table.error("axial_internal_clearance", problem)
-    if play is not None:
-        common.fill("axial_gap", None)  # it follows from the clearance
-    with table.building():
-        return Ribs.arrangement(name, rib, play)
-
-
-def _rib(table: Table) -> Rib:
-    if "end_radius" in table and table.word("end_radius") == "flat":
-        problem = "flat ends have no point contact; give the radius of the end sphere"
-        raise table.error("end_radius", problem)
-    values = table.fields(Rib)
-    with table.building():
-        return Rib(**values)
-
-
-def read_profile(table: Table) -> AbstractProfile:
-    """Read the profile of a roller or raceway; straight if the table is empty."""
-    kind = PROFILES[table.choice("type", tuple(PROFILES), "straight")]
-    values = table.fields(kind)
-    with table.building():
-        return kind(**values)

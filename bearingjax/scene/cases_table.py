@@ -21,7 +21,8 @@ from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit_of
 from ..statics.cases import Cases
-from ..statics.life import LIFE_OUTPUTS
+from ..statics.life import LIFE_OUTPUTS, Life
+from ..statics.solution import Solution
 from ..statics.spectrum import revolutions_per_hour
 from ..statics.sweep import SUMMARIES, stack_designs
 from .cases_list import LARGEST, read_list
@@ -29,7 +30,7 @@ from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
-from .table import Table
+from .table import Table, axes_of
 
 OPERATING = {
     **{
@@ -305,10 +306,11 @@ def _check_outputs(table, outputs, design_groups) -> None:
         tuple(row.bearing.n_elements for row in rows_of(part.element.bearing))
         for part in design_groups
     }
-    lives = [name for name in LIFE_OUTPUTS if name != "damage_share"]
-    whole = ("displacement", "force", "stiffness", *SUMMARIES, *lives)
     if len(sizes) == 1:
         return
+    lives = [field for field in dataclasses.fields(Life) if field.name in LIFE_OUTPUTS]
+    fields = filter(_is_whole, (*dataclasses.fields(Solution), *lives))
+    whole = (*(field.name for field in fields), *SUMMARIES)
     for name in outputs or ():
         if name not in whole:
             problem = (
@@ -316,6 +318,12 @@ def _check_outputs(table, outputs, design_groups) -> None:
                 f" from case to case; those that can be kept then: {', '.join(whole)}"
             )
             raise table.error("outputs", problem)
+
+
+def _is_whole(field) -> bool:
+    """Whether an output has no axis whose length is that of a bearing."""
+    axes = axes_of(field.type)
+    return "unit" in field.metadata and all(axis.isdecimal() for axis in axes)
 
 
 def _check_key(table, key, scene):

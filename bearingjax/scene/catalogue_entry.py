@@ -26,8 +26,10 @@ from ..design.fit_limits import (
 )
 from ..design.iso286 import Limits
 from ..statics import heat_area, reference_factors, reference_speed
+from .design_keys import read_design
 from .designation import Suffixes, compact, split_designation
 from .quantity import SceneError, to_si
+from .table import Table
 
 CLEARANCES = {
     "deep_groove_ball": ball_clearance,
@@ -195,11 +197,7 @@ class CatalogueEntry:
     @property
     def bearing(self) -> Any:
         """The design: a bearing, or the set of both rows of a self-aligning bearing."""
-        from .bearing_table import read_bearing  # which reads designations in turn
-        from .table import Table
-
-        table = Table(self.table, self.designation)
-        return read_bearing(table, Table({}, self.designation))[0]
+        return read_design(Table(self.table, self.designation))
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:
@@ -470,12 +468,9 @@ _FILLED: dict[str, dict[str, Any]] = {}
 
 def _filled(entry: CatalogueEntry) -> dict[str, Any]:
     """Return the keys of a bearing with all defaults, as echoed in the JSON."""
-    from .bearing_table import read_bearing  # which reads designations in turn
-    from .table import Table
-
     if entry.designation not in _FILLED:
         table = Table(entry.table, entry.designation)
-        read_bearing(table, Table({}, entry.designation))
+        read_design(table)
         _FILLED[entry.designation] = table.echo()
     return _FILLED[entry.designation]
 

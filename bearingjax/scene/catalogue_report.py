@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..design import rows_of
-from .bearing_table import BALLS, ROLLERS
 from .catalogue_entry import CatalogueEntry
+from .design_keys import BALLS, ROLLERS
 from .quantity import SceneError, to_si
 from .scene_file import shipped_scenes
 from .table import not_among

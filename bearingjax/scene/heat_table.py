@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..shafts import HeatNetwork, ThermalPaths
+from ..shafts import BearingOil, HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series
 from ..statics.reference_speed import heat_area
 from .oil_table import Oil, series_of
@@ -83,7 +83,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene is None:
         return None
     heat = table.table("heat")
-    given = heat.fields(ThermalPaths, left_out=(*_CONDUCTANCES, "diameters"))
+    given = heat.fields(ThermalPaths, left_out=_CONDUCTANCES)
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)
@@ -98,25 +98,22 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
             raise heat.error(name, f"{problem} known")
         given[name] = heat.quantity(name, "thermal conductance", usual)
     with heat.building():
-        return ThermalPaths(**given, **friction_of(scene, scene.oil))
+        return ThermalPaths(**given, oil=bearing_oil(scene, scene.oil))
 
 
-def friction_of(scene: Scene, oil: Oil) -> dict[str, Any]:
-    """Return the inputs of `friction_power` for a bearing, by field name.
+def bearing_oil(scene: Scene, oil: Oil, temperature: Any = None) -> BearingOil:
+    """Return the oil of a bearing, with what its friction needs.
 
     Args:
         scene: The bearing.
         oil: Its oil.
+        temperature: Of the oil [K]; `None`: it follows from the heat.
     """
     known, series, diameters = skf_series(scene.element.bearing), None, None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
         series = series_of(entry.designation, known)
         diameters = entry.bore, entry.outside_diameter
-    return {
-        "lubricant": oil.lubricant,
-        "supply": oil.supply,
-        "skf": bool(known),
-        "series": series,
-        "diameters": diameters,
-    }
+    return BearingOil(
+        oil.lubricant, temperature, oil.supply, bool(known), series, diameters
+    )

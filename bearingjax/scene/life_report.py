@@ -8,7 +8,7 @@ import numpy as np
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
-from .life_table import not_published, rating_origins
+from .life_ratings import not_published, rating_origins
 from .read import Scene
 from .report_model import Column, Grid, Part
 

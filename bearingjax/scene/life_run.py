@@ -17,6 +17,7 @@ from ..statics.sweep import Sweep
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
+from .life_ratings import life_conditions, not_published, rating_origins
 from .life_report import (
     life_number,
     lives_grid,
@@ -24,7 +25,6 @@ from .life_report import (
     ratings_in_words,
     turning,
 )
-from .life_table import life_conditions, not_published, rating_origins
 from .quantity import SceneError
 from .report import design_sections
 from .report_model import NEWTONS, Column, Grid, Part, Report

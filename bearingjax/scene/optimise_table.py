@@ -25,7 +25,7 @@ from ..optimise.variable import Variable, check_variables, design_numbers
 from ..statics.cases import Cases
 from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .quantity import SceneError, kind_of
 from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing

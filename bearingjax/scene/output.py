@@ -10,8 +10,8 @@ from ..numerics.result import Result
 from ..statics.solution import BallSolution, message
 from .files import write_numbers
 from .fit_report import fit_as_dict
+from .life_ratings import rating_origins
 from .life_report import life_as_dict
-from .life_table import rating_origins
 from .oil_table import oil_as_dict
 from .preload_of_set import preload_as_dict
 from .read import Scene

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..rotor import Shaft
-from .bearing_table import BALLS, EXTRA_KEYS
+from .bearing_table import EXTRA_KEYS
 from .catalogue_entry import FromCatalogue, catalogue_entry
+from .design_keys import BALLS
 from .fit_table import Fits
 from .quantity import SceneError
 from .read import Scene, scene_of

@@ -8,8 +8,8 @@ from .._version import __version__
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .fit_report import fit_as_dict
+from .life_ratings import rating_origins
 from .life_report import life_as_dict
-from .life_table import rating_origins
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun

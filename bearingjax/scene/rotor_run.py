@@ -31,7 +31,7 @@ from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
 from .fit_table import fits_at_speed
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import Mount, RotorScene

@@ -23,7 +23,7 @@ from ..rotor import (
     StationForce,
     Unbalance,
 )
-from .bearing_table import read_material
+from .design_keys import read_material
 from .rotor_mounts import MountKeys, read_mounts
 from .rotor_scene import RotorScene
 from .rotor_tasks import CampbellKeys, ResponseKeys, TransientKeys

@@ -6,15 +6,7 @@ from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
 from ..element import RINGS
 from ..element.frame import LOADS
 from ..shafts import ShaftLoad, ThermalPaths
-from .bearing_table import (
-    BALLS,
-    PROFILES,
-    ROLLERS,
-    SPHERES,
-    WITH_LETTERS,
-    SetKeys,
-    required_numbers,
-)
+from .bearing_table import SetKeys
 from .cases_table import CasesKeys
 from .choices_table import (
     BallNumericsKeys,
@@ -30,6 +22,14 @@ from .contact_table import (
     RacewayKeys,
     RollerKeys,
     SliceLawKeys,
+)
+from .design_keys import (
+    BALLS,
+    PROFILES,
+    ROLLERS,
+    SPHERES,
+    WITH_LETTERS,
+    required_numbers,
 )
 from .deviations_table import DeviationsKeys
 from .dynamics_table import CageKeys, DynamicsKeys
@@ -211,7 +211,6 @@ def _shaft_scene() -> dict[str, Any]:
         must += ["teeth"] if key == "gear" else []
         tables[key] = _by_name({**found, "required": must})
     heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
-    heat["properties"].pop("diameters")
     beside = {
         **place,
         "preload": {

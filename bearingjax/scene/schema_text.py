@@ -4,12 +4,12 @@ import dataclasses
 import inspect
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, get_args
+from typing import Any
 
 from ..numerics.units import unit_of
 from .quantity import KINDS, kind_of
 from .schema import Field, Keys, element_of, fields_of, is_keys
-from .table import LARGEST, is_array
+from .table import LARGEST, axes_of
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _QUANTITY = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d].*$"
@@ -154,11 +154,11 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
     if word:
         properties["type"] = {"const": word, "description": _first_line(kind)}
     for field in dataclasses.fields(kind):
-        if "unit" not in field.metadata or len(_shape(field.type)) > 1:
+        if "unit" not in field.metadata or len(axes_of(field.type)) > 1:
             continue
         unit = unit_of(kind, field.name)
         number = number_schema(kind_of(unit) if unit else "")
-        if is_array(field.type):
+        if axes_of(field.type):
             number = {"type": "array", "items": number}
         about = re.sub(r" (\[[^\]]*\]|\(\w+,\))", "", texts.get(field.name, ""))
         about, _, none = about.partition("; `None`: ")
@@ -172,13 +172,6 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
             required.append(field.name)
     found = object_schema(properties | more, required, _first_line(kind))
     return {**found, "required": required}
-
-
-def _shape(annotation: Any) -> list[str]:
-    """Return the axes of an array; none for a number."""
-    kinds = get_args(annotation) or (annotation,)
-    names = " ".join(str(getattr(kind, "dim_str", "")) for kind in kinds)
-    return [*map(str, names.split())]
 
 
 def attribute_texts(kind: type) -> dict[str, str]:

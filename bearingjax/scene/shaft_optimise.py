@@ -9,7 +9,6 @@ import numpy as np
 
 from ..optimise.variable import design_numbers
 from ..shafts import (
-    BearingOil,
     Gear,
     PowerLoss,
     ShaftCases,
@@ -20,8 +19,8 @@ from ..shafts import (
     Worst,
     load_cases,
 )
-from .heat_table import friction_of
-from .life_table import life_conditions
+from .heat_table import bearing_oil
+from .life_ratings import life_conditions
 from .optimise_table import (
     BoundKeys,
     SearchKeys,
@@ -187,9 +186,7 @@ def _design(
                 raise table.own_error(f"{problem} {seat.name} has none")
             oils.append(None)
         else:
-            oils.append(
-                BearingOil(temperature=oil.temperature, **friction_of(alone, oil))
-            )
+            oils.append(bearing_oil(alone, oil, oil.temperature))
     return ShaftDesign(scene.system, tuple(lives), tuple(oils) if oily else None)
 
 

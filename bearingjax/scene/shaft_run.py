@@ -34,8 +34,8 @@ from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fit_report import fit_as_dict
 from .fit_table import fits_at_speed
+from .life_ratings import rating_origins
 from .life_report import life_as_dict
-from .life_table import rating_origins
 from .oil_table import OilFacts, oil_as_dict, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_warnings
@@ -178,7 +178,7 @@ def run_shafts(
     duty, rings, warming, solved = None, None, None, not problem
     if cases and solved:
         say("load cases")
-        duty, rings, problem = _duty(task)
+        duty, rings, problem = _duty(task, state)
     if solved:
         say("bearings")
         speeds = found.power.speed[None] if duty is None else duty.speed
@@ -192,28 +192,30 @@ def run_shafts(
     return dataclasses.replace(run, warnings=tuple(warned))
 
 
-def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
+def _duty(
+    task: ShaftScene, first: ThermalState | None
+) -> tuple[DutyResult, np.ndarray | None, str]:
     """Solve the load cases, each warm if there is heat.
+
+    Args:
+        task: The scene.
+        first: Temperatures of the first case; `None` without heat.
 
     Returns:
         The cases, temperatures of the rings, and what was not solved, in words.
     """
     cases, states = task.cases, []
     try:
-        if task.heat is not None:
+        if first is not None:
             offsets: dict[Any, Any] = {}
-            cold = (
-                dataclasses.replace(case, system=adjusted(case.system, offsets))
-                for case in cases
-            )
-            states = [
-                (case, jax.device_get(solve_heat(case.system, case.heat, throw=False)))
-                for case in cold
-                if case.heat is not None
-            ]
+            states = [first]
+            for case in cases[1:]:
+                assert case.heat is not None
+                cold = adjusted(case.system, offsets)
+                states.append(solve_heat(cold, case.heat, throw=False))
             cases = [
                 _warm(case, state) if state.result == Result.CONVERGED else case
-                for case, state in states
+                for case, state in zip(cases, states, strict=True)
             ]
         systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
         duty = solve_duty(systems, lives)
@@ -221,9 +223,9 @@ def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
         raise SceneError(f"{task.name}: {error}") from error
     rings = None
     if states:
-        rings = np.array([[s.inner_ring, s.outer_ring] for _, s in states])
+        rings = np.array([[s.inner_ring, s.outer_ring] for s in states])
         rings = rings.transpose(0, 2, 1)
-        hot = np.array([int(s.result) for _, s in states])
+        hot = np.array([int(s.result) for s in states])
         lost = hot != Result.CONVERGED
         duty = jax.tree.map(
             lambda x: (
@@ -239,7 +241,7 @@ def _duty(task: ShaftScene) -> tuple[DutyResult, np.ndarray | None, str]:
         return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
     if states and lost[failed[0]]:
-        label = overheated(states[failed[0]][1])
+        label = overheated(states[failed[0]])
     many = f"{failed.size} of {len(cases)} cases not solved"
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 

@@ -29,7 +29,7 @@ from ..statics.life import LifeConditions
 from .cases_table import CasesKeys, Varied
 from .files import read_matrix
 from .heat_table import read_heat
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .placed_bearing import check_seat, placed_bearing
 from .quantity import SceneError, to_si
 from .read import Scene

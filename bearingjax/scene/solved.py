@@ -9,7 +9,7 @@ from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.solution import Solution
 from ..statics.warning import warnings
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .oil_table import OilFacts, oil_facts
 from .quantity import SceneError
 from .read import Scene

@@ -18,7 +18,7 @@ from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
-from .life_table import life_conditions
+from .life_ratings import life_conditions
 from .preload_of_set import preload_warnings, range_warnings
 from .quantity import SceneError
 from .report import ROUND_OFF

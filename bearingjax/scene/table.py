@@ -131,7 +131,7 @@ class Table:
             name, unit = field.name, unit_of(kind, field.name)
             must = field.default is dataclasses.MISSING or name in required
             if must or name in self:
-                several = is_array(field.type)
+                several = axes_of(field.type)
                 found[name] = (
                     self.quantities(name, kind_of(unit))
                     if several
@@ -365,10 +365,14 @@ def written_numbers(owner: Any) -> dict[str, str | float]:
     }
 
 
-def is_array(annotation):
-    """Whether a field holds an array, or `None`."""
+def axes_of(annotation: Any) -> Sequence[str]:
+    """Return the axes of a field: none of a number, digits of a fixed length.
+
+    Args:
+        annotation: Type of the field, an array or `None`.
+    """
     kinds = get_args(annotation) or (annotation,)
-    return any(getattr(kind, "dim_str", "") for kind in kinds)
+    return " ".join(getattr(kind, "dim_str", "") for kind in kinds).split()
 
 
 def not_among(value: object, choices: Sequence[str], words: str = "") -> str:

@@ -28,6 +28,7 @@ and `shafts.parts`. Left out: torsion, loops of meshes (planetary gears), stiffn
 teeth, friction of floating rings, heat along the shaft from one bearing to the next.
 """
 
+from .bearing_oil import BearingOil as BearingOil
 from .duty import DutyResult as DutyResult
 from .duty import bearing_hours as bearing_hours
 from .duty import solve_duty as solve_duty
@@ -49,7 +50,6 @@ from .parts import ShaftLoad as ShaftLoad
 from .power import PowerFlow as PowerFlow
 from .power import power_flow as power_flow
 from .seats import bearing_solutions as bearing_solutions
-from .shaft_design import BearingOil as BearingOil
 from .shaft_design import PowerLoss as PowerLoss
 from .shaft_design import ShaftCases as ShaftCases
 from .shaft_design import ShaftDesign as ShaftDesign

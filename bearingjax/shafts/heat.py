@@ -9,42 +9,37 @@ Friction depends on temperature through viscosity, and through the clearance and
 preload of warm rings, shafts and housings.
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..design import FitConditions
 from ..design.checks import check, in_range, is_traced, number, positive
 from ..element.inertia import Speed
-from ..lubrication import Lubricant
-from ..numerics.implicit import attach_by, stop
-from ..numerics.lapack import eigvals, solve_any
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..rotor.held import of_each
-from ..statics.friction import friction_torque
-from ..statics.friction_skf import skf_friction_torque
-from ..statics.solution import Solution
+from .bearing_oil import BearingOil
 from .equilibrium import system_state
+from .heat_balance import (
+    HOTTEST,
+    integrated,
+    rises_over_time,
+    searched,
+    steady_rises,
+    stepped_scan,
+    stepped_while,
+    with_slope,
+)
 from .seats import adjusted, in_place, speed_of
 from .state import SystemSolution
 from .system import ShaftSystem
-
-_HOTTEST = 300.0
-"""Rise above the ambience from which there is no thermal equilibrium [K]."""
-_STEPS = 100
-_TOLERANCE = 1e-10
-"""Heat out of balance over the heat that is made [1]."""
-_LEAST, _GROWTH = 1.5, 4.0
-"""Factors by which the steps in time grow as the balance is approached [1]."""
 
 
 class ThermalPaths(eqx.Module):
@@ -60,18 +55,14 @@ class ThermalPaths(eqx.Module):
         inner_capacity: Heat capacity of the inner ring with the shaft below it, which
             counts in time only [J/K].
         outer_capacity: Heat capacity of the outer ring with its seat, likewise [J/K].
-        lubricant: The oil.
-        supply: As in `friction_torque`.
-        skf: Whether friction is that of SKF's model, else of Palmgren's.
-        series: Of SKF's model, as in `skf_friction_torque`.
-        diameters: Bore and outside diameter for SKF's model (2,) [m].
+        oil: Of the bearing, as warm as the mean of both rings.
 
-    Traced: all numbers. Static: supply, skf, series.
+    Traced: all numbers.
     """
 
     inner: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
     outer: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
-    lubricant: Lubricant
+    oil: BearingOil
     through: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"), default=0.0)
     shaft_share: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
     housing_share: Scalar = eqx.field(
@@ -82,12 +73,6 @@ class ThermalPaths(eqx.Module):
     )
     outer_capacity: Scalar = eqx.field(
         converter=as_real, metadata=unit("J/K"), default=1000.0
-    )
-    supply: str = eqx.field(static=True, default="oil_bath")
-    skf: bool = eqx.field(static=True, default=False)
-    series: str | None = eqx.field(static=True, default=None)
-    diameters: Float[Array, "2"] | None = eqx.field(
-        converter=as_real, metadata=unit(2 * ("m",)), default=None
     )
 
     def __check_init__(self):
@@ -200,233 +185,6 @@ class ThermalState(eqx.Module):
     result: Int[Array, ""]
 
 
-Balance = Callable[[Float[Array, " node"], Any], Float[Array, " node"]]
-"""Heat made at every node over the rises of temperature [W]."""
-
-
-def steady_rises(
-    heat: Balance, args: Any, conductance: Array, capacity: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Find the temperatures that a system reaches from the cold.
-
-    Time steps of the linearly implicit Euler rule follow the warming up and grow as it
-    ends, where they become Newton's: a state that is not stable is not reached.
-
-    Args:
-        heat: Function (rises, args) -> heat made at each node (node,) [W].
-        args: Pytree with all that the heat depends on.
-        conductance: Of the network (node, node) [W/K].
-        capacity: Of the nodes (node,) [J/K].
-
-    Returns:
-        Rises above the ambience (node,) [K], differentiable with respect to args,
-        conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
-        steps; whether it was found. Rises are those of the last step if it was not.
-    """
-    still, *network = stop((args, conductance, capacity))
-
-    def evaluated(rise):
-        return _with_slope(lambda rise: (heat(rise, still), ()), rise)
-
-    found, _ = _searched(evaluated, network, (), lax.while_loop)
-
-    def balance(rise, args):
-        heat_args, conductance = args
-        return heat(rise, heat_args) - conductance @ rise
-
-    def undone(of_rise, rise, change, args):
-        matrix = jax.jacfwd(of_rise)(rise)
-        return -solve_any(matrix, change)
-
-    rise = attach_by(balance, found.rise, (args, conductance), undone)
-    return rise, -found.fastest, found.residual, found.steps, found.solved
-
-
-def _with_slope(heat, rise):
-    """Return heat made at every node, its slope over the rises, and something else.
-
-    Args:
-        heat: Rises -> heat made at every node, and something else.
-        rise: Rises (node,) [K].
-    """
-
-    def both(rise):
-        made, more = heat(rise)
-        return made, (made, more)
-
-    slope, (made, more) = jax.jacfwd(both, has_aux=True)(rise)
-    return made, slope, more
-
-
-class _Search(NamedTuple):
-    """State of the search of `steady_rises`.
-
-    Attributes:
-        after: Rises to be looked at next (node,) [K].
-        rise: Rises that were looked at last (node,) [K].
-        fastest: Rate at which the fastest disturbance of them grows [1/s].
-        residual: Heat out of balance over the heat made [1].
-        time: Length of the step in time [s].
-        steps: Number of steps.
-        going: Whether to go on.
-    """
-
-    after: Array
-    rise: Array
-    fastest: Array
-    residual: Array
-    time: Array
-    steps: Array
-    going: Array
-
-    @property
-    def solved(self):
-        return (self.residual <= _TOLERANCE) & (self.fastest < 0)
-
-
-def _searched(evaluated, network, nothing, while_loop):
-    """Search the temperatures that a system reaches from the cold.
-
-    Args:
-        evaluated: Rises -> heat made, its slope, and something else.
-        network: Conductance and capacity as in `steady_rises`.
-        nothing: In place of what else is evaluated, before the first step.
-        while_loop: `lax.while_loop`, or `_while_loop`.
-
-    Returns:
-        Last state, and what else was evaluated at its `rise`.
-    """
-
-    def step(carry):
-        made, slope, more = evaluated(carry[0].after)
-        return _advanced(carry[0], made, slope, network), more
-
-    begin = _beginning(network)
-    return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
-
-
-def _while_loop(going, step, carry):
-    """`lax.while_loop` of steps that are compiled one by one."""
-    while going(carry):
-        carry = step(carry)
-    return carry
-
-
-@program(quick=True)
-def _beginning(network):
-    conductance, capacity = network
-    zero, none = jnp.zeros_like(capacity), jnp.zeros((), capacity.dtype)
-    shortest = jnp.min(capacity / jnp.diagonal(conductance))
-    counted = jnp.zeros((), jnp.int32), jnp.ones((), bool)
-    return _Search(zero, zero, none, none + jnp.inf, 0.3 * shortest, *counted)
-
-
-@program(quick=True)
-def _advanced(state, made, slope, network):
-    """Return the state after a step, from heat and slope at `state.after`."""
-    rise, (conductance, capacity) = state.after, network
-    slope, left = slope - conductance, made - conductance @ rise
-    size, total = jnp.max(jnp.abs(left)), jnp.sum(jnp.abs(made))
-    new = jnp.where(size > 0, size / jnp.maximum(total, 1e-30), 0.0)
-    # Nodes of little capacity settle first; the others need steps that grow.
-    nearer = state.residual / new
-    least = jnp.where(nearer < 1.0, 0.5, _LEAST)
-    factor = jnp.clip(nearer, least, _GROWTH)
-    grown = jnp.where(state.steps > 0, factor, 1.0) * state.time
-    # A step past the growth of what is not stable would lead anywhere.
-    fastest = jnp.max(jnp.real(eigvals(slope / capacity[:, None])))
-    limit = 0.5 / jnp.where(fastest > 0, fastest, 1.0)
-    grown = jnp.where(fastest > 0, jnp.minimum(grown, limit), grown)
-    after = rise + solve_any(jnp.diag(capacity / grown) - slope, left)
-    going = (new > _TOLERANCE) & jnp.all(after < _HOTTEST)
-    going = going & (state.steps + 1 < _STEPS)
-    return _Search(after, rise, fastest, new, grown, state.steps + 1, going)
-
-
-def rises_over_time(
-    heat: Balance, args: Any, conductance: Array, capacity: Array, times: Array, n: int
-) -> Array:
-    """Integrate the warming up from the cold.
-
-    Args:
-        heat, args, conductance, capacity: As in `steady_rises`.
-        times: Rising, from 0 (time,) [s].
-        n: Steps between two times. Static.
-
-    Returns:
-        Rises above the ambience (time, node) [K]; NaN from where they run away.
-
-    Source: Verwer's ROS2, linearly implicit, of second order and L-stable.
-    """
-
-    def evaluated(rise):
-        return _with_slope(lambda rise: (heat(rise, args), ()), rise)[:2]
-
-    def made(rise):
-        return heat(rise, args)
-
-    return _integrated(evaluated, made, [conductance, capacity], times, n, lax.scan)
-
-
-_GAMMA = 1.0 - np.sqrt(0.5)
-
-
-def _integrated(evaluated, made, network, times, n, scan):
-    """Return rises over time (time, node) [K].
-
-    Args:
-        evaluated: Rises -> heat made, and its slope.
-        made: Rises -> heat made.
-        network: Conductance and capacity as in `rises_over_time`.
-        times, n: As there.
-        scan: `lax.scan`, or `_scan`.
-    """
-
-    def step(rise, length):
-        there, slope = evaluated(rise)
-        between, k1, matrix = _half_way(rise, there, slope, length, network)
-        known = rise, k1, matrix, between
-        return _whole_way(known, made(between), length, network)
-
-    def interval(rise, length):
-        after, _ = scan(step, rise, jnp.full(n, length / n))
-        return after, after
-
-    start = jnp.zeros_like(network[1])
-    _, found = scan(interval, start, jnp.diff(times))
-    return jnp.concatenate([start[None], found])
-
-
-def _scan(step, carry, given):
-    """`lax.scan` of steps that are compiled one by one."""
-    found = []
-    for one in np.asarray(given):
-        carry, out = step(carry, jnp.asarray(one))
-        found.append(out)
-    return carry, jnp.asarray(np.stack(found))
-
-
-@program(quick=True)
-def _half_way(rise, made, slope, length, network):
-    """Return rises at which heat is wanted once more, and what is known by then."""
-    conductance, capacity = network
-    rate = (made - conductance @ rise) / capacity
-    eye = jnp.eye(capacity.shape[0], dtype=capacity.dtype)
-    matrix = eye - _GAMMA * length * (slope - conductance) / capacity[:, None]
-    k1 = solve_any(matrix, rate)
-    return rise + length * k1, k1, matrix
-
-
-@program(quick=True)
-def _whole_way(known, made, length, network):
-    """Return rises after a step, NaN where they run away, and as they are."""
-    (rise, k1, matrix, between), (conductance, capacity) = known, network
-    rate = (made - conductance @ between) / capacity
-    k2 = solve_any(matrix, rate - 2.0 * k1)
-    after = rise + length * (1.5 * k1 + 0.5 * k2)
-    return jnp.where(jnp.all(after < _HOTTEST), after, jnp.nan), after
-
-
 def solve_heat(
     system: ShaftSystem, network: HeatNetwork, *, throw: bool = True
 ) -> ThermalState:
@@ -459,7 +217,7 @@ def solve_heat(
             return _evaluated(cold, network, rise)
 
         given = [_conductance(network), _capacity(network)]
-        found, solution = _searched(evaluated, given, None, _while_loop)
+        found, solution = searched(evaluated, given, None, stepped_while)
         rise, slowest, residual = found.rise, -found.fastest, found.residual
         steps, solved, known = found.steps, found.solved, _within(rise)
         if np.any(np.asarray(known) != np.asarray(rise)):
@@ -499,7 +257,7 @@ def overheated(state: ThermalState) -> str:
         return f"solve_heat: the shafts have no equilibrium when warm: {label}."
     return (
         "solve_heat: no thermal equilibrium within"
-        f" {_HOTTEST:g} K above the ambience: friction grows faster with temperature"
+        f" {HOTTEST:g} K above the ambience: friction grows faster with temperature"
         " than cooling. Give less preload or speed, more clearance, or larger"
         " conductances."
     )
@@ -531,7 +289,9 @@ def warm_up(
         return evaluated(rise)[0]
 
     given = [_conductance(network), _capacity(network)]
-    return network.ambient + _integrated(evaluated, made, given, times, steps, _scan)
+    return network.ambient + integrated(
+        evaluated, made, given, times, steps, stepped_scan
+    )
 
 
 def runaway_speed(
@@ -588,7 +348,7 @@ def _is_traced(*trees: Any) -> bool:
 
 def _within(rise):
     """Return rises at which materials have numbers, of what has run away."""
-    return jnp.clip(rise, -_HOTTEST / 3.0, _HOTTEST)
+    return jnp.clip(rise, -HOTTEST / 3.0, HOTTEST)
 
 
 @program(quick=True)
@@ -598,7 +358,7 @@ def _evaluated(system, network, rise):
     The one program of search and warming up, where nothing is traced: their loops run
     in Python, as compiling takes far longer than running.
     """
-    return _with_slope(lambda rise: heat_and_state(rise, system, network), rise)
+    return with_slope(lambda rise: heat_and_state(rise, system, network), rise)
 
 
 @program(quick=True)
@@ -664,26 +424,6 @@ def with_temperatures(
     return eqx.tree_at(lambda s: s.seats, system, tuple(seats))
 
 
-def friction_power(oil: Any, solution: Solution, temperature: Any) -> Scalar:
-    """Return the power lost in a bearing [W].
-
-    Args:
-        oil: `ThermalPaths`, or another Module with their lubricant, supply, skf, series
-            and diameters.
-        solution: Of the bearing, turning.
-        temperature: Of its oil [K].
-
-    Raises:
-        ValueError: For bearings without known constants of friction.
-    """
-    viscosity = oil.lubricant.kinematic_viscosity(temperature)
-    given = solution, viscosity, oil.supply
-    if not oil.skf:
-        return friction_torque(*given).power
-    sizes = None if oil.diameters is None else tuple(oil.diameters)
-    return skf_friction_torque(*given, series=oil.series, diameters=sizes).power
-
-
 def heat_made(
     rises: Float[Array, " node"], args: tuple[ShaftSystem, HeatNetwork]
 ) -> Float[Array, " node"]:
@@ -721,7 +461,7 @@ def heat_and_state(
     def lost(both, motion, turns, temperature):
         installed, path = both
         given = motion, Speed(inner=turns), warm.inertia, 2
-        return friction_power(path, in_place(installed, *given), temperature)
+        return path.oil.power(in_place(installed, *given), temperature)
 
     # Like bearings share one program.
     parts = [(warm.seats[k].installed, network.paths[k]) for k in turning]

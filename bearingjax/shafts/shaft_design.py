@@ -14,8 +14,6 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..lubrication import Lubricant
-from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
@@ -23,33 +21,13 @@ from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted
 from ..statics.life import LifeConditions
 from ..statics.warning import counted
+from .bearing_oil import BearingOil
 from .doubts import load_doubts
 from .duty import LIVES, DutyResult, alike, bearing_hours, rated, state_of, system_life
-from .heat import friction_power
 from .parts import Gear
 from .power import power_flow
 from .seats import adjusted, in_place, speed_of
 from .system import ShaftSystem
-
-
-class BearingOil(eqx.Module):
-    """Oil of a bearing, for its friction.
-
-    Attributes:
-        lubricant: The oil.
-        temperature: Its temperature [K].
-        supply, skf, series: As in `ThermalPaths`.
-        diameters: Bore and outside diameter for SKF's model (2,) [m].
-    """
-
-    lubricant: Lubricant
-    temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    supply: str = eqx.field(static=True, default="oil_bath")
-    skf: bool = eqx.field(static=True, default=False)
-    series: str | None = eqx.field(static=True, default=None)
-    diameters: Float[Array, "2"] | None = eqx.field(
-        converter=as_real, metadata=unit(2 * ("m",)), default=None
-    )
 
 
 class ShaftCases(eqx.Module):
@@ -153,7 +131,7 @@ class ShaftDesign(AbstractSystem):
                 peak, numbers, doubts = rated(solution, speed, conditions)
                 oil = None if self.oils is None else self.oils[k]
                 if oil is not None:
-                    power = friction_power(oil, solution, oil.temperature)
+                    power = oil.power(solution)
             pressures.append(peak)
             powers.append(power)
             warned.append(doubts)

@@ -70,8 +70,14 @@ class SkiddingBearing(AbstractSystem):
         rings = case.inner_speed, case.outer_speed
         speed = Speed(*(still if ring is None else ring for ring in rings))
         places = enough_places(model.bearing) if self.places is None else self.places
-        asked = loaded.load, loaded.prescribed, loaded.fixed_displacement, None, speed
-        whole = load_case(model.bearing, options, *asked)
+        whole = load_case(
+            model.bearing,
+            loaded.load,
+            options,
+            prescribed=loaded.prescribed,
+            fixed_displacement=loaded.fixed_displacement,
+            speed=speed,
+        )
         return end_state(model, solution, whole, options, speed, places)
 
     def message(self, solved):

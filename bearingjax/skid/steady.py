@@ -18,7 +18,7 @@ from ..element.inertia import Speed
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..statics.balance import balance_of
-from ..statics.load import solve_load
+from ..statics.load import raise_if_failed, solve
 from ..statics.load_case import LoadCase, load_case
 from ..statics.options import SolveOptions
 from .ball_orbit import BallOrbit
@@ -85,21 +85,15 @@ def steady(
     """
     check_places("skid.steady", model.bearing, places)
     carried = speed if load_speed is None else load_speed
-    solution = solve_load(
-        model.element,
-        load,
-        speed=carried,
-        prescribed=prescribed,
-        free=free,
-        fixed_ring=fixed_ring,
-        throw=throw,
-    )
-    count = _places(model.bearing, solution, places)
     options = SolveOptions(free, fixed_ring)
-    asked = model.bearing, options, load, prescribed, None, None, carried
+    support = {"prescribed": prescribed, "speed": carried}
+    solution = solve(model.element, load, options, **support)
+    if throw:
+        solution = raise_if_failed(solution)
+    count = _places(model.bearing, solution, places)
+    case = load_case(model.bearing, load, options, **support)
     follows = load_speed is None
-    given = model, solution, load_case(*asked), options, speed
-    found = end_state(*given, count, follows)
+    found = end_state(model, solution, case, options, speed, count, follows)
     if not throw:
         return found
     return raise_unless_converged(found, found.result, lambda: _message(found))

@@ -57,6 +57,10 @@ class Drag(eqx.Module):
 class Cage(eqx.Module):
     """Rigid cage guided by the balls or rollers through pocket contact.
 
+    It turns, and that is all its motion. One whose centre moves too, in the clearance
+    of a land, is `noise.GuidedCage`: the two share a clearance and an inertia, but
+    neither freedoms nor the law of the pockets.
+
     Attributes:
         pocket_clearance: Play of a ball or roller in its pocket along the orbit, from
             front to rear [m].

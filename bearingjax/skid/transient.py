@@ -24,7 +24,7 @@ from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..statics.balance import balance_of
-from ..statics.load import solve_load
+from ..statics.load import raise_if_failed, solve
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .balanced_loads import BalancedLoads
@@ -149,13 +149,20 @@ def simulate(
     at = table.at(zero) if balanced else table.at(as_real(duration))
     if load_speed is not None and not balanced:
         at = load_speed
-    given = prescribed, free, fixed_ring
+    options = SolveOptions(free, fixed_ring)
     first = load(zero) if callable(load) else load
-    solution = _solved(model, first, at, given, throw)
+    solution: Any = solve(
+        model.element, first, options, prescribed=prescribed, speed=at
+    )
+    if throw:
+        solution = raise_if_failed(solution)
     gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
-        balance = _balance(model, solution, given)
+        # Without its load, which comes over time.
+        case = load_case(model.bearing, None, options, prescribed=prescribed)
+        outer_moves = options.moving_ring == "outer"
+        balance = balance_of(case, pitch_radius(model.bearing), outer_moves)
         environment, rolling = balanced_surroundings(
             model, solution, balance, over_time, table, gravity
         )
@@ -163,10 +170,10 @@ def simulate(
         if places is None:
             places = 1 if _alike(solution.roller_load) else _PLACES
         environment, rolling = surroundings(model, solution, at, table, gravity, places)
-    options = Options(as_real(tolerance), max_steps, derivatives, progress)
+    steps = Options(as_real(tolerance), max_steps, derivatives, progress)
     start = rolling if start is None else _taken_up(start, rolling)
     found = _skid(
-        environment, solution, start, as_real(times), as_real(duration), options
+        environment, solution, start, as_real(times), as_real(duration), steps
     )
     if not throw:
         return found
@@ -224,32 +231,11 @@ class _Constant(eqx.Module):
         return self.load
 
 
-def _solved(model, load, speed, given, throw) -> Any:
-    prescribed, free, fixed_ring = given
-    return solve_load(
-        model.element,
-        load,
-        speed=speed,
-        prescribed=prescribed,
-        free=free,
-        fixed_ring=fixed_ring,
-        throw=throw,
-    )
-
-
 def _taken_up(start, rolling):
     """Return the start of a motion, with ring and balls of rolling if tabulated."""
     if start.ring.shape == rolling.ring.shape:
         return start
     return start._replace(centre=rolling.centre, ring=rolling.ring)
-
-
-def _balance(model, solution, given):
-    """Return the balance of the ring, without its load."""
-    prescribed, free, fixed_ring = given
-    bearing, options = model.bearing, SolveOptions(free, fixed_ring)
-    case = load_case(bearing, options, None, prescribed, None, None, None)
-    return balance_of(case, pitch_radius(bearing), options.moving_ring == "outer")
 
 
 @program

@@ -155,7 +155,13 @@ def solve(
     """
     options.check("solve_load")
     case = load_case(
-        element.bearing, options, load, prescribed, fixed_displacement, start, speed
+        element.bearing,
+        load,
+        options,
+        prescribed=prescribed,
+        fixed_displacement=fixed_displacement,
+        speed=speed,
+        start=start,
     )
     options = options.for_dtype(case.load.dtype)
     # Called as it is, the model is worked out in the one program that is called: to

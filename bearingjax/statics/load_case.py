@@ -50,19 +50,20 @@ class LoadCase(eqx.Module):
 
 def load_case(
     bearing: AbstractBearing | BearingSet,
-    options: SolveOptions,
     load: Any,
-    prescribed: Any,
-    fixed_displacement: Any,
-    start: Any,
-    speed: Speed | None,
+    options: SolveOptions,
+    *,
+    prescribed: Any = None,
+    fixed_displacement: Any = None,
+    speed: Speed | None = None,
+    start: Any = None,
 ) -> LoadCase:
     """The arguments of `solve_load` as arrays of the dtype of the design.
 
     Args:
         bearing: The design.
-        options: Settings, checked.
         load, prescribed, fixed_displacement, start: As in `solve_load`, not checked.
+        options: Settings, checked.
         speed: As in `solve_load`.
 
     Raises:

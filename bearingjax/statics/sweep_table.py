@@ -19,7 +19,7 @@ from ..numerics.units import unit_of
 from .cases import Cases
 from .life import Life
 from .solution import BallSolution, RollerSolution
-from .sweep import Sweep
+from .sweep import SUMMARIES, Sweep
 from .sweep_program import WARNED, not_run
 from .warning import given
 
@@ -55,10 +55,14 @@ OPERATING_PRELOAD = "operating_preload"
 _FIELD_OF = {
     "peak_pressure": "roller_pressure",
     "largest_load": "roller_load",
+    "n_loaded": "",
+    "iterations": "",
+    "residual": "",
     OPERATING_CLEARANCE: "radial_clearance",
     OPERATING_PRELOAD: "roller_load",
 }
-"""Fields that have the units of outputs of other names."""
+"""Fields that have the units of outputs of other names, among them all of `SUMMARIES`;
+empty: a pure number."""
 
 
 def columns(
@@ -411,7 +415,8 @@ def _label(name, index, shape):
     """Name and unit of one entry of an output."""
     axes = _LAST_AXES.get(name, ())
     first = len(shape) - len(axes)
-    field, entry = _FIELD_OF.get(name, name), index
+    field = _FIELD_OF[name] if name in SUMMARIES else _FIELD_OF.get(name, name)
+    entry = index
     if shape[max(first, 0) :] != tuple(map(len, axes)):
         # A user's own array under the name of a field: its axes are unknown.
         axes, first, entry = (), len(shape), ()

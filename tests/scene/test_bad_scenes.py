@@ -9,7 +9,7 @@ import pytest
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
 from bearingjax.scene import STUDIES, shipped_scenes
-from bearingjax.scene.bearing_table import BALLS, ROLLERS
+from bearingjax.scene.design_keys import BALLS, ROLLERS
 
 TAPER = """
 [bearing]

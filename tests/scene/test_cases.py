@@ -205,6 +205,10 @@ WRONG = {
         "one and the same unit",
     ),
     "design value": ('[cases.grid]\nbearing.roller_length = ["-1 mm"]', "above 0 m"),
+    "uneven outputs that can be kept": (
+        '[cases]\noutputs = ["azimuth"]\n[cases.grid]\nbearing.n_rollers = [6, 7]',
+        "then: displacement, force, stiffness, pitch_radius, equivalent_load,",
+    ),
     "uneven outputs": (
         '[cases]\noutputs = ["roller_load"]\n[cases.grid]\nbearing.n_rollers = [6, 7]',
         "`cases.outputs`: 'roller_load' is of each rolling element or row, and their",

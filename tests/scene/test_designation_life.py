@@ -14,7 +14,7 @@ from bearingjax.scene import (
     read_rotor,
     read_skid,
 )
-from bearingjax.scene.life_table import (
+from bearingjax.scene.life_ratings import (
     life_conditions,
     not_published,
     rating_origins,

@@ -9,6 +9,7 @@ from systems import ELEMENT
 
 import bearingjax as bj
 from bearingjax.shafts import (
+    BearingOil,
     Drive,
     HeatNetwork,
     Seat,
@@ -20,7 +21,8 @@ from bearingjax.shafts import (
     solve_heat,
     warm_up,
 )
-from bearingjax.shafts.heat import rises_over_time, runaway_speed, steady_rises
+from bearingjax.shafts.heat import runaway_speed
+from bearingjax.shafts.heat_balance import rises_over_time, steady_rises
 
 CONDUCTANCE = jnp.diag(jnp.array([2.0, 1.0]))
 CAPACITY = jnp.array([1000.0, 500.0])
@@ -101,7 +103,7 @@ def test_integration_is_of_second_order():
     assert errors[1] < 0.3 * errors[0] < 1e-2
 
 
-OIL = bj.lubrication.iso_vg(68.0)
+OIL = BearingOil(bj.lubrication.iso_vg(68.0))
 SEAT = bj.Mounting(0.04, 0.09, 0.13, 10e-6, 0.0)
 
 
@@ -130,7 +132,7 @@ def test_balance_of_heat():
     rises = np.asarray([found.inner_ring, found.outer_ring]) - 293.15
     house = float(found.housing) - 293.15
     for k, solution in enumerate(solutions):
-        oil = OIL.kinematic_viscosity(293.15 + rises[:, k].mean())
+        oil = OIL.lubricant.kinematic_viscosity(293.15 + rises[:, k].mean())
         made = float(bj.friction_torque(solution, oil).power)
         np.testing.assert_allclose(found.friction[k], made, rtol=1e-8)
         inner = 1.2 * rises[0, k] + 0.2 * (rises[0, k] - rises[1, k])
