@@ -55,6 +55,7 @@ def at():
 
 @pytest.mark.parametrize("name", PROFILES)
 @pytest.mark.parametrize("tilt", [0.0, 3e-4])
+@pytest.mark.slow
 def test_coupled_slices_match_halfspace(name, tilt, at):
     profile = PROFILES[name]
     roller = RollerContact(

@@ -54,6 +54,7 @@ def averaged(errors, sizes):
     ],
     ids=["sphere", "ellipse"],
 )
+@pytest.mark.slow
 def test_point_contact_is_of_second_order(curvatures, load, last):
     """Peak pressure and approach against Hertz; 10 to 80 cells across the contact."""
     along_x, along_y = curvatures
@@ -160,6 +161,7 @@ def single(tree):
     ids=["straight", "logarithmic", "crown"],
 )
 @pytest.mark.parametrize("moment", [None, 1.0])
+@pytest.mark.slow
 def test_float32(profile, moment):
     """35 x 64 graded cells; errors against float64, over the peak where pressures.
 

@@ -171,6 +171,7 @@ def test_every_high_spot_bears(solved):
     np.testing.assert_array_equal(value[APART], 0.0)
 
 
+@pytest.mark.slow
 def test_derivatives_by_the_table_and_the_length(solved):
     """Every zone edge moves; reverse is forward."""
     case, call, (value, forward, reverse) = solved

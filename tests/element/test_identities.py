@@ -151,6 +151,7 @@ def test_evaluate_matches_autodiff_at_loaded_point(case):
     assert np.abs(total).max() < ROUNDING * np.abs(force).max()
 
 
+@pytest.mark.slow
 def test_differences_are_v_shaped(case):
     """The error of central differences falls with the step, then round-off lifts it."""
     element, speed = case
@@ -205,6 +206,7 @@ def test_common_rigid_motion_and_turn_by_one_pitch(case):
     assert np.allclose(t.force, e.force, rtol=0, atol=SOLVER * size)
 
 
+@pytest.mark.slow
 def test_finite_at_rest_and_at_a_thousandfold_load(case):
     element, speed = case
     for q in (np.zeros(12), 1e3 * motion()):

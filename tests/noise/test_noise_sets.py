@@ -83,6 +83,7 @@ def test_noise_set_stiffness_matches_element(pair):
     np.testing.assert_allclose(ring, element, rtol=0, atol=SOLVER * element.max())
 
 
+@pytest.mark.slow
 def test_noise_set_deviation_forces_match_element(pair):
     one, found = pair
     solution = bj.solve_load(one.element, LOAD, fixed_ring="inner", free=one.freedoms)

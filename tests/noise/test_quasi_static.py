@@ -158,6 +158,7 @@ def test_a_small_wave_pushes_as_the_slope_of_the_ring_force(uneven):
         np.testing.assert_allclose(moved[k, :3], expected, rtol=0, atol=scale)
 
 
+@pytest.mark.slow
 def test_a_ball_between_two_springs(uneven):
     """Contact stiffness 3/2 K d^(1/2) of both contacts, in series along the normal."""
     model, (time, force), _ = uneven

@@ -229,6 +229,7 @@ def test_contact_mapped_moments(solved):
     assert np.max(error[STIFFNESS]) < 1e-6
 
 
+@pytest.mark.slow
 def test_derivatives_in_a_and_b(solved):
     """d/da and d/db of energy and load are moments of load and stiffness."""
     case, found, want, _, (by_a, by_b, _) = solved

@@ -210,6 +210,7 @@ def test_adam_backtracks_from_failed_designs(straight, one_case, wanted):
     assert found.after.objective == found.history.objective.min()
 
 
+@pytest.mark.slow
 def test_bounds_hold_where_the_optimum_lies_beyond(straight, one_case, wanted):
     found = search(straight, one_case, wanted, variables=[play(0.0, 12e-6)])
     assert found.converged and found.values[0] == 12e-6

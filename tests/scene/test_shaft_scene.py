@@ -160,6 +160,7 @@ def test_lives_are_those_of_the_bearings_alone(solved):
         )
 
 
+@pytest.mark.slow
 def test_system_life(solved):
     """By the survival of all, of balls alone: (Σ L^-e)^(-1/e)."""
     e = 10.0 / 9.0

@@ -459,6 +459,7 @@ def test_rollers_in_time(run, tmp_path):
     assert plot.load_over_time(found).get_title() == "Load on roller 0"
 
 
+@pytest.mark.slow
 def test_start_at_rest_under_turning_rings():
     """A table of speeds, and of what scenes say beside it."""
     turning = "speed={time=['0 s', '1 ms'], inner=['2000 rpm', '2000 rpm']}"

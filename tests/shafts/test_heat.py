@@ -146,6 +146,7 @@ def test_balance_of_heat():
     assert found.system.seats[0].axial_offset == spindle().seats[0].axial_offset
 
 
+@pytest.mark.slow
 def test_warming_up_ends_in_the_equilibrium():
     system, paths = spindle(), network()
     steady_state = solve_heat(system, paths)

@@ -219,6 +219,7 @@ def test_slip_falls_with_load_and_rises_with_speed(found):
 
 
 @pytest.mark.parametrize("name", [60.0, 1000.0, "both"])
+@pytest.mark.slow
 def test_steady_roller_loads_match_orbit_speed(found, name):
     """Rollers are thrown outwards as they orbit, however far they slip, and those that
     stand in the bearing carry its load."""

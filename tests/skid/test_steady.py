@@ -122,6 +122,7 @@ def test_the_row_is_solved_in_one_place_of_the_program(monkeypatch):
     assert len(traced) == 1
 
 
+@pytest.mark.slow
 def test_loads_and_angles_of_the_paper_s_bearing(axial):
     """AF001-7 and AF001-8; AF001-6: the axial load is carried."""
     names = list(ENDS)
@@ -169,6 +170,7 @@ def finely(values, count=720):
     return np.fft.irfft(spectrum, count) * count / values.size
 
 
+@pytest.mark.slow
 def test_combined_loads(combined):
     """AF001-15 to -17, AF001-21 and AF001-22: two loaded zones, one above the other;
     next to no slip there, more between, most where the load is least."""
@@ -301,6 +303,7 @@ def test_stiff_oil_does_not_hide_slip(stiff):
 
 
 @pytest.mark.parametrize("celsius", [-40.0, -20.0])
+@pytest.mark.slow
 def test_steady_converges_for_glassy_oil(celsius):
     """Whose round-off is as large as the load that is not balanced at first."""
     model = at(celsius)
@@ -311,6 +314,7 @@ def test_steady_converges_for_glassy_oil(celsius):
     assert abs(float(end.imbalance)) < 1e-6
 
 
+@pytest.mark.slow
 def test_skid_warnings_shear_stress_above_pressure(stiff):
     """At 0 °C and 0.91 GPa."""
     end, model = stiff(600.0, SPEED, celsius=0.0), at(0.0)

@@ -103,6 +103,7 @@ def test_power_balance(given):
         np.testing.assert_allclose(work.drag[-1], mean, rtol=1e-2)
 
 
+@pytest.mark.slow
 def test_mean_friction_torque_over_whole_orbits():
     """Of a torque that swings twice an orbit of the cage, over two of four orbits."""
     found = run()
@@ -160,6 +161,7 @@ def test_simulate_reaches_steady_state():
         np.testing.assert_allclose(got, want, rtol=1e-6, atol=1e-6 * np.max(want))
 
 
+@pytest.mark.slow
 def test_simulate_follows_periodic_motion_under_radial_load():
     """As long as the balls do not touch the cage."""
     orbit = steady(BOTH)
@@ -224,6 +226,7 @@ def test_simulate_varying_load_matches_static_solutions(varying):
         np.testing.assert_allclose(got, want.displacement, atol=2e-5 * near)
 
 
+@pytest.mark.slow
 def test_simulate_power_balance_under_varying_load(varying):
     _, found = varying
     assert int(found.result) == 0

@@ -340,6 +340,7 @@ def test_lives_of_every_type(solved, name):
     assert not any("radial clearance" in text for text in bj.warnings(solution))
 
 
+@pytest.mark.slow
 def test_life_of_evenly_loaded_thrust_rollers(solved):
     """(C/(0.73 F))^4: by the definition of C with λν = 0.73, edges apart."""
     life = bj.rating_life(solved["cylindrical thrust"], edge_stress=False)

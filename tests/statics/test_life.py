@@ -273,6 +273,7 @@ def test_ball_lives_are_those_of_plain_numpy(balls):
         )
 
 
+@pytest.mark.slow
 def test_roller_lives_are_those_of_plain_numpy(rollers):
     x = jnp.asarray([20e-6, 15e3, 0.0, 0.7e-3, 0.0004])
     _, found = rollers(x)

@@ -77,6 +77,7 @@ def test_loads_and_displacements_mixed(tapered):
     assert np.allclose(turned, 0.5 * 0.3 * (1 - 8.2 * np.cos(np.deg2rad(11)) / 52))
 
 
+@pytest.mark.slow
 def test_solve_load_with_all_freedoms_prescribed(crowned):
     at = {"ux": 1e-5, "uy": -2e-5, "uz": 0.0, "gx": 0.0, "gy": 1e-4}
     s = bj.solve_load(crowned, None, prescribed=at, free=[])
@@ -119,6 +120,7 @@ def test_edge_loaded_rollers_are_warned_of(crowned):
     assert text and all("edge-loaded" in line for line in text)
 
 
+@pytest.mark.slow
 def test_a_freedom_without_stiffness_is_warned_of(crowned):
     load = [0.0, -500.0, 0, 0, 0, 0]
     s = bj.solve_load(crowned, load, free=["ux", "uy", "uz"])

@@ -54,6 +54,7 @@ def test_coupled_slices_agree(tapered, raceway):
     assert np.allclose(got.slices.line_load[middle], wanted[middle], rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_the_contact_has_the_bearings_geometry(tapered):
     element, solution = tapered
     constants = element.model().rows[0].element.constants
@@ -111,6 +112,7 @@ def test_a_one_sided_profile():
     assert float(low) == 0.0
 
 
+@pytest.mark.slow
 def test_independent_slices_miss_the_end():
     """A straight roller, edge loaded by a moment: the peak is beyond the slices'."""
     bearing = bj.CylindricalRollerBearing(9, 0.0725, 0.010, 0.015)

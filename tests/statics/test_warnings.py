@@ -376,6 +376,7 @@ def test_peak_pressure_is_independent_of_positions(name):
     assert np.allclose(along(row, 1).edge_load, ends, rtol=ROUNDING, atol=0.0)
 
 
+@pytest.mark.slow
 def test_balls_beyond_the_bottom_of_their_groove():
     """Pushed past it against its contact angle, the ball runs on the land; before,
     its contact ellipse reaches over the bottom."""
