@@ -104,7 +104,8 @@ def no_solve(monkeypatch):
     def refuse(*_, **__):
         raise AssertionError("solved a scene")
 
-    for name in ("solve_scene", *(study.run.__name__ for study in STUDIES.values())):
+    runs = [study.run.__name__ for study in STUDIES.values()]
+    for name in ("solve_scene", "run_compare", *runs):
         monkeypatch.setattr(bj.scene, name, refuse)
 
 
