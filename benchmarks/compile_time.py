@@ -82,6 +82,7 @@ clocks = lambda: (time.perf_counter(), time.process_time())
 marks = [clocks()]
 mark = lambda: marks.append(clocks())
 import jax
+jax.config.update("jax_enable_x64", True)
 mark()
 import bearingjax as bj
 mark()
@@ -117,6 +118,7 @@ COMMANDS = (
 SOLVE = """
 import sys
 import jax
+jax.config.update("jax_enable_x64", True)
 import bearingjax as bj
 
 if sys.argv[1] == "kept":
@@ -138,6 +140,7 @@ else:
 SIZES = """
 import functools, re, sys
 import equinox as eqx, jax
+jax.config.update("jax_enable_x64", True)
 import bearingjax as bj
 
 def inner(equation):
@@ -251,7 +254,8 @@ def bearings():
     import bearingjax as bj
 
     scenes = bj.scene.shipped_scenes()
-    return [name for name, path in scenes.items() if "[bearing]" in path.read_text()]
+    texts = {name: path.read_text() for name, path in scenes.items()}
+    return [name for name, text in texts.items() if "\n[bearing]\n" in text]
 
 
 def row(what, times, scene="", tree=None, size=(None, None)):
