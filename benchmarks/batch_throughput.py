@@ -14,46 +14,46 @@ Each part runs in a process of its own: the first pinned to one core, so that no
 of XLA helps. Errors are relative to the largest entry; those of the batches against the
 C loop, those of the peers against ours.
 
-README: one core: 10 to 13 µs a case, slices 8 to 9; 3000 times jax.scipy's BFGS, 6.5
-times NumPy; 1e6 cases 8.1 s, 1.8 GiB | C's speed; 1.8 times on two cores; 50 times
-BFGS; 2 GiB | **missed**: 0.25 to 0.41 of C, 1.67 times; rest yes
+README: one core: 10 to 13 µs a case, slices 8 to 10; 3100 times jax.scipy's BFGS, 6.6
+times NumPy; 1e6 cases 7.8 s, 1.8 GiB | C's speed; 1.8 times on two cores; 50 times
+BFGS; 2 GiB | **missed**: 0.25 to 0.43 of C, 1.73 times; rest yes
 
 Last run:
 
 chunk         16      32      64     128     256
-µs/case     13.6    11.1    10.4    10.2     9.9
+µs/case     13.7    10.9    10.1     9.9     9.8
 
 in chunks of 256, one core
-rule          cases  ours, µs   C, µs   of C    error
-mapped         1000      10.7     4.3    41 %    7e-16
-mapped        10000      10.6     4.3    40 %    7e-16
-mapped       100000      10.4     4.3    41 %    7e-16
-mapped      1000000      12.6     4.3    34 %    7e-16
-midpoint       1000       7.8     2.3    30 %    1e-15
-midpoint      10000       8.0     2.3    29 %    1e-15
-midpoint     100000       7.8     2.3    30 %    1e-15
-midpoint    1000000       9.2     2.3    25 %    1e-15
+rule        cases  ours, µs  C, µs  of C  error
+mapped       1000      10.8    4.3   40%  7e-16
+mapped      10000      10.4    4.3   41%  7e-16
+mapped     100000      10.2    4.2   42%  7e-16
+mapped    1000000      12.7    4.2   33%  7e-16
+midpoint     1000       7.9    2.4   30%  1e-15
+midpoint    10000       7.9    2.3   30%  1e-15
+midpoint   100000       7.7    2.3   30%  1e-15
+midpoint  1000000       9.7    2.5   25%  1e-15
 
-raceways unlike, midpoint     µs/case   ratio  error: force  stiffness
-ours                             18.6     1.0         0e+00      0e+00
-C                                 7.9     0.4         4e-16      1e-14
-NumPy, vectorised               121.2     6.5         1e-15      9e-14
-jax.scipy BFGS, vmapped       56012.1  3007.9         5e-07      4e-04
-SciPy root                     3048.1   163.7         6e-16      1e-15
-optimistix BFGS, vmapped       2927.4   157.2         5e-11      6e-10
+raceways unlike, midpoint  µs/case   ratio  error: force  stiffness
+ours                          18.3     1.0         0e+00      0e+00
+C                              7.9     0.4         4e-16      1e-14
+NumPy, vectorised            120.8     6.6         1e-15      9e-14
+jax.scipy BFGS, vmapped    55876.5  3058.1         5e-07      4e-04
+SciPy root                  2940.5   160.9         6e-16      1e-15
+optimistix BFGS, vmapped    2909.2   159.2         5e-11      6e-10
 
-µs/case       cases   one device    2 devices            C C, 2 threads
-mapped        50000          9.6          5.4          4.2          2.1
-midpoint      50000          7.4          4.4          2.3          1.2
+µs/case   cases  one device  2 devices    C  C, 2 threads
+mapped    50000        10.0        5.3  4.3           2.2
+midpoint  50000         7.2        4.2  2.3           1.2
 
-1000000 cases kept: 8.1 s, peak memory 1.78 GiB
+1000000 cases kept: 7.8 s, peak memory 1.81 GiB
 
-speed against the C loop, one core, worst batch: 0.253 (at least 1): MISSED
-times faster than jax.scipy BFGS: 3.01e+03 (at least 50): met
-speed-up on two cores, worse rule: 1.67 (at least 1.8): MISSED
-peak memory, GiB: 1.78 (at most 2): met
+speed against the C loop, one core, worst batch: 0.252 (at least 1): MISSED
+times faster than jax.scipy BFGS: 3.06e+03 (at least 50): met
+speed-up on two cores, worse rule: 1.73 (at least 1.8): MISSED
+peak memory, GiB: 1.81 (at most 2): met
 
-AMD EPYC, 2 cores, load average 1.2; devices: 2 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.8; devices: 1 cpu; jax 0.10.1
 
 The C loop leaves open rollers out.
 """
