@@ -235,7 +235,10 @@ def through_jacobian(given, *inputs, function):
     Args:
         given: Pytree; its tangents take the usual way.
         *inputs: Arrays.
-        function: Its result is an array.
+        function: Function of them whose result is an array. Static.
+
+    Returns:
+        The result of `function`, with its derivatives to any order.
     """
     return function(given, *inputs)
 
@@ -251,7 +254,11 @@ def _rule_through_jacobian(primals, tangents, *, function):
         return value, value
 
     some = [inputs[k] for k in moved]
-    slopes, value = jax.jacfwd(of, tuple(range(len(some))), has_aux=True)(*some)
+    if moved:
+        every = tuple(range(len(some)))
+        slopes, value = jax.jacfwd(of, every, has_aux=True)(*some)
+    else:
+        slopes, value = (), function(given, *inputs)
     change = jnp.zeros_like(value)
     for slope, move in zip(slopes, moved.values(), strict=True):
         change = change + jnp.tensordot(slope, move, jnp.ndim(move))

@@ -84,9 +84,8 @@ class VibratingRotor(AbstractVibratingSystem):
         """Return the least-squares freedoms of given motions.
 
         Args:
-            motion: Motion of all nodes and housings, such as `StaticEquilibrium.motion`
-            (motion,)
-                [m, rad].
+            motion: Motion of all nodes and housings, such as
+                `StaticEquilibrium.motion` (motion,) [m, rad].
         """
         return pseudoinverse(self.motions) @ motion
 
