@@ -1,4 +1,4 @@
-"""What the benchmarks share: command line, tables, pictures, clocks, verdicts.
+"""Command line, tables, pictures, clocks and verdicts of the benchmarks.
 
 Importing it turns float64 on, and lets scripts import what the tests share.
 """
@@ -98,7 +98,7 @@ def _run(main, notes, show, plot, wrong):
 
 
 def no_rows_with(*keys: str) -> Callable[[Iterable[dict]], None]:
-    """What shows rows as they come, then sums of counts that are to be none.
+    """Return a function that prints rows as they come, then sums of counts to be zero.
 
     Args:
         keys: Of the counts in a row, or of lists that are to be empty.

@@ -536,7 +536,7 @@ def show(out):
 
 
 def owed(out):
-    """What the library must give and does not; claims about noise are the paper's."""
+    """List results that the library misses; claims about noise are the paper's."""
     rows = [row for row in out["table"] if row[0] in "1 2 3 4 6 7 8 9".split()]
     return [row[0] for row in rows if row[3].startswith("NOT")]
 

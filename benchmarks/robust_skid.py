@@ -92,7 +92,7 @@ def given(rng, kind, pitch):
 
 
 def judged(found, rolling):
-    """What is wrong with a run, if anything; `rolling`: an energy to compare with."""
+    """Name the faults of a run; `rolling` is an energy to compare with."""
     code = Result(int(found.result))
     numbers = [found.cage_speed, found.slip, found.film, found.heat, found.power.drive]
     finite = np.all(
