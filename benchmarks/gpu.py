@@ -9,31 +9,33 @@ that they need differ, `bearingjax.numerics.batched_loop.WIDER` times as many at
 as the processor. Times are those of hot calls, medians of three, results left on the
 device. Errors are relative to the largest result of the processor.
 
-README: H200: force and stiffness 0.30 µs a case, load solves 3.8, with gradient 5.4;
-one call on its host's processor 23, 454, 567 |  |
+README: H100: force and stiffness 0.28 µs a case, load solves 4.2, with gradient 4.2;
+one call on its host's processor 24, 513, 589 |  |
 
 `--seconds` leaves out the larger batches once so much time is spent.
 
-Last run, `--device gpu --seconds 150`:
+Last runs, `--device gpu --seconds 150`, the gradients in a run of their own:
 
                            device    cases   µs/case  compile, s  failed   error
-force and stiffness           cpu     1000     24.95         3.3       0   0e+00
-force and stiffness           cpu    10000     23.28         2.6       0   0e+00
-force and stiffness           gpu     1000      1.41         5.1       0   3e-16
-force and stiffness           gpu    10000      0.38         3.4       0   3e-16
-force and stiffness           gpu   100000      0.32         3.7       0   3e-16
-force and stiffness           gpu  1000000      0.30         4.2       0   3e-16
-load solve                    cpu     1000    489.91         6.7       0   0e+00
-load solve                    cpu    10000    454.29         5.5       0   0e+00
-load solve                    gpu     1000     11.20         4.5       0   3e-16
-load solve                    gpu    10000      5.27         5.7       0   3e-16
-load solve                    gpu   100000      3.78         8.5       0   3e-16
-gradient of a load solve      cpu     1000    584.24        18.2       0   0e+00
-gradient of a load solve      cpu    10000    567.00        12.0       0   0e+00
-gradient of a load solve      gpu     1000     11.58         9.7       0   2e-15
-gradient of a load solve      gpu    10000      5.38         9.2       0   2e-15
+force and stiffness           cpu     1000     26.36         3.2       0   0e+00
+force and stiffness           cpu    10000     23.63         3.3       0   0e+00
+force and stiffness           gpu     1000      0.99         5.2       0   3e-16
+force and stiffness           gpu    10000      0.36         3.6       0   3e-16
+force and stiffness           gpu   100000      0.30         4.1       0   3e-16
+force and stiffness           gpu  1000000      0.28         4.7       0   3e-16
+load solve                    cpu     1000    485.99         6.8       0   0e+00
+load solve                    cpu    10000    513.34         5.2       0   0e+00
+load solve                    gpu     1000     11.73         5.7       0   3e-16
+load solve                    gpu    10000      5.50         7.0       0   3e-16
+load solve                    gpu   100000      4.17         9.8       0   3e-16
+gradient of a load solve      cpu     1000    614.08        21.2       0   0e+00
+gradient of a load solve      cpu    10000    589.21        14.4       0   0e+00
+gradient of a load solve      gpu     1000     12.13        11.6       0   2e-15
+gradient of a load solve      gpu    10000      5.76        11.9       0   2e-15
+gradient of a load solve      gpu   100000      4.20        14.9       0   2e-15
 
-Intel Xeon, 16 cores, load average 3.6; devices: 1 NVIDIA H200; jax 0.11.2
+Intel Xeon, 16 cores, load average 2.4; devices: 1 NVIDIA H100; jax 0.11.2
+An H200 took 0.30, 3.8 and 5.4 (10 000 cases) µs a case.
 """
 
 import time
