@@ -26,6 +26,8 @@ Draw = Callable[[], Any]
 OUTPUTS = "json", "table", "wav", "plot", "drawing", "report"
 """Options that name a file, in the order in which the files are written."""
 
+_BAR = 20
+"""Width of a progress bar."""
 _PICTURE = (".png", ".pdf", ".svg"), "a picture ends in .png, .pdf or .svg"
 _ENDINGS = {
     "plot": _PICTURE,
@@ -322,10 +324,15 @@ class Stage:
     def __init__(self):
         self._used = False
 
-    def __call__(self, name: str) -> None:
-        """Show a stage in place of the previous one."""
+    def __call__(self, name: str, share: float | None = None) -> None:
+        """Show a stage in place of the previous one, with a bar if a share is done."""
         self._used = True
-        self._show(f"{name}…")
+        if share is None:
+            self._show(f"{name}…")
+        else:
+            full = round(_BAR * share)
+            bar = "█" * full + "·" * (_BAR - full)
+            self._show(f"{name} {bar} {100.0 * share:.0f} %")
 
     def end(self) -> None:
         """Clear the line."""

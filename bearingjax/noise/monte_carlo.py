@@ -26,6 +26,8 @@ from .spectrum import AbstractWindow, Hann, spectrum
 from .vibration import bandwidth, needed_steps, vibration
 
 _DIRECTIONS = 3
+OnRecords = Callable[[Array, Array], Any]
+"""Callback with accelerations (bearing, time, 3) [m/s²] and result codes (bearing,)."""
 Progress = Callable[[int, int], Any]
 """Callback with the number of bearings done and the total."""
 
@@ -105,6 +107,7 @@ def monte_carlo(
     bands: Bands | None = None,
     window: AbstractWindow | None = None,
     reference: Any = REFERENCE_ACCELERATION,
+    on_records: OnRecords | None = None,
     progress: Progress | None = None,
 ) -> MonteCarlo:
     """Return the noise of many random bearings.
@@ -122,6 +125,7 @@ def monte_carlo(
         window: Window of the spectra; `None`: `Hann()`, since a record does not repeat
             itself: the cage turns by no whole number.
         reference: Acceleration of 0 dB [m/s²].
+        on_records: Called with the records of each batch, which are not kept.
         progress: Called after each batch.
 
     Raises:
@@ -149,6 +153,8 @@ def monte_carlo(
 
     found = []
     for part, acceleration, result in records.batches(keys, batch, progress):
+        if on_records is not None:
+            on_records(acceleration[:part], result[:part])
         failed = result != int(Result.CONVERGED)
         heard = jnp.where(failed[:, None, None], 0.0, acceleration)
         one = *levels(jnp.moveaxis(heard, 0, 1), failed), result
@@ -231,13 +237,25 @@ class Records:
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
         for part, at in self.parts(len(keys), batch):
-            yield part, *_records(*self.given, factors, keys[at], self.counts)
+            yield part, *_records(*self.given, factors, *raw(keys[at]), self.counts)
             if progress is not None:
                 progress(int(at[-1]) + 1, len(keys))
 
 
-@program
-def _records(model, tolerances, factors, keys, counts):
+def raw(keys: Array) -> tuple[Array, str | None]:
+    """Return plain numbers of typed keys, which kept programs take, and their kind."""
+    if not jnp.issubdtype(keys.dtype, jax.dtypes.prng_key):
+        return keys, None
+    return jax.random.key_data(keys), str(jax.random.key_impl(keys))
+
+
+def typed(numbers: Array, kind: str | None) -> Array:
+    """Return the keys from `raw`."""
+    return numbers if kind is None else jax.random.wrap_key_data(numbers, impl=kind)
+
+
+@program(quick=True, level=1)
+def _records(model, tolerances, factors, numbers, kind, counts):
     """Return accelerations (bearing, time, 3) and result codes of a batch."""
     turns, settle, samples, steps = counts
     tolerances = tolerances.scaled(factors)
@@ -253,4 +271,4 @@ def _records(model, tolerances, factors, keys, counts):
         )
         return found.acceleration[:, :_DIRECTIONS], found.result
 
-    return jax.vmap(one)(keys)
+    return jax.vmap(one)(typed(numbers, kind))

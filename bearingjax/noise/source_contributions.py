@@ -13,7 +13,7 @@ of its sources: shares sum to more than the mean square
     (`SourceContributions.together`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import equinox as eqx
@@ -29,7 +29,7 @@ from ..numerics.types import Scalar
 from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .monte_carlo import Progress, Records, sampled_model
+from .monte_carlo import Progress, Records, raw, sampled_model, typed
 from .scatter import Tolerances
 from .spectrum import Hann, spectrum
 from .vibration import bandwidth, vibration
@@ -133,6 +133,7 @@ def source_contributions(
     samples: int = 2048,
     steps: int | None = None,
     batch: int = 16,
+    unchanged: Iterable[tuple[Array, Array]] | None = None,
     progress: Progress | None = None,
 ) -> SourceContributions:
     """Return the share of every source of scatter in the mean square acceleration.
@@ -142,7 +143,7 @@ def source_contributions(
 
     Args:
         model, tolerances, n, key, turns, settle, samples, steps, batch: As in
-            `monte_carlo`.
+            `monte_carlo`; the key may also be the `MonteCarlo.keys` of n bearings (n,).
         direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
             `None`: all directions together.
         bands: Bands of which the parts are wanted too; `None`: none.
@@ -150,11 +151,13 @@ def source_contributions(
             gives the exact effect of halving.
         gradient: Whether shares by derivatives are wanted: about the time of five more
             runs.
+        unchanged: Records of these bearings, and maybe more, without any change, as
+            `monte_carlo` hands them to `on_records`; `None`: they are made anew.
         progress: Called after each batch.
 
     Raises:
         TypeError, ValueError: As `monte_carlo`; without any source; for another
-            direction or factor.
+            direction or factor; for another number of keys, or fewer unchanged records.
         FloatingPointError: If no bearing has a result in all runs.
     """
     records = Records(
@@ -174,9 +177,14 @@ def source_contributions(
         factor,
         "",
     )
-    keys = jax.random.split(key, n)
-    runs = [{}, *({name: factor} for name in sources)]
-    whole = len(runs) + gradient
+    keys = key if _is_many(key) else jax.random.split(key, n)
+    if len(keys) != n:
+        raise ValueError(
+            f"source_contributions: `key` has {len(keys)} keys; it must have {n}."
+        )
+    less = [{name: factor} for name in sources]
+    changes = less if unchanged is not None else [{}, *less]
+    whole = len(changes) + gradient
     done = 0
     shaft = float(model.shaft_speed) / (2.0 * np.pi)
 
@@ -194,22 +202,31 @@ def source_contributions(
         *powers, _ = band_power(lines, bands)
         return np.asarray(jnp.sum(jnp.stack(powers), axis=-1).T.swapaxes(1, 2))
 
-    squares, in_bands, fine = [], [], np.ones(n, bool)
-    for change in runs:
+    def summarised(batches):
+        """Return mean squares, those of bands, and whether each bearing is solved."""
         found = [
-            (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r), part)
-            for part, a, r in records.batches(keys, batch, report_progress, change)
+            (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r))
+            for a, r in batches
         ]
-        parts = ([a[:part] for a in one] for *one, part in found)
-        square, of_each, result = (np.concatenate(a) for a in zip(*parts, strict=True))
-        fine &= result == int(Result.CONVERGED)
-        squares.append(square)
-        in_bands.append(of_each)
+        square, each, result = (np.concatenate(a)[:n] for a in zip(*found, strict=True))
+        return square, each, result == int(Result.CONVERGED)
+
+    runs = [] if unchanged is None else [summarised(unchanged)]
+    if runs and len(runs[0][0]) < n:
+        raise ValueError(
+            f"source_contributions: `unchanged` has {len(runs[0][0])} records; it needs"
+            f" {n}."
+        )
+    for change in changes:
+        made = records.batches(keys, batch, report_progress, change)
+        runs.append(summarised((a[:part], r[:part]) for part, a, r in made))
         done += n
+    squares, in_bands, solved = (np.array(a) for a in zip(*runs, strict=True))
+    fine = np.all(solved, axis=0)
     slopes = []
     if gradient:
         for part, at in records.parts(n, batch):
-            slope = _slopes(*records.given, keys[at], records.counts, along)
+            slope = _slopes(*records.given, *raw(keys[at]), records.counts, along)
             slopes.append([slope[name][:part] for name in sources])
             report_progress(min(len(slopes) * batch, n), n)
     if not fine.any():
@@ -217,7 +234,7 @@ def source_contributions(
             f"source_contributions: of {n} bearings none has a result in all runs;"
             " see the codes of `monte_carlo`."
         )
-    each = np.array(squares)[:, fine]
+    each = squares[:, fine]
     mean = jnp.asarray(np.mean(each, axis=1))
     by_gradient = None
     if gradient:
@@ -230,7 +247,7 @@ def source_contributions(
         error = np.std(less, axis=1, ddof=1) / np.sqrt(count)
     by_band = None
     if bands is not None:
-        means = np.mean(np.array(in_bands)[:, fine], axis=1)
+        means = np.mean(in_bands[:, fine], axis=1)
         # All runs have the same lines; what holds of the whole holds of its parts.
         holds = _holds(bands, means[0], turns / shaft, bandwidth(samples, shaft))
         whole_band = np.where(holds & (means[0, 0] > 0.0), means[0, 0], np.nan)
@@ -274,13 +291,17 @@ def _directions(direction: Any) -> np.ndarray:
     return (vector / np.linalg.norm(vector))[:, None]
 
 
+def _is_many(key: Array) -> bool:
+    return jnp.issubdtype(key.dtype, jax.dtypes.prng_key) and key.ndim == 1
+
+
 def _mean_square(acceleration, along):
     """Return the variance of records (..., time, 3) summed over directions (...)."""
     return jnp.sum(jnp.var(acceleration @ along, axis=-2), axis=-1)
 
 
-@program
-def _slopes(model, tolerances, keys, counts, along):
+@program(quick=True, level=1)
+def _slopes(model, tolerances, numbers, kind, counts, along):
     """Return derivatives of every bearing's mean square by the scales of sources."""
     turns, settle, samples, steps = counts
     one = jnp.ones((), model.mass.dtype)
@@ -297,4 +318,4 @@ def _slopes(model, tolerances, keys, counts, along):
         )
         return _mean_square(found.acceleration[:, :3], along)
 
-    return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, keys)
+    return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, typed(numbers, kind))

@@ -117,13 +117,14 @@ class NoiseRun:
 
 
 def run_noise(
-    task: NoiseScene, on_stage: Callable[[str], None] | None = None
+    task: NoiseScene, on_stage: Callable[..., None] | None = None
 ) -> NoiseRun:
     """Simulate and evaluate the vibration of the bearing of a scene.
 
     Args:
         task: From `read_noise`.
-        on_stage: Called with the name of each stage as it begins.
+        on_stage: Called with the name of each stage as it begins, and for random
+            bearings after each batch, with the share done [1].
 
     Returns:
         The run with its result code; a failed solve does not raise.
@@ -176,9 +177,9 @@ def run_noise(
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
-def _tell(on_stage, stage):
+def _tell(on_stage, stage, *share):
     if on_stage is not None:
-        on_stage(stage)
+        on_stage(stage, *share)
 
 
 def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
@@ -193,10 +194,23 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     }
     given = task.line, tolerances
     key = jax.random.key(task.seed)
+    batch = min(16, task.bearings)
+    # Each source is switched off once: this takes about as long as the levels.
+    fewer = max(-(-task.bearings // len(tolerances.sources)), batch)
+    whole = task.bearings + fewer * len(tolerances.sources)
+    unchanged = []
 
-    def progress(words):
-        return lambda done, whole: _tell(on_stage, f"{words}: {done} of {whole}")
+    def keep(acceleration, result):
+        if batch * len(unchanged) < fewer:
+            unchanged.append((acceleration, result))
 
+    def progress(before):
+        def tell(done, _):
+            _tell(on_stage, "random bearings", (before + done) / whole)
+
+        return tell
+
+    progress(0)(0, whole)
     levels = monte_carlo(
         *given,
         task.bearings,
@@ -205,24 +219,24 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
         bands=task.bands,
         window=task.window,
         reference=task.reference,
-        progress=progress("random bearings"),
+        batch=batch,
+        on_records=keep,
+        progress=progress(0),
     )
-    # Each source is switched off once: this takes about as long as the levels.
-    fewer = -(-task.bearings // len(tolerances.sources))
-    batch = min(16, task.bearings)
     sensor = task.line.sensor
     along = None if sensor is None else np.asarray(sensor.direction)
     with contextlib.suppress(FloatingPointError):
         made = source_contributions(
             *given,
-            max(fewer, batch),
-            key,
+            fewer,
+            levels.keys[:fewer],
             **counts,
             direction=along,
             bands=task.bands,
             gradient=False,
             batch=batch,
-            progress=progress("sources of noise"),
+            unchanged=unchanged,
+            progress=progress(task.bearings),
         )
         return RandomBearings(levels, made)
     return RandomBearings(levels, None)

@@ -171,17 +171,30 @@ def test_source_contributions_by_switching_off_and_by_gradient_agree_for_small_e
 
 @pytest.mark.slow
 def test_source_contributions_along_a_line_and_by_band():
-    bands, how = octave_bands(), HOW | {"turns": 4}
+    bands, how = octave_bands(), HOW | {"turns": 4, "gradient": False}
     found = source_contributions(
-        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, gradient=False, **how
+        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, **how
+    )
+    # From the first of five bearings whose records without any change are at hand.
+    records, shares = [], []
+    counts = {k: how[k] for k in ("turns", "settle", "samples", "steps")}
+    levels = monte_carlo(
+        MODEL, SMALL, 5, KEY, **counts, batch=3, on_records=lambda *r: records.append(r)
     )
     axial = source_contributions(
-        MODEL, SMALL, 3, KEY, direction=2, gradient=False, **how
-    )
+        MODEL, SMALL, 3, levels.keys[:3], direction=2, **how,
+        unchanged=records, progress=lambda *done: shares.append(done),
+    )  # fmt: skip
+    assert [len(r) for _, r in records] == [3, 2]
+    n_runs = len(SMALL.sources)
+    assert shares == [(3 * k, 3 * n_runs) for k in range(1, n_runs + 1)]
     np.testing.assert_allclose(found.share, axial.share, rtol=ROUNDING)
     assert axial.by_band is None
+    with pytest.raises(ValueError, match="has 2 records; it needs 3"):
+        source_contributions(MODEL, SMALL, 3, KEY, **how, unchanged=records[1:])
+    with pytest.raises(ValueError, match="has 2 keys; it must have 3"):
+        source_contributions(MODEL, SMALL, 3, levels.keys[:2], **how)
     every = [sampled_model(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
-    counts = {"turns": 4, "settle": 3, "samples": 128, "steps": 6}
     heard = np.array([vibration(m, **counts).acceleration[:, 2] for m in every])
     square = heard.var(axis=1)
     np.testing.assert_allclose(found.mean_square, square.mean(), rtol=1e-9)
