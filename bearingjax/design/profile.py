@@ -75,7 +75,8 @@ class AbstractProfile(eqx.Module):
         places = np.array([-0.999, 0.999]) if self.protruding else _PLACES
         places = np.concatenate([[-1.0], places, [1.0]])
         at = 0.5 * np.asarray(length) * places
-        found = np.asarray(drops(self, at, length, diameter))
+        with jax.ensure_compile_time_eval():  # a bearing may be changed under `jit`
+            found = np.asarray(drops(self, at, length, diameter))
         fits = (found >= -_ROUND_OFF) & (found < 0.5 * float(diameter))
         check(
             self,

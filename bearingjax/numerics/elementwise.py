@@ -5,6 +5,7 @@ axes are too short for vector instructions. Here all axes become one.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -20,19 +21,21 @@ def elementwise(function: Callable, rows: tuple[Array, ...], args: Any) -> Any:
 
     Args:
         function: (one element of each row, args) -> pytree of scalars; it sees no
-            traced number but its arguments.
+            traced number but its arguments. Its trace is kept for as long as it lives:
+            give a function of a module.
         rows: Arrays that broadcast against each other.
-        args: Arguments common to all elements, any pytree; non-arrays are static.
+        args: Arguments common to all elements, any pytree; non-arrays are static, and
+            hashable.
 
     Returns:
         Pytree of arrays of the common shape.
     """
-    arrays, static = eqx.partition(args, eqx.is_array)
+    arrays, others = eqx.partition(args, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
+    constants, around = jax.tree.flatten(others)
+    static = function, tree, around, tuple(constants)
     shape = jnp.broadcast_shapes(*(row.shape for row in rows))
-
-    def one(rows, leaves):
-        return function(*rows, eqx.combine(jax.tree.unflatten(tree, leaves), static))
+    one = partial(_of_scalars, static)
 
     @custom_vmap
     def apply(rows, leaves):
@@ -59,3 +62,11 @@ def elementwise(function: Callable, rows: tuple[Array, ...], args: Any) -> Any:
         [jnp.broadcast_to(row, shape) for row in rows],
         [jnp.broadcast_to(leaf, (*shape, *leaf.shape)) for leaf in leaves],
     )
+
+
+@partial(jax.jit, static_argnums=0)
+def _of_scalars(static, rows, leaves):
+    """The function of one element of each row, traced once."""
+    function, tree, around, constants = static
+    parts = jax.tree.unflatten(tree, leaves), jax.tree.unflatten(around, constants)
+    return function(*rows, eqx.combine(*parts))

@@ -203,20 +203,22 @@ def _scan_point(index, start, end, count):
 
 def _loaded_arcs(offset, args, start, end, a, b):
     """Loaded intervals as in `_loaded_interval`, for one arc per panel: no scan."""
-
-    def one(start, end, a, b, args):
-        return _loaded_arc(partial(offset, args), start, end, a, b)
-
-    left, right, first, last = elementwise(one, (start, end, a, b), args)
+    rows = start, end, a, b
+    left, right, first, last = elementwise(_loaded_arc, rows, (offset, args))
     return left, right, jnp.stack([first, last])
 
 
-def _loaded_arc(offset, start, end, a, b):
+def _loaded_arc(start, end, a, b, given):
     """Edges of a + b ξ - h > 0 in one panel, and whether they are inside; scalars.
+
+    Args:
+        start, end, a, b: Ends of the panel, and the line.
+        given: h, and its arguments before ξ.
 
     The top is found by Newton's method, the edges from there as the roots of the local
     parabola: both exact at once of a parabola, which a flat arc nearly is.
     """
+    offset = partial(*given)
 
     def slope_of(x):
         return jax.jvp(offset, (x,), (jnp.ones_like(x),))

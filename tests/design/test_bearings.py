@@ -1,6 +1,7 @@
 # ruff: noqa: E501 - the tables of bad calls read best as one line a call
 """What a constructor refuses, and in which words; what it lets through."""
 
+import dataclasses
 import warnings
 from math import atan, pi, sin
 
@@ -245,3 +246,11 @@ def test_traced_invalid_diameter_is_accepted():
 
 def test_a_needle_of_just_the_length():
     assert float(needle(0.0076).roller_length) == 0.0076
+
+
+@pytest.mark.parametrize("name", ["radial_internal_clearance", "roller_length"])
+def test_bearing_changes_under_jit(name):
+    """Checks of what is known take no traced numbers, whatever else is traced."""
+    bearing = profiled(CrownedEnds(0.009, 1.0))
+    change = jax.jit(lambda x: dataclasses.replace(bearing, **{name: x}))
+    assert float(getattr(change(0.0136), name)) == 0.0136
