@@ -58,6 +58,8 @@ def as_array(value, dtype) -> Array:
         value: Number or array-like [any unit].
         dtype: Dtype of the result.
     """
+    if isinstance(value, jax.Array) and value.dtype == dtype and not value.weak_type:
+        return value
     if not any(isinstance(leaf, jax.Array) for leaf in jax.tree.leaves(value)):
         value = np.asarray(value)
         if value.dtype.kind in "iuf":
