@@ -41,9 +41,18 @@ def harmonic_response(
         number("harmonic_response", "speed", turning, "rad/s")
         speeds = jnp.broadcast_to(turning, frequencies.shape)
     loads.check(rotor)
+    return _response(rotor, loads, frequencies, speeds)
+
+
+@program(quick=True)
+def _response(rotor, loads, frequencies, speeds) -> UnbalanceResponse:
+    return steady(rotor, *_forces(rotor, loads), frequencies, speeds)
+
+
+def _forces(rotor, loads):
+    """Return the unbalance moments and the forces of base excitation, complex."""
     cosine, sine = loads.unbalanced(rotor)
-    moments = lax.complex(cosine, -sine)
-    return steady(rotor, moments, to_complex(loads.shaken(rotor)), frequencies, speeds)
+    return lax.complex(cosine, -sine), to_complex(loads.shaken(rotor))
 
 
 @program(quick=True)
@@ -59,8 +68,7 @@ def reduction_error(
         speed: Speed of the rotor [rad/s].
         modes: As in `craig_bampton`. Static.
     """
-    cosine, sine = loads.unbalanced(rotor)
-    moments, shaken = lax.complex(cosine, -sine), to_complex(loads.shaken(rotor))
+    moments, shaken = _forces(rotor, loads)
     force = to_complex(frequency**2) * moments + shaken
     whole = rotor.linearised(speed)
 

@@ -6,6 +6,7 @@ import warnings
 import jax
 import numpy as np
 
+from ..numerics.programs import program
 from ..numerics.result import Result
 from ..numerics.types import as_array
 from ..rotor import (
@@ -56,7 +57,7 @@ _ENDINGS = {
 _FINER = {"shooting": "`steps`", "harmonic_balance": "`harmonics` and `samples`"}
 """Settings that increase the accuracy of a method."""
 Stopped = tuple[Result, str]
-_amplitudes = jax.jit(amplitudes)
+_amplitudes = program(quick=True)(amplitudes)
 
 
 @dataclasses.dataclass(frozen=True)
