@@ -319,11 +319,15 @@ STUDIES = {
         files={f"--{n}": f"a.{n}" for n in ("json", "table", "wav", "plot")}
         | {"--table": "a.csv", "--plot": "a.png"},
         unsolved={
-            "huge load": (("--set", "operating.load.Fz=1e9 N"), "non_finite", STANDING),
+            "huge load": (
+                ("--set", "operating.load.Fz=1e9 N"),
+                "non_finite",
+                f"non_finite: {STANDING}",
+            ),
             "no load": (
                 ("--set", "operating.load.Fz=0 N"),
                 "no_load_path",
-                f"{STANDING}nothing presses the",
+                f"no_load_path: {STANDING}nothing presses the",
             ),
         },
     )
