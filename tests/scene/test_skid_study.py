@@ -528,6 +528,7 @@ def test_report(end):
     assert f"warning: balls wander {1e6 * float(end.found.wander):.4g} µm" in text
 
 
+@pytest.mark.slow
 def test_bad_input(run):
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
     assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
