@@ -63,7 +63,7 @@ STUDIES = {
 class TestRuns(Runs):
     """Of the command; that its JSON is a scene again, `test_echo` tests."""
 
-    test_run_of_its_json_is_the_same = None  # type: ignore
+    test_run_of_its_json_is_the_same = None  # pyright: ignore
 
 
 @dataclasses.dataclass(frozen=True)
