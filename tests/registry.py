@@ -1,5 +1,7 @@
 """Every registered design runs every identity: add a line, and it is tested."""
 
+from typing import Any
+
 import numpy as np
 
 import bearingjax as bj
@@ -49,8 +51,13 @@ def bearings():
     }
 
 
+def grooves(outer, inner) -> dict[str, Any]:
+    """Osculations of both raceways of a ball bearing, as keywords."""
+    return {"outer_osculation": outer, "inner_osculation": inner}
+
+
 def balls(n=6, kind=bj.AngularContactBallBearing, **change):
-    values = dict(outer_osculation=0.53, inner_osculation=0.52)
+    values = grooves(0.53, 0.52)
     if kind is bj.AngularContactBallBearing:
         values["contact_angle"] = 25 * _DEG
     return kind(n, 0.052, 0.0095, **(values | change))

@@ -542,42 +542,6 @@ def test_sweep_merges_catalogue_warnings_of_designs(tmp_path):
     assert told(grid) == ()
 
 
-@pytest.mark.parametrize(
-    "text, message",
-    [
-        (
-            'designaton = "6206"',
-            "`bearing.designaton`: unknown key (did you mean `designation`?)",
-        ),
-        (
-            'designation = "6206X"',
-            "`bearing.designation`: '6206X' has letters after 6206",
-        ),
-        (
-            "designation = 6205",
-            "`bearing.designation`: 6205 is a number; a designation is",
-        ),
-        (
-            'designation = "6205"\ntype = "thrust_ball"',
-            "`bearing.type`: is 'thrust_ball', but 6205 is 'deep_groove_ball'",
-        ),
-        (
-            'designation = "6205"\nbal_diameter = "8 mm"',
-            "`bearing.bal_diameter`: unknown key (did you mean `ball_diameter`?)",
-        ),
-        (
-            'designation = "6205"\nball_diameter = "20 mm"',
-            "`n_balls` is 9 balls; it must be low enough",
-        ),
-    ],
-)
-def test_wrong_scenes_with_a_designation(text, message, tmp_path):
-    with pytest.raises(bj.SceneError) as caught:
-        bj.read_scene(scene(tmp_path, text))
-    assert message in str(caught.value)
-    assert str(caught.value).startswith("mine.toml: ")
-
-
 def test_a_bearing_whose_capacity_is_not_known(run, tmp_path):
     out = tmp_path / "out.json"
     done = run("catalogue", "7308 C", "--json", out)

@@ -5,38 +5,22 @@ import json
 import os
 import re
 import runpy
-import struct
 import subprocess
 import sys
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-import studies
 from pages import missing_on_page
+from studies import SEARCH, WORDS
 from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax import cli
 from bearingjax.cli import jax_settings
 
-POINTS = 21
-TAPER = ("solve", "tapered", "--set", f"output.points={POINTS}")
+TAPER = ("solve", "tapered", "--set", "output.points=21")
 PULLED = (*TAPER, "--set", "operating.load.Fz=-6 kN")
-
-WORDS = studies.WORDS | studies.SEARCH
-FIELDS = WORDS | {
-    "displacement",
-    "force",
-    "stiffness",
-    "roller_load",
-    "rib_load",
-    "roller_motion",
-    "azimuth",
-    "position",
-    "line_load",
-    "contact_pressure",
-}
 
 
 @pytest.fixture
@@ -51,39 +35,6 @@ def no_solve(monkeypatch):
 
 def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
-
-
-def size_of_png(path):
-    """Width and height in pixels."""
-    head = path.read_bytes()[:24]
-    assert head[:8] == b"\x89PNG\r\n\x1a\n"
-    return struct.unpack(">II", head[16:24])
-
-
-@pytest.mark.slow
-def test_solve_command_writes_json_plot_and_report(run, tmp_path):
-    out, picture = tmp_path / "out.json", tmp_path / "out.png"
-    done = run("solve", "cylindrical_rig", "--json", out, "--plot", picture)
-    assert done.status == 0 and done.err == ""
-    numbers = read(out)
-    assert set(numbers) == FIELDS
-    assert numbers["result"] == "converged"
-    assert numbers["version"] == bj.__version__
-    # The report says the same.
-    assert "\nouter ring (inner ring fixed)\n" in done.out
-    (uy,) = re.findall(r"(?m)^uy +(\S+) µm +Fy +-10\.6 kN$", done.out)
-    uy_json = numbers["displacement"][1]
-    assert 1e-6 * float(uy) == pytest.approx(uy_json, rel=1e-4)
-    load = np.max(numbers["roller_load"], axis=1)
-    loaded = int(np.sum(load > 1e-9 * load.max()))
-    assert len(re.findall(r"(?m)^ +\d+ +\d+\.\d  ", done.out)) == loaded == 5
-    # Its warnings too.
-    (warning,) = numbers["warnings"]
-    assert warning.startswith("edge-loaded roller")
-    assert f"warning: {warning}\n" in done.out
-    width, height = size_of_png(picture)
-    assert width > 800 and height > 500
-    assert picture.stat().st_size > 50_000
 
 
 class Page(HTMLParser):
@@ -173,35 +124,6 @@ def test_solve_rejects_file_named_twice(run, tmp_path):
     assert done.status == 2 and "by --json and by --report; name two" in done.err
 
 
-def test_numbers_of_the_taper(run, tmp_path):
-    done = run(*TAPER, "--json", tmp_path / "out.json")
-    assert done.status == 0 and done.err == ""
-    numbers = read(tmp_path / "out.json")
-    assert set(numbers) == FIELDS
-    shapes = {k: np.shape(numbers[k]) for k in FIELDS - WORDS}
-    assert shapes == {
-        "displacement": (12,),
-        "force": (12,),
-        "stiffness": (12, 12),
-        "roller_load": (17, 2),
-        "rib_load": (17, 4),
-        "roller_motion": (17, 3),
-        "azimuth": (17,),
-        "position": (POINTS,),
-        "line_load": (17, 2, POINTS),
-        "contact_pressure": (17, 2, POINTS),
-    }
-    assert all(np.all(np.isfinite(numbers[name])) for name in shapes)
-    k = np.array(numbers["stiffness"])
-    assert np.allclose(k, k.T, rtol=0.0, atol=SOLVER * np.abs(k).max())
-    force = np.array(numbers["force"])[6:11]
-    assert np.allclose(force, [5e3, 0, 6e3, 0, 0], rtol=0.0, atol=6e3 * SOLVER)
-    ends = np.linspace(-0.5 * 11.5e-3, 0.5 * 11.5e-3, POINTS)
-    assert np.allclose(numbers["position"], ends, rtol=0.0, atol=1e-15)
-    assert np.all(np.array(numbers["line_load"])[:, :, [0, -1]] == 0.0)
-    assert len(numbers["warnings"]) == 1
-
-
 def test_setting_changes_the_load(run, tmp_path):
     change = ("--set", "operating.load.Fx=-2 kN", "--set", "operating.load.My=3 N m")
     assert run(*TAPER, *change, "--json", tmp_path / "out.json").status == 0
@@ -209,23 +131,10 @@ def test_setting_changes_the_load(run, tmp_path):
     assert np.allclose(force, [-2e3, 0, 6e3, 0, 3], rtol=0.0, atol=6e3 * SOLVER)
 
 
-def test_solve_command_no_load_path(run, tmp_path):
-    out, picture = tmp_path / "out.json", tmp_path / "out.PNG"
-    picture.write_text("of an earlier run", encoding="utf-8")
+def test_solve_command_without_solution_draws_the_bearing(run, tmp_path):
     drawing = tmp_path / "drawing.svg"
-    done = run(*PULLED, "--json", out, "--plot", picture, "--drawing", drawing)
-    assert done.status == 3
-    # The bearing is drawn all the same.
+    assert run(*PULLED, "--drawing", drawing).status == 3
     assert "roller_axis_angle = 11" in drawing.read_text(encoding="utf-8")
-    assert done.out == ""
-    said, why = done.err.splitlines()
-    assert said == f"bearingjax: {picture}: of an earlier run, removed"
-    assert why.startswith("bearingjax: no_load_path: No load path in uz of the")
-    numbers = read(out)
-    assert set(numbers) == WORDS
-    assert numbers["result"] == "no_load_path"
-    assert "uz" in numbers["message"]
-    assert not picture.exists()
 
 
 def test_a_roller_of_a_bearing_without_a_solution(run, tmp_path):
@@ -233,14 +142,14 @@ def test_a_roller_of_a_bearing_without_a_solution(run, tmp_path):
     picture.write_text("of an earlier run", encoding="utf-8")
     done = run("contact", *PULLED[1:], "--json", out, "--plot", picture)
     assert done.status == 3 and done.out == "" and not picture.exists()
-    assert set(read(out)) == WORDS and read(out)["result"] == "no_load_path"
+    assert set(read(out)) == WORDS | SEARCH and read(out)["result"] == "no_load_path"
 
 
 def test_scene_of_ones_own(run, tmp_path):
     """A file is named as it is given; its name heads the report."""
     path = tmp_path / "my $taper_{.toml"
     shipped = bj.scene.shipped_scenes()["tapered"].read_text(encoding="utf-8")
-    path.write_text(f"{shipped}\n[output]\npoints = {POINTS}\n", encoding="utf-8")
+    path.write_text(f"{shipped}\n[output]\npoints = 21\n", encoding="utf-8")
     done = run("solve", path, "--plot", tmp_path / "x.png")
     assert done.status == 0
     assert done.out.startswith("my $taper_{: tapered roller bearing, 17 rollers")

@@ -360,7 +360,11 @@ STUDIES = {
         {"--json": "a.json", "--plot": "a.png"},
         ["converged"] * 5,
         unsolved={
-            label: (("--set", "operating.load=3 kN", "--set", setting), label, "")
+            label: (
+                ("--set", "operating.load=3 kN", "--set", setting),
+                label,
+                f"{label}: ",
+            )
             for label, setting in (
                 ("step_limit", "numerics.max_steps=1"),
                 ("no_load_path", "operating={load='3 kN', moment='30 N m'}"),

@@ -52,17 +52,10 @@ def test_rows_of_a_set_have_errors_of_their_own():
     assert not np.array_equal(*phases)
 
 
-def test_rings_of_spherical_rollers_shift_and_washers_of_cylinders_do_not():
+def test_rings_of_spherical_rollers_shift():
     settings = ["vibration.mass=4 kg", "operating.inner_speed=1500 rpm"]
     model = read_noise("spherical_roller", settings).model
     assert model.freedoms == ("ux", "uy", "uz")
-    with pytest.raises(SceneError, match="'cylindrical_thrust_roller' has no noise he"):
-        read_noise("thrust_roller", settings)
-
-
-def test_a_bearing_without_a_rig_has_no_noise():
-    with pytest.raises(SceneError, match="deep_groove.toml: `vibration`: is missing"):
-        read_noise("deep_groove", ["operating.inner_speed=1500 rpm"])
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -227,8 +220,6 @@ def test_read_noise_held_tilt(settings):
 def test_read_noise_rejects_moment_with_held_tilt():
     moment = "operating.load={Fz='85 N', Mx='1 N m'}"
     assert read_noise("noise_four_point", [moment]).model.load[3] == 1.0
-    with pytest.raises(SceneError, match="NoiseModel: `load` is .*it does not tilt"):
-        read_noise("noise_four_point", [moment, "vibration.tilting_inertia=held"])
     both = ["vibration.tilting_inertia=1e-4 kg m^2", *HELD[2]]
     with pytest.raises(SceneError, match=r"\[operating\] holds gx and gy; choose one"):
         read_noise("noise_four_point", both)
@@ -319,11 +310,15 @@ STUDIES = {
         files={f"--{n}": f"a.{n}" for n in ("json", "table", "wav", "plot")}
         | {"--table": "a.csv", "--plot": "a.png"},
         unsolved={
-            "huge load": (("--set", "operating.load.Fz=1e9 N"), "non_finite", STANDING),
+            "huge load": (
+                ("--set", "operating.load.Fz=1e9 N"),
+                "non_finite",
+                f"non_finite: {STANDING}",
+            ),
             "no load": (
                 ("--set", "operating.load.Fz=0 N"),
                 "no_load_path",
-                f"{STANDING}nothing presses the",
+                f"no_load_path: {STANDING}nothing presses the",
             ),
         },
     )

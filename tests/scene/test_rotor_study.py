@@ -330,7 +330,7 @@ STUDIES = {
             "loose": (
                 command(FEW, ON_SPRINGS, LOOSE, LINEAR)[2:],
                 "no_load_path",
-                "static: static_equilibrium: ",
+                "no_load_path: static: static_equilibrium: ",
             ),
         },
         slow=(True, True),

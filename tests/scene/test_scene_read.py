@@ -711,10 +711,3 @@ def test_read_scene_coupled_slices():
     setting = ("contact.line_law=coupled_slices", "contact.slices=12")
     element = bj.read_scene("tapered", setting).element
     assert element.line_law == bj.contact.CoupledSlices(12)
-    # The rule of independent slices has no place beside it.
-    with pytest.raises(
-        bj.SceneError, match="`numerics.points`: is not for coupled slices"
-    ):
-        bj.read_scene("tapered", (*setting, "numerics.points=30"))
-    with pytest.raises(bj.SceneError, match="`slices` is 2; it must be a whole number"):
-        bj.read_scene("tapered", (setting[0], "contact.slices=2"))

@@ -282,9 +282,10 @@ STUDIES = {
             "pulled": (
                 ("--set", "operating.load.Fz=-150 N"),
                 "no_load_path",
-                "No load path in uz of the inner",
+                "no_load_path: No load path in uz of the inner",
             )
         },
+        slow=(True, True),
     ),
     "motion": Study(RUN_UP, None, again=None),
     "rollers": Study((*FEW, "--steady"), None, again=None),
@@ -305,7 +306,8 @@ def draw_figures(close_figures):
 
 @pytest.fixture(scope="module")
 def end():
-    """The end state."""
+    """The end state; slow is what looks at it, or at the motion: their programs take
+    half a minute to compile."""
     return run_skid(read_skid("skid_combined", GIVEN, steady=True))
 
 
@@ -472,6 +474,7 @@ def test_start_at_rest_under_turning_rings():
     assert any("gross skidding, slip up to 100 %" in text for text in done.warnings)
 
 
+@pytest.mark.slow
 def test_skid_output_of_incomplete_motion(run, history, tmp_path):
     """Five of nine times, as if the step limit had been met."""
     found = history.found
@@ -511,6 +514,7 @@ def test_skid_output_of_incomplete_motion(run, history, tmp_path):
     assert not picture.exists()
 
 
+@pytest.mark.slow
 def test_report(end):
     text = str(skid_report(end))
     rolling = 12.0 / (1.0 / end.found.rolling_orbit_speed).sum()
@@ -524,6 +528,7 @@ def test_report(end):
     assert f"warning: balls wander {1e6 * float(end.found.wander):.4g} µm" in text
 
 
+@pytest.mark.slow
 def test_bad_input(run):
     done = run(*SMALL, "--steady", "--set", "dynamics.places=1")
     assert done.status == 2 and "`places` is 1, but the balls bear unlike" in done.err
@@ -536,6 +541,7 @@ def changed(state, **values):
     return state._replace(**full)
 
 
+@pytest.mark.slow
 def test_skid_warnings_of_each_kind(end):
     """Each kind of warning, of conditions as they might be."""
     model, found, state = end.task.model, end.found, end.state
@@ -582,6 +588,7 @@ def test_skid_warnings_of_each_kind(end):
     assert "films down to 0.02 µm, less than 3 times" in told(least_film=2e-8)
 
 
+@pytest.mark.slow
 def test_skid_end_state_warns_of_ignored_keys():
     given = ("dynamics.axis=horizontal", "dynamics.load={time=['0 s'], Fy=['1 N']}")
     asked = read_skid("skid_combined", [*GIVEN, *given], steady=True)
@@ -594,6 +601,7 @@ def lines(ax):
     return [np.asarray(line.get_ydata()) for line in ax.get_lines()]
 
 
+@pytest.mark.slow
 def test_means_of_the_end_state(end):
     """The heat is that of the power balance, the speed that of `cage_slip`."""
     found = end.found
@@ -603,6 +611,7 @@ def test_means_of_the_end_state(end):
     np.testing.assert_allclose(1.0 - found.cage_speed / rolling, found.cage_slip)
 
 
+@pytest.mark.slow
 def test_pictures_along_the_orbit(end):
     found = end.found
     outer, inner = lines(plot.load_over_orbit(found))
@@ -615,6 +624,7 @@ def test_pictures_along_the_orbit(end):
         np.testing.assert_array_equal(spin[:-1], found.spin[:, k])
 
 
+@pytest.mark.slow
 def test_pictures_over_time(history):
     found = history.found
     shown = {
@@ -634,6 +644,7 @@ def test_pictures_over_time(history):
         assert ax.get_xlabel() == "time [s]" and "[" in ax.get_ylabel()
 
 
+@pytest.mark.slow
 def test_spectrum_of_a_sine(history):
     """Of amplitude 3 mm/s about 5 mm/s on the fourth line; the cage is marked."""
     time = np.linspace(0.0, 1.0, 64, endpoint=False)
@@ -663,6 +674,7 @@ def test_spectrum_of_a_sine(history):
         sliding_spectrum(uneven)
 
 
+@pytest.mark.slow
 def test_cage_speed_over_load(end):
     """Two cases, one of them lost."""
     two = jax.tree.map(lambda leaf: np.stack([leaf, leaf]), end.found)
@@ -675,6 +687,7 @@ def test_cage_speed_over_load(end):
 
 
 @pytest.mark.parametrize("sense, before, behind", [(1.0, 0, 180), (-1.0, 180, 0)])
+@pytest.mark.slow
 def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
     """Above the mean about 90 and 270 deg, at 90 deg higher; no zones of even loads."""
     azimuth = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
@@ -700,6 +713,7 @@ def test_zones_of_a_load_with_two_waves(end, sense, before, behind):
     assert zones(single) == []
 
 
+@pytest.mark.slow
 def test_sliding_ellipse_heat_matches_contact_heat(end):
     """The integral over the points of the picture, by Simpson's rule."""
     found, model = end.found, end.task.model

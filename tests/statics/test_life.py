@@ -16,6 +16,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from registry import grooves
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
@@ -69,10 +70,9 @@ def ball_element(x):
         7,
         43.5e-3,
         11.5e-3,
-        inner_osculation=0.52,
-        outer_osculation=0.53,
         radial_internal_clearance=x[0],
         material=bj.Material(210e9, 0.3),
+        **grooves(0.53, 0.52),
     )
     return bj.BearingElement(bearing, point_law=bj.contact.ZeroAngle())
 
@@ -252,12 +252,7 @@ def test_ball_lives_are_those_of_plain_numpy(balls):
     np.testing.assert_allclose(life.reference_rating_life, 1e6 * expected, rtol=1e-10)
     # The other ring turning, and a steep bearing whose cosine counts.
     steep = bj.AngularContactBallBearing(
-        7,
-        43.5e-3,
-        11.5e-3,
-        inner_osculation=0.52,
-        outer_osculation=0.515,
-        contact_angle=0.7,
+        7, 43.5e-3, 11.5e-3, contact_angle=0.7, **grooves(0.515, 0.52)
     )
     for ring, turning in (("outer", [1.0, 0.0]), ("inner", [0.0, 1.0])):
         mine = row_fatigue(
@@ -406,17 +401,10 @@ def test_thrust_bearings_have_the_life_of_iso_281_exactly():
     load, even = 5e3, jnp.asarray([0.0, 1.0])
     for angle in (0.5 * np.pi, 1.0):
         if angle > 1.5:
-            bearing = bj.ThrustBallBearing(
-                12, 0.05, 0.008, inner_osculation=0.54, outer_osculation=0.54
-            )
+            bearing = bj.ThrustBallBearing(12, 0.05, 0.008, **grooves(0.54, 0.54))
         else:
             bearing = bj.AngularContactBallBearing(
-                12,
-                0.05,
-                0.008,
-                inner_osculation=0.54,
-                outer_osculation=0.53,
-                contact_angle=angle,
+                12, 0.05, 0.008, contact_angle=angle, **grooves(0.53, 0.54)
             )
         loads = jnp.full((12, 2, 1), load / (12 * np.sin(angle)))
         c = jnp.asarray(31e3)
@@ -552,23 +540,13 @@ def test_viscosity_and_reliability_are_those_of_iso_281():
 
 def angular(degrees, n=14):
     return bj.AngularContactBallBearing(
-        n,
-        77.5e-3,
-        14.288e-3,
-        inner_osculation=0.52,
-        outer_osculation=0.53,
-        contact_angle=np.deg2rad(degrees),
+        n, 77.5e-3, 14.288e-3, contact_angle=np.deg2rad(degrees), **grooves(0.53, 0.52)
     )
 
 
 def four_points(degrees, n=14):
     return bj.FourPointBallBearing(
-        n,
-        77.5e-3,
-        14.288e-3,
-        inner_osculation=0.52,
-        outer_osculation=0.53,
-        shim_angle=np.deg2rad(degrees),
+        n, 77.5e-3, 14.288e-3, shim_angle=np.deg2rad(degrees), **grooves(0.53, 0.52)
     )
 
 
@@ -621,9 +599,7 @@ def test_equivalent_loads_are_those_of_the_tables():
     pressed = 0.345e6 * 7 * 11.5e-3**2  # a line of the table
     pair = bj.BearingSet.back_to_back(angular(40), 0.03)
     tandem = bj.BearingSet.tandem(angular(40), 0.03)
-    thrust = bj.ThrustBallBearing(
-        12, 0.05, 0.008, inner_osculation=0.54, outer_osculation=0.54
-    )
+    thrust = bj.ThrustBallBearing(12, 0.05, 0.008, **grooves(0.54, 0.54))
     rows = [
         # bearing, Fr, Fa, P, P0
         (deep, 2e3, 0.2 * pressed, 2e3, 2e3),
@@ -748,9 +724,7 @@ def test_moments_are_counted_about_the_pressure_centre():
         assert lost.radial == 0.0 == lost.axial
     load = jnp.asarray([3e3, 4e3, -500.0, 30.0, 40.0, 0.0])
     straight = roller_element([0.0, 0, 0, 0, 1e-4]).bearing
-    washers = bj.ThrustBallBearing(
-        14, 0.041, 0.0079, outer_osculation=0.54, inner_osculation=0.54
-    )
+    washers = bj.ThrustBallBearing(14, 0.041, 0.0079, **grooves(0.54, 0.54))
     pair = bj.BearingSet.back_to_back(single, 0.03)
     for bearing, radial, axial in (
         (ball_element([0.0]).bearing, 0.0, 0.0),
@@ -963,9 +937,7 @@ def nj_element():
 
 def thrust_element():
     return bj.BearingElement(
-        bj.ThrustBallBearing(
-            12, 50e-3, 9e-3, inner_osculation=0.53, outer_osculation=0.53
-        )
+        bj.ThrustBallBearing(12, 50e-3, 9e-3, **grooves(0.53, 0.53))
     )
 
 

@@ -24,6 +24,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from registry import grooves
 
 import bearingjax as bj
 from bearingjax.contact import ellipse
@@ -46,11 +47,7 @@ def masta(clearance, **change):
         pitch_diameter=0.0435, ball_diameter=0.0115, material=Material(210 * GPA, 0.3)
     )
     return bj.DeepGrooveBallBearing(
-        7,
-        outer_osculation=0.53,
-        inner_osculation=0.52,
-        radial_internal_clearance=clearance,
-        **(values | change),
+        7, radial_internal_clearance=clearance, **values | change, **grooves(0.53, 0.52)
     )
 
 
@@ -126,10 +123,9 @@ def angular_218():
         16,
         0.12526,
         0.022225,
-        outer_osculation=0.5232,
-        inner_osculation=0.5232,
         contact_angle=40 * DEGREE,
         material=Material(206.843 * GPA, 0.3),
+        **grooves(0.5232, 0.5232),
     )
 
 
@@ -174,10 +170,9 @@ def test_209_radial(clearance, displacement, largest):
         9,
         0.065,
         0.0127,
-        outer_osculation=6.6 / 12.7,
-        inner_osculation=6.6 / 12.7,
         radial_internal_clearance=clearance,
         material=Material(206.843 * GPA, 0.3),
+        **grooves(6.6 / 12.7, 6.6 / 12.7),
     )
     solution = bj.solve_load(bj.BearingElement(bearing), [8900.0, 0, 0, 0, 0, 0])
     assert float(solution.displacement[6]) == pytest.approx(displacement, rel=2e-4)
@@ -248,11 +243,10 @@ def test_high_speed(name, variant):
         n,
         pitch,
         ball,
-        outer_osculation=outer / ball,
-        inner_osculation=inner / ball,
         contact_angle=angle * DEGREE,
         material=materials[0],
         ring_material=materials[1],
+        **grooves(outer / ball, inner / ball),
     )
     control = Share(jnp.asarray(CONTROLS[variant]))
     element = bj.BearingElement(
@@ -314,10 +308,9 @@ def test_harris_mindel_equilibrium():
         21,
         6.2008 * inch,
         0.8125 * inch,
-        outer_osculation=0.52,
-        inner_osculation=0.52,
         contact_angle=18.647 * DEGREE,
         material=Material(2.9e7 * pound / inch**2, 0.25),
+        **grooves(0.52, 0.52),
     )
     element = bj.BearingElement(
         bearing,
@@ -348,12 +341,7 @@ def test_harris_mindel_equilibrium():
 def test_constant_contact_angle_in_closed_form():
     """F = Z K (u sin α)^1.5 sin α, whatever the load; radially the cosine."""
     bearing = bj.AngularContactBallBearing(
-        7,
-        0.0435,
-        0.0115,
-        outer_osculation=0.53,
-        inner_osculation=0.52,
-        contact_angle=40 * DEGREE,
+        7, 0.0435, 0.0115, contact_angle=40 * DEGREE, **grooves(0.53, 0.52)
     )
     element = bj.BearingElement(bearing, kinematics=bj.element.ConstantAngle())
     outer, inner = map(float, element.model().rows[0].element.constant)
@@ -392,12 +380,7 @@ SJOVALL = np.array(
 def many_balls():
     """720 small balls: an integral, all but. Wide grooves hold the contact angle."""
     return bj.AngularContactBallBearing(
-        720,
-        1.0,
-        0.004,
-        outer_osculation=0.7,
-        inner_osculation=0.7,
-        contact_angle=40 * DEGREE,
+        720, 1.0, 0.004, contact_angle=40 * DEGREE, **grooves(0.7, 0.7)
     )
 
 
@@ -443,14 +426,10 @@ def test_sjovall_double_row():
 @pytest.mark.slow
 def test_stribeck_number():
     """4.37 W/z: exactly 1/J_r(0.5) for many balls, 4.373 for fourteen (AF003-6)."""
-    many = bj.DeepGrooveBallBearing(
-        720, 1.0, 0.004, outer_osculation=0.52, inner_osculation=0.52
-    )
+    many = bj.DeepGrooveBallBearing(720, 1.0, 0.004, **grooves(0.52, 0.52))
     s = bj.solve_load(bj.BearingElement(many), [1e-3, 0, 0, 0, 0, 0], free=["ux"])
     stribeck = 720 * float(s.roller_load[:, 1].max()) / 1e-3
     assert stribeck == pytest.approx(1 / 0.228827929, rel=1e-5)
-    fourteen = bj.DeepGrooveBallBearing(
-        14, 0.0775, 0.014288, outer_osculation=0.52, inner_osculation=0.52
-    )
+    fourteen = bj.DeepGrooveBallBearing(14, 0.0775, 0.014288, **grooves(0.52, 0.52))
     s = bj.solve_load(bj.BearingElement(fourteen), [250.0, 0, 0, 0, 0, 0])
     assert float(s.roller_load[:, 1].max()) == pytest.approx(78.09, rel=1e-4)

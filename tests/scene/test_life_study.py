@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from pages import missing_on_page
+from studies import SEARCH, WORDS, Runs, Study
 from tolerances import SOLVER
 
 import bearingjax as bj
@@ -27,7 +27,40 @@ SCENE = "life_spectrum"
 # What is static in the echo, said: so that one program serves.
 SAID = ("operating.free=['ux', 'uy', 'uz']", "numerics.tolerance=1e-11")
 SETTINGS = tuple(word for text in SAID for word in ("--set", text))
+pytestmark = pytest.mark.usefixtures("untyped")
 NAMES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
+TEXT = shipped_scenes()[SCENE].read_text(encoding="utf-8")
+ONE = TEXT.partition("[[cases")[0]
+PICTURE = {"--json": "a.json", "--plot": "a.png"}
+STUDIES = {
+    "one load": Study(
+        ("life", ONE, *SETTINGS),
+        None,
+        WORDS | SEARCH,
+        files=PICTURE,
+        pictures=2,
+        unsolved={
+            "huge load": (
+                ("--set", "operating.load.Fx=4e300 N"),
+                "non_finite",
+                "non_finite: ",
+            )
+        },
+        slow=(True, True),
+    ),
+    "spectrum": Study(
+        ("life", SCENE, *SETTINGS, "--quiet"),
+        None,
+        files={**PICTURE, "--table": "a.csv", "--report": "a.html"},
+        result=None,
+        again=("--quiet",),
+        pictures=2,
+    ),
+}
+
+
+class TestRuns(Runs):
+    """Of the command."""
 
 
 @pytest.fixture(scope="module")
@@ -67,9 +100,9 @@ def test_dirt_of_a_grease_goes_with_a_supply_of_grease(supply, dirt, told):
 
 
 @pytest.mark.slow
-def test_solve_command_life_matches_rating_life(
-    run, rerun, tmp_path, solution, untyped
-):
+def test_life_of_one_load_matches_rating_life(run, written, tmp_path, solution):
+    """By the command for lives alone, and by `solve`, which leaves the cases out."""
+    done, alone, paths = written("one load")
     out = tmp_path / "out.json"
     told = run("solve", SCENE, *SETTINGS, "--json", out)
     assert told.status == 0 and "[cases] are for sweep" in told.err
@@ -92,17 +125,11 @@ def test_solve_command_life_matches_rating_life(
     assert found["weakest"] == {"row": 0, "ring": "inner", "track": 0}
     assert "limited by the inner raceway" in told.out
     assert f"{1e-6 * float(life.reference_rating_life):.5g}" in told.out
-    # The same without the cases, by the command for lives alone.
-    path = tmp_path / "one.toml"
-    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
-    path.write_text(text.partition("[[cases")[0], encoding="utf-8")
-    told = run("life", path, *SETTINGS, "--json", out)
-    assert told.status == 0 and "turning against the load: inner ring" in told.out
-    assert "\n  C 23.4 kN (given in [life])\n" in told.out
-    alone = json.loads(out.read_text(encoding="utf-8"))
+    assert "turning against the load: inner ring" in done.out
+    assert "\n  C 23.4 kN (given in [life])\n" in done.out
     assert all(alone[name] == found[name] for name in NAMES)
-    assert alone["result"] == "converged" and "displacement" not in alone
-    rerun("life", out, pictures=2)
+    assert "displacement" not in alone
+    path = paths["--json"].with_name("mine.toml")
     still = ("operating.inner_speed=0 rpm", "life={reliability=0.95}")
     told = run("life", path, *SETTINGS, *(w for s in still for w in ("--set", s)))
     assert told.status == 0 and "hours  " not in told.out
@@ -112,21 +139,13 @@ def test_solve_command_life_matches_rating_life(
 
 
 @pytest.mark.slow
-def test_life_command_spectrum_sums_damage(run, rerun, undrawn, tmp_path, untyped):
-    out, table = tmp_path / "out.json", tmp_path / "cases.csv"
-    page, picture = tmp_path / "out.html", tmp_path / "out.png"
-    drawn = ("--report", page, "--plot", picture)
-    files = ("--json", out, "--table", table, *drawn)
-    told = run("life", SCENE, *SETTINGS, *files, "--quiet")
-    assert told.status == 0, told.err
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    text = unescape(page.read_text(encoding="utf-8"))
-    assert not missing_on_page(text, told.out)
-    assert "data:image/png;base64," in text and "7 balls of 11.5 mm" in text
-    again = read_cases(out)  # the file is a scene again
+def test_life_command_spectrum_sums_damage(written, undrawn):
+    done, found, paths = written("spectrum")
+    text = unescape(paths["--report"].read_text(encoding="utf-8"))
+    assert "7 balls of 11.5 mm" in text and text.count("<td>converged</td>") == 3
+    again = read_cases(paths["--json"])  # the file is a scene again
     np.testing.assert_array_equal(again.cases.hours, [700.0, 250.0, 50.0])
     np.testing.assert_allclose(again.cases.load[:, 0], [1e3, 2e3, 4e3])
-    found = json.loads(out.read_text(encoding="utf-8"))
     columns = found["columns"]
     hours = np.array([700.0, 250.0, 50.0])
     turns = hours * 60 * np.array([3000.0, 1500.0, 800.0])
@@ -138,29 +157,25 @@ def test_life_command_spectrum_sums_damage(run, rerun, undrawn, tmp_path, untype
         found["life_hours"], hours.sum() / used.sum(), rtol=1e-10
     )
     assert found["static_safety"] == min(columns["static_safety"])
-    lines = table.read_text(encoding="utf-8").splitlines()
-    assert len(lines) == 4 and "modified_rating_life [rev]" in lines[0]
-    assert "each case alone" in told.out
-    assert "\nC 23.4 kN (given in [life])\n" in told.out and "at rest" not in told.out
+    rows = written("spectrum").rows
+    assert len(rows) == 4 and "modified_rating_life [rev]" in rows[0]
+    assert "each case alone" in done.out
+    assert "\nC 23.4 kN (given in [life])\n" in done.out and "at rest" not in done.out
     assert found["dynamic_capacity_source"] == "given"
     assert found["dynamic_capacity_origin"] == "given in [life]"
     # The mean load of ISO 281: powers of the loads by their revolutions.
     loads = np.array(columns["equivalent_load [N]"])
     mean = np.cbrt((turns * loads**3).sum() / turns.sum())
     np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
-    page = rerun("life", out, "--quiet", pictures=2)
-    assert page.count("<td>converged</td>") == 3
-    again = ("life", SCENE, *SETTINGS, "--table", table, "--quiet")
-    undrawn("life_overview", out, *again, others=[table])
+    table = paths["--table"]
+    again = (*STUDIES["spectrum"].command, "--table", table)
+    undrawn("life_overview", paths["--json"], *again, others=[table])
 
 
+@pytest.mark.slow
 def test_life_command_with_unsolved_case_has_no_life(run, tmp_path):
-    """Likewise a sweep whose cases carry no speed leaves no hours."""
-    path, out = tmp_path / "bad.toml", tmp_path / "out.json"
-    text = shipped_scenes()[SCENE].read_text(encoding="utf-8")
-    text = text.replace('Fx = "4 kN"', 'Fx = "4e30 N"')
-    path.write_text(text, encoding="utf-8")
-    told = run("life", path, *SETTINGS, "--json", out, "--quiet")
+    out, lost = tmp_path / "out.json", "cases.spectrum.2.operating.load.Fx=4e30 N"
+    told = run("life", SCENE, *SETTINGS, "--set", lost, "--json", out, "--quiet")
     assert told.status == 3 and "1 of 3 cases not solved (case 2: " in told.err
     assert told.out == ""
     found = json.loads(out.read_text(encoding="utf-8"))
@@ -222,7 +237,7 @@ def two_cases():
     return run, a1, lives
 
 
-def test_reliability_counts_without_a_lubricant_too(untyped):
+def test_reliability_counts_without_a_lubricant_too():
     run, a1, lives = two_cases()
     found = spectrum_as_dict(run)
     hours, speed = np.array([3.0, 0.0]), np.array([100.0, 50.0])
@@ -245,7 +260,7 @@ def test_reliability_counts_without_a_lubricant_too(untyped):
     assert not any(re.search(" h$", line) for line in lines)
 
 
-def test_spectrum_report_labels_cases_by_differing_keys(untyped):
+def test_spectrum_report_labels_cases_by_differing_keys():
     """Whatever the key; and how each runs, the least safe one by its number."""
     run = two_cases()[0]
     text = str(spectrum_report(run))
@@ -266,7 +281,7 @@ def test_spectrum_report_labels_cases_by_differing_keys(untyped):
         assert label == "\n".join(["1", *told.split(", ")])
 
 
-def test_spectrum_page_fits_of_scene(untyped):
+def test_spectrum_page_fits_of_scene():
     """Those of the scene, beside the clearances of its cases."""
     fit = "bore=25 mm", "outside_diameter=62 mm", "housing_diameter=90 mm"
     seats = [f"fit.{one}" for one in (*fit, "shaft=k5", "housing=H7")]

@@ -1,14 +1,17 @@
-"""A solved scene as JSON and as a report: the same numbers, or none at all."""
+"""A solved scene as JSON and as a report, and by `bearingjax solve`: the same numbers,
+or none at all."""
 
 import dataclasses
 import json
 import re
+import struct
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from studies import SEARCH, WORDS, Runs, Study
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
@@ -30,15 +33,37 @@ NUMBERS = (
     "line_load",
     "contact_pressure",
 )
-WORDS = (
-    "result",
-    "message",
-    "residual",
-    "iterations",
-    "warnings",
-    "inputs",
-    "version",
-)
+FILES = {"--json": "a.json", "--plot": "a.png"}
+STUDIES = {
+    "rig": Study(
+        ("solve", "cylindrical_rig"),
+        {*NUMBERS},
+        WORDS | SEARCH,
+        files=FILES,
+        again=None,
+    ),
+    "taper": Study(
+        ("solve", "tapered", "--set", TAPER),
+        {*NUMBERS},
+        WORDS | SEARCH,
+        files=FILES,
+        again=None,
+        unsolved={
+            "pulled": (
+                ("--set", "operating.load.Fz=-6 kN"),
+                "no_load_path",
+                "no_load_path: No load path in uz of the inner ring",
+            )
+        },
+        slow=(False, False),
+    ),
+}
+
+
+class TestRuns(Runs):
+    """Of the command; that its JSON is a scene again, `test_echo` tests."""
+
+    test_run_of_its_json_is_the_same = None  # pyright: ignore
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,9 +115,21 @@ def solved(request):
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.parametrize("name", ["taper", pytest.param("rig", marks=pytest.mark.slow)])
+def test_solve_command_writes_and_prints_the_solution(request, written, name):
+    done, numbers, paths = written(name)
+    wanted = request.getfixturevalue(name)
+    assert numbers == wanted.numbers
+    assert done.out == f"{report(wanted.found)}\n"
+    width, height = struct.unpack(">II", paths["--plot"].read_bytes()[16:24])
+    assert width > 800 and height > 500
+    assert paths["--plot"].stat().st_size > 50_000
+
+
 @pytest.mark.slow
 def test_fields_and_shapes(solved):
-    assert tuple(solved.numbers) == NUMBERS + WORDS
+    assert {*solved.numbers} == WORDS | SEARCH | {*NUMBERS}
+    assert tuple(solved.numbers)[: len(NUMBERS)] == NUMBERS
     n, points = solved.scene.element.bearing.n_rollers, solved.scene.points
     shapes = {name: solved[name].shape for name in NUMBERS}
     assert shapes == {
@@ -200,7 +237,7 @@ def test_json_is_the_dictionary(taper, tmp_path):
 
 
 def test_json_without_solution_omits_numbers(pulled, tmp_path):
-    assert tuple(pulled.numbers) == WORDS
+    assert {*pulled.numbers} == WORDS | SEARCH
     assert pulled.numbers["result"] == "no_load_path"
     assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
     assert pulled.numbers["warnings"] == []
@@ -211,7 +248,7 @@ def test_json_without_solution_omits_numbers(pulled, tmp_path):
 
 def test_json_has_null_for_nan(tmp_path):
     solved = solve("cylindrical_rig", "operating.load.Fy=1e300 N")
-    assert tuple(solved.numbers) == WORDS
+    assert {*solved.numbers} == WORDS | SEARCH
     assert solved.numbers["result"] == "non_finite"
     assert solved.numbers["residual"] is None
     write_json(tmp_path / "out.json", solved.found)
@@ -253,7 +290,7 @@ def test_report_and_dict_run_no_jax_operations(solved):
 def test_spherical_roller_bearing_of_a_fan():
     """Rollers of row 0, then of row 1; no moment about the centre of the sphere."""
     fan = solve("spherical_roller", TAPER, "operating.inner_speed=0 rpm")
-    assert tuple(fan.numbers) == NUMBERS + WORDS
+    assert {*fan.numbers} == WORDS | SEARCH | {*NUMBERS}
     assert fan["roller_load"].shape == (36, 2)
     assert fan["position"].shape == (36, POINTS)
     angle = np.deg2rad(9.5)
