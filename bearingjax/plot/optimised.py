@@ -142,9 +142,10 @@ def _pressures(found, case) -> Panel:
         label = f"{side}: roller at {angle:.4g}°, {RACEWAYS[raceway]} raceway"
         values, look = pressure[roller, raceway], {"lw": 2}
         marks.append(Curve(position, values, label, *_SIDES[side], look))
-    title = f"Pressure along the most pressed roller, case {case}"
+    title = f"Pressure along the roller of highest pressure, case {case}"
     wide = lambda ax: ax.margins(x=0)  # noqa: E731
-    return Panel(title, ALONG, PRESSURE, marks, floor=True, also=wide)
+    legend = {"loc": "lower center"}  # curves rise at the ends
+    return Panel(title, ALONG, PRESSURE, marks, floor=True, legend=legend, also=wide)
 
 
 def _cases(found) -> Panel:
@@ -226,13 +227,18 @@ def _history(found) -> Panel:
     size = abs(values[0]) or 1.0
     name, look = label_of(measure), {"markersize": 4}
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
-    over, of = Axis("step of the search"), Axis(f"{smooth}{name} over its start")
+    over, of = (
+        Axis("step of the search"),
+        Axis(f"{smooth}{name}, relative to the start"),
+    )
     marks = [Curve(steps, values / size, name, ROLLER, "o-", look)]
     twin = None
     if history.violation.any():
-        label, colour = "miss of the worst constraint", COLOURS["inner"]
+        label, colour = "violation of the worst constraint", COLOURS["inner"]
         missed = [Curve(steps, history.violation, label, colour, "s:", look)]
-        twin = Panel("", over, Axis("miss over the bound"), missed, floor=True)
+        twin = Panel(
+            "", over, Axis("violation, relative to the bound"), missed, floor=True
+        )
 
     title = f"The search: {found.n_evaluations} designs evaluated"
     return Panel(

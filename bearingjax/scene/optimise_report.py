@@ -263,7 +263,9 @@ def _variables(found):
         low, high, before, after = (
             scale * (x - zero) for x in (v.lower, v.upper, first, last)
         )
-        bound = {v.lower: ", at the lower", v.upper: ", at the upper"}.get(last, "")
+        bound = {v.lower: ", at the lower one", v.upper: ", at the upper one"}.get(
+            last, ""
+        )
         name, bounds = (
             v.name.removeprefix("bearing."),
             f"{low:.5g} to {high:.5g}{bound}",
@@ -281,7 +283,7 @@ def _measures(found):
         shown, (first, last) = _as_reported(measure, values)
         scale, unit = _unit(shown)
         largest = isinstance(measure, AbstractMeasure) and measure.maximised
-        made = "made largest" if largest else "made least"
+        made = "maximised" if largest else "minimised"
         kept = made if k == 0 else _kept(found, k - 1, scale)
         exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
         rows.append((label_of(shown), *exact, unit, kept))

@@ -104,7 +104,7 @@ def test_optimise_command_of_shaft_scene(run, scene, tmp_path):
     path = scene()
     code, text, error = run("optimise", path, *(x for p in written.items() for x in p))
     assert (code, error) == (0, "")
-    assert "rating life" in text and "made largest" in text
+    assert "rating life" in text and "maximised" in text
     found = json.loads(out.read_text())
     assert found["result"] == "converged"
     before, after = (found["rating_life"][side] for side in ("before", "after"))
