@@ -66,7 +66,7 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
         length = 2e6 * float(sharp[0].solution.grid.half_y[0])
         found.append(
             f"{_named(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
-            " um long; under a sharp end it grows without limit as cells shrink:"
+            " µm long; under a sharp end it grows without limit as cells shrink:"
             " compare at fixed distances from the end"
         )
     return found
