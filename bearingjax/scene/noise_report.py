@@ -70,7 +70,7 @@ def _bearing(run):
 
 def _modes(run):
     found = [
-        f"{frequency:.5g} Hz, {name}"
+        f"{frequency:.5g} Hz {name.removeprefix('natural mode ')}"
         for name, frequency in ring_modes(run.modes, run.task.model)
     ]
     return "natural modes of the ring: " + ("; ".join(found) or "none")
@@ -124,11 +124,13 @@ def _lines(run):
 def _states(run):
     states = run.analysis.states
     text = ", ".join(
-        f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
+        f"{k} for {100.0 * share:.3g} %"
+        for k, share in enumerate(states.shares)
+        if share
     )
     kind = f"{run.task.model.element.bearing.noun}s"
     return (
-        f"contacts of the {kind}, share of the time: {text};"
+        f"contacts of the {kind}: {text} of the time;"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"
     )
 
