@@ -8,7 +8,7 @@ import numpy as np
 
 from ..numerics.gravity import GRAVITY
 from ..rotor import BearingSupport, LinearSupport, Rotor
-from .load import load_zone
+from .load import load_zone, zone_legend
 from .rotor import rotor_section
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white
 
@@ -52,6 +52,7 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         for place, (label, values) in enumerate(lines.items()):
             ax = figure.add_subplot(grid[k, 6 + 3 * place : 9 + 3 * place])
             _line(ax, state.position, values, label)
+    named: dict[str, Any] = {}
     for k, bearing in enumerate(shown):
         row, place = divmod(k, across)
         wide = 15 // across
@@ -59,9 +60,14 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         ax = figure.add_subplot(spec, projection="polar")
         load_zone(bearing.solution, ax)
         ax.set_title(f"Bearing {bearing.name}\n{ax.get_title()}")
-        legend = ax.get_legend()
-        if place + 1 < across and k + 1 < len(shown) and legend is not None:
-            legend.remove()
+        # One legend for each line of load zones, beside the last.
+        legend: Any = ax.get_legend()
+        labels = [text.get_text() for text in legend.get_texts()]
+        named = {} if place == 0 else named
+        named |= dict(zip(labels, legend.legend_handles, strict=True))
+        legend.remove()
+        if place + 1 == across or k + 1 == len(shown):
+            zone_legend(ax, list(named.values()), list(named))
     head(figure, title or "Shafts")
     return figure
 
