@@ -347,7 +347,7 @@ KINDS: dict[str, Kind] = {
         sizes.lifted_count,
         0.0,
         _lifted_words,
-        lambda s: f"balls {sizes.listed(np.flatnonzero(sizes.lifted(s)))}",
+        lambda s: sizes.numbered("ball", np.flatnonzero(sizes.lifted(s))),
     ),
     "edge_loaded": Kind(
         _of_rollers,
