@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing, rows_of
+from ..numerics.units import shown_count
 from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
@@ -240,7 +241,7 @@ def _history(found) -> Panel:
             "", over, Axis("violation, relative to the bound"), missed, floor=True
         )
 
-    title = f"The search: {found.n_evaluations} designs evaluated"
+    title = f"The search: {shown_count(found.n_evaluations, 'design')} evaluated"
     return Panel(
         title, over, of, marks, twin=twin, legend=None if twin is None else {},
         also=lambda ax: ax.xaxis.get_major_locator().set_params(integer=True),

@@ -8,6 +8,7 @@ from .._version import __version__
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
+from ..numerics.units import shown_count
 from .contact_table import ContactScene
 from .report_model import NEWTONS, Column, Grid, Report
 
@@ -261,8 +262,8 @@ def _ending(cases):
     steps = max(int(case.solution.steps) for case in cases)
     residual = max(float(case.solution.residual) for case in cases)
     return (
-        f"converged in {steps} steps, largest gap left {residual:.1e} of the mean"
-        " displacement"
+        f"converged in {shown_count(steps, 'step')}, largest gap left"
+        f" {residual:.1e} of the mean displacement"
     )
 
 

@@ -6,6 +6,7 @@ from ..element.frame import LOADS
 from ..noise import ring_modes
 from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
+from ..numerics.units import shown_count
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import AXES
@@ -61,9 +62,9 @@ def _bearing(run):
             f" {tilts}",
             f"loaded by {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
             f" {outer:.5g} rpm",
-            f"record of {task.turns} turns, {float(record.duration):.4g} s, after"
-            f" {task.settle} to settle; {len(record.time)} samples, {run.steps} steps"
-            f" each{bridging}",
+            f"record of {shown_count(task.turns, 'turn')}, {float(record.duration):.4g}"
+            f" s, after {task.settle} to settle; {len(record.time)} samples,"
+            f" {shown_count(run.steps, 'step')} each{bridging}",
         ]
     )
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
-from ..numerics.units import CELSIUS, display_unit, unit_of
+from ..numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
@@ -31,11 +31,11 @@ def optimisation_report(task: Task, found: Optimised, best: Any = None) -> Repor
     """
     best = scene_of_design(task, found.element) if best is None else best
     cases = found.cases.count
-    plural = "s" * (cases != 1)
     head = (
-        f"{task.scene.name}: optimised over {cases} operating case{plural} in"
-        f" {len(found.history.objective) - 1} steps,\n{found.n_evaluations} designs"
-        f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
+        f"{task.scene.name}: optimised over {shown_count(cases, 'operating case')} in"
+        f" {shown_count(len(found.history.objective) - 1, 'step')},\n"
+        f"{shown_count(found.n_evaluations, 'design')} evaluated,"
+        f" {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
     warned = [f"rejected: {why}" for why in dict.fromkeys(found.rejected)]
     warned += [*best.warnings, *found.after.warnings]

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..numerics.units import shown_count
 from ..rotor import STATION_FREEDOMS
 from ..rotor.nonlinear import BranchEnd
 from .fit_report import fit_report
@@ -172,7 +173,7 @@ def _modes(run):
     title = f"modes at {rpm(run.task.speed)}"
     return [
         *([Grid(columns, title)] if there.any() else []),
-        *([f"{rest} modes do not oscillate"] if rest else []),
+        *([f"not oscillating: {shown_count(rest, 'mode')}"] if rest else []),
     ]
 
 
