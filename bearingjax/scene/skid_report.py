@@ -204,7 +204,8 @@ def _ending(run):
         missing = float(np.abs(found.imbalance).max())
         done = (
             f"integrated in {shown_count(int(found.steps), 'step')},"
-            f" {int(found.rejected)} of them rejected; {missing:.1e} J of the work not accounted for"
+            f" {int(found.rejected)} of them rejected; {missing:.1e} J of the work not"
+            " accounted for"
         )
     return done
 
