@@ -15,7 +15,7 @@ import pytest
 import bearingjax as bj
 from bearingjax import design
 from bearingjax.numerics.types import as_real
-from bearingjax.numerics.units import stated_units, unit, unit_of
+from bearingjax.numerics.units import shown_count, stated_units, unit, unit_of
 from bearingjax.scene.quantity import KINDS, kind_of
 from bearingjax.statics.solution import BallSolution, RollerSolution
 from bearingjax.statics.sweep import SUMMARIES
@@ -175,3 +175,8 @@ def test_a_column_of_another_shape_than_the_field_has_no_unit_of_one_entry():
         "peak_pressure": "Pa",
     }
     assert _label("power", (), ()) == ("power", "")
+
+
+def test_one_thing_is_shown_in_the_singular():
+    shown = [shown_count(count, "step") for count in (0, 1, 2)]
+    assert shown == ["0 steps", "1 step", "2 steps"]

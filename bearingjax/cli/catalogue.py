@@ -65,7 +65,10 @@ def run(options) -> int:
     def draw(path):
         from ..plot import cross_sections
 
-        titles = [f"{e.designation}, inner geometry {e.geometry}" for e in chosen]
+        titles = [
+            f"{e.designation}, inner geometry {e.geometry}; ring bodies schematic"
+            for e in chosen
+        ]
         save(cross_sections([entry.bearing for entry in chosen], titles), path)
 
     def draw_all_of_it(path):

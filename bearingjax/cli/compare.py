@@ -40,7 +40,7 @@ def run(options, tools: Tools) -> Outcome:
     found = run_compare(scenes)
     named = list(zip(found.names, found.solved, strict=True))
     return Outcome(
-        " and ".join(found.names),
+        ", ".join(found.names),
         {f"{name}: {k}": v for name, one in named for k, v in one.scene.inputs.items()},
         lambda: compare_as_dict(found),
         compare_report(found),

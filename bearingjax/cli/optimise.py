@@ -57,7 +57,7 @@ def run(options, tools: Tools) -> Outcome:
     def draw_bearing():
         from ..plot import drawing
 
-        return drawing(element_of(found.element).bearing, name)
+        return drawing(element_of(found.element).bearing, f"{name}, optimised")
 
     return Outcome(
         name,

@@ -114,6 +114,11 @@ def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
     return _SHOWN.get(unit, (1.0, unit))
 
 
+def shown_count(count: int, noun: str) -> str:
+    """A number of things, as it is shown to people: "1 step", "2 steps"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 CELSIUS = 273.15
 """0 °C [K]."""
 

@@ -177,7 +177,7 @@ def _scale_text(scale, turn):
     times = f"{drawn * turn / 360.0:.2g} times"
     if drawn < true:
         return f"ellipses: width {times} that of the azimuth, narrower than true"
-    return f"ellipses in true shape, {times} the scale of the azimuth"
+    return f"ellipses in true shape, enlarged {times}"
 
 
 def _ellipse_patches(ax, patches, colour, count):

@@ -47,7 +47,7 @@ def centre_pressure(
     label = "contact pressure at x = 0 [MPa]"
     finish(ax, "Pressure along the roller", ALONG.label, label)
     ax.legend(
-        title=f"load: at the ends [MPa], cells of {end_length(solutions[0])}",
+        title=f"load: pressure in the end cells, {end_length(solutions[0])} long [MPa]",
         ncols=1 if len(solutions) < 3 else 2,
         fontsize=SMALL,
         title_fontsize=SMALL,

@@ -77,9 +77,11 @@ def _lives(run, order, ax):
         ax.bar_label(drawn, labels, fontsize=SMALL, rotation=90, padding=2)
     ax.set_yscale("log")
     if known.size:
-        ax.set_ylim(0.3 * known.min(), 10.0 * top)
+        highest = top if any(~(x <= top).all() for x in every.values()) else most
+        ax.set_ylim(0.3 * known.min(), 10.0 * highest)  # room for labels and legend
     title, of = "Life of each case, if it were alone", "life [million revolutions]"
     _finish(run, order, ax, title, of)
+    ax.legend(fontsize=SMALL, ncols=len(every), loc="upper right")
 
 
 def _shares(run, order, ax):

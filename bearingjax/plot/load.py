@@ -83,15 +83,28 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
     balls = isinstance(solution, BallSolution)
     note = f"; circles every {every:g} {unit}" if every else ""
     ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{note}")
+    handles = handles if zone.all() else [*handles, unloaded]
+    zone_legend(ax, handles, [str(handle.get_label()) for handle in handles])
+    return ax
+
+
+def zone_legend(ax: Axes, handles: list[Any], labels: list[str]) -> None:
+    """Draw a legend to the right of a load zone.
+
+    Args:
+        ax: Polar axes.
+        handles: Bars and markers.
+        labels: Text of each.
+    """
     ax.legend(
-        handles=handles if zone.all() else [*handles, unloaded],
+        handles,
+        labels,
         loc="center left",
         bbox_to_anchor=(1.1, 0.5),
         fontsize=SMALL,
         frameon=False,
         handlelength=1.2,
     )
-    return ax
 
 
 def _step(azimuth, count):

@@ -207,7 +207,7 @@ def contact_state_map(
     ax.tick_params(axis="y", labelsize=SMALL)
     ax.set_xlabel("turns of the shaft")
     ax.set_ylabel("rolling element")
-    ax.set_title("Contacts of every rolling element", pad=24.0)
+    ax.set_title("Contacts of every rolling element; share of the time", pad=24.0)
     ax.legend(
         handles=[
             Patch(

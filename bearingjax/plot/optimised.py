@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import AbstractRollerBearing, rows_of
+from ..numerics.units import shown_count
 from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.optimise import Optimised
@@ -142,9 +143,10 @@ def _pressures(found, case) -> Panel:
         label = f"{side}: roller at {angle:.4g}°, {RACEWAYS[raceway]} raceway"
         values, look = pressure[roller, raceway], {"lw": 2}
         marks.append(Curve(position, values, label, *_SIDES[side], look))
-    title = f"Pressure along the most pressed roller, case {case}"
+    title = f"Pressure along the roller of highest pressure, case {case}"
     wide = lambda ax: ax.margins(x=0)  # noqa: E731
-    return Panel(title, ALONG, PRESSURE, marks, floor=True, also=wide)
+    legend = {"loc": "lower center"}  # curves rise at the ends
+    return Panel(title, ALONG, PRESSURE, marks, floor=True, legend=legend, also=wide)
 
 
 def _cases(found) -> Panel:
@@ -226,15 +228,20 @@ def _history(found) -> Panel:
     size = abs(values[0]) or 1.0
     name, look = label_of(measure), {"markersize": 4}
     smooth = "smooth " if isinstance(measure, AbstractSmooth) else ""
-    over, of = Axis("step of the search"), Axis(f"{smooth}{name} over its start")
+    over, of = (
+        Axis("step of the search"),
+        Axis(f"{smooth}{name}, relative to the start"),
+    )
     marks = [Curve(steps, values / size, name, ROLLER, "o-", look)]
     twin = None
     if history.violation.any():
-        label, colour = "miss of the worst constraint", COLOURS["inner"]
+        label, colour = "violation of the worst constraint", COLOURS["inner"]
         missed = [Curve(steps, history.violation, label, colour, "s:", look)]
-        twin = Panel("", over, Axis("miss over the bound"), missed, floor=True)
+        twin = Panel(
+            "", over, Axis("violation, relative to the bound"), missed, floor=True
+        )
 
-    title = f"The search: {found.n_evaluations} designs evaluated"
+    title = f"The search: {shown_count(found.n_evaluations, 'design')} evaluated"
     return Panel(
         title, over, of, marks, twin=twin, legend=None if twin is None else {},
         also=lambda ax: ax.xaxis.get_major_locator().set_params(integer=True),

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..design import AbstractBearing, BearingSet
 from ..numerics.result import Result
+from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from ..statics.warning import warnings
 from .balls import contact_angles, ellipses
@@ -90,7 +91,7 @@ def _results(solution):
         f"largest {element} load {force_text(load[roller, ring])} at {azimuth:.4g}°,  "
         f"largest pressure {1e-6 * pressure.max():.4g} MPa,  "
         f"{np.count_nonzero(np.asarray(solution.load_zone))} of {len(load)} {element}s"
-        f" loaded,  {result},  {count} warning{'' if count == 1 else 's'}",
+        f" loaded,  {result},  {shown_count(count, 'warning')}",
     )
 
 

@@ -20,6 +20,8 @@ from .style import (
 
 _LINES = {"outer": "--", "inner": "-"}
 _MAPS = {"outer": "Blues", "inner": "Oranges"}
+_LONG = 0.7
+"""Share of the roller from which a contact is long."""
 
 
 def pressure_profiles(
@@ -89,15 +91,19 @@ def pressure_profiles(
                 in_layout=False,
             )
     ax.set_xlim(position[0], position[-1])
-    top = np.nanmax(pressure[np.ix_(rollers, rings)], initial=0.0)
-    ax.set_ylim(0.0, 1.08 * top if top > 0 else 1.0)
+    shown = pressure[np.ix_(rollers, rings)]
+    top = np.nanmax(shown, initial=0.0)
+    # Under a long contact there is room for the legend, else above.
+    short = np.mean(np.any(shown > 0.0, axis=(0, 1))) < _LONG
+    ax.set_ylim(0.0, (1.8 if short else 1.08) * top if top > 0 else 1.0)
     which = "" if raceway == "both" else f", {raceway} raceway"
     title = f"Most loaded rollers{which}{_of_row(solution, row)}"
     finish(ax, title, ALONG.label, PRESSURE.label)
     title = "azimuth: load"
     if np.any(edges[np.ix_(rollers, rings)]):
         title += "\n▲ loaded roller end"
-    ax.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, loc="best")
+    loc = "upper center" if short else "best"
+    ax.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, loc=loc)
     return ax
 
 

@@ -102,10 +102,15 @@ def _end(ax, x, drop, height, text):
     ax.annotate(
         text,
         (at, 0.0),
-        (0.8 * x, height),
+        (at, height),
         fontsize=SMALL,
         ha="right",
-        arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6},
+        arrowprops={
+            "arrowstyle": "-",
+            "color": GREY,
+            "linewidth": 0.6,
+            "relpos": (1.0, 0.0),  # straight down, beside the spans
+        },
     )
 
 

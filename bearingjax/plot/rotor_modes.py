@@ -146,6 +146,7 @@ def runs(chosen):
 
 def _critical(ax, critical, rpm, top):
     """Mark critical speeds on the synchronous line, with numbers for forward whirl."""
+    look: Any = {"ls": "none", "marker": "o", "mec": "black", "ms": 7, "zorder": 5}
     label = "critical speed"
     sense = np.where(is_axial(critical.shape), 0, critical.whirl)
     for speed, whirl in zip(np.asarray(critical.speed), sense, strict=True):
@@ -155,11 +156,10 @@ def _critical(ax, critical, rpm, top):
         if at / 60.0 > top:
             continue
         colour = WHIRLS[int(whirl)][1]
-        ax.plot(
-            [at], [at / 60.0], "o", color=colour, mec="black", ms=7, label=label,
-            zorder=5, ls="none",
-        )  # fmt: skip
+        # White in the legend: points have the colour of their whirl.
+        ax.plot([], [], color="white", label=label, **look)
         label = "_critical speed"
+        ax.plot([at], [at / 60.0], color=colour, label=label, **look)
         if whirl == 1:
             ax.annotate(
                 f"{at:.0f} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,

@@ -8,12 +8,12 @@ import numpy as np
 
 from ..numerics.gravity import GRAVITY
 from ..rotor import BearingSupport, LinearSupport, Rotor
-from .load import load_zone
+from .load import load_zone, zone_legend
 from .rotor import rotor_section
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white
 
 _ACROSS = 4
-"""Load zones side by side."""
+"""Most load zones side by side."""
 _AXES = ("x", "y")
 _COLOURS = (INNER, OUTER)
 
@@ -30,7 +30,8 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
     """
     system = run.task.system
     shown = [b for b in run.bearings if b.solution is not None]
-    n_shafts, rows = len(system.shafts), -(-len(shown) // _ACROSS)
+    across = max(1, min(_ACROSS, len(shown)))
+    n_shafts, rows = len(system.shafts), -(-len(shown) // across)
     figure = pyplot().figure(figsize=(18.0, 1.0 + 4.6 * n_shafts + 4.4 * rows))
     grid = figure.add_gridspec(
         n_shafts + rows, 15, left=0.05, right=0.95, wspace=1.6, hspace=0.42,
@@ -51,16 +52,22 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         for place, (label, values) in enumerate(lines.items()):
             ax = figure.add_subplot(grid[k, 6 + 3 * place : 9 + 3 * place])
             _line(ax, state.position, values, label)
+    named: dict[str, Any] = {}
     for k, bearing in enumerate(shown):
-        row, place = divmod(k, _ACROSS)
-        wide = 15 // _ACROSS
+        row, place = divmod(k, across)
+        wide = 15 // across
         spec = grid[n_shafts + row, place * wide : (place + 1) * wide]
         ax = figure.add_subplot(spec, projection="polar")
         load_zone(bearing.solution, ax)
-        ax.set_title(f"Bearing {bearing.name}")
-        legend = ax.get_legend()
-        if place + 1 < _ACROSS and k + 1 < len(shown) and legend is not None:
-            legend.remove()
+        ax.set_title(f"Bearing {bearing.name}\n{ax.get_title()}")
+        # One legend for each line of load zones, beside the last.
+        legend: Any = ax.get_legend()
+        labels = [text.get_text() for text in legend.get_texts()]
+        named = {} if place == 0 else named
+        named |= dict(zip(labels, legend.legend_handles, strict=True))
+        legend.remove()
+        if place + 1 == across or k + 1 == len(shown):
+            zone_legend(ax, list(named.values()), list(named))
     head(figure, title or "Shafts")
     return figure
 

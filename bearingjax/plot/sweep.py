@@ -59,11 +59,11 @@ def sweep_overview(
         )
     }
     shown = list(results.items())[:_MOST_RESULTS]
-    across = max(1, min(3, len(shown)))
+    across = 2 if len(shown) == 4 else max(1, min(3, len(shown)))
     down = max(1, -(-len(shown) // across))
     figure = pyplot().figure(figsize=(5.0 * across, 0.8 + 3.4 * down))
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.1)
-    label, curves = _curves(inputs, good)
+    label, note, curves = _curves(inputs, good)
     for k, (header, values) in enumerate(shown):
         ax = without_offset(figure.add_subplot(down, across, k + 1))
         words, scale = _shown(header, values)
@@ -86,7 +86,11 @@ def sweep_overview(
                 loc="outside lower center",
                 ncols=min(3, len(handles)),
                 fontsize=SMALL,
+                title=f"curves of one colour: {note}" if note else None,
+                title_fontsize=SMALL,
             )
+        elif k == 0 and note:
+            figure.supxlabel(f"each curve: {note}", fontsize=SMALL)
     if not shown:
         figure.text(0.5, 0.5, "no result differs from case to case", ha="center")
     head(figure, title or "Sweep")
@@ -114,10 +118,11 @@ def _varying(found, good) -> dict[str, np.ndarray]:
     }
 
 
-def _curves(inputs, good) -> tuple[str, list[_Curve]]:
-    """Return the label of the abscissa, and the curves."""
+def _curves(inputs, good) -> tuple[str, str, list[_Curve]]:
+    """Return the label of the abscissa, a note on inputs that neither it nor colours
+    tell, and the curves."""
     solved = np.flatnonzero(good)
-    by_number = _NUMBER, [_Curve(solved, solved, 0, "")]
+    by_number = _NUMBER, "", [_Curve(solved, solved, 0, "")]
     if not inputs:
         return by_number
     along = max(inputs, key=lambda name: len(np.unique(inputs[name][solved])))
@@ -140,7 +145,16 @@ def _curves(inputs, good) -> tuple[str, list[_Curve]]:
         text, factor = _shown(name, values) if name else ("", 0.0)
         name_and_value = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
         curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
-    return words, curves
+    rest = ", ".join(_span(*pair) for pair in others if pair[0] != name)
+    return words, rest, curves
+
+
+def _span(header, values):
+    """Return the name of an input, and its least and largest value, as text."""
+    words, scale = _shown(header, values)
+    low, high = scale * np.nanmin(values), scale * np.nanmax(values)
+    name = words.partition(" [")[0]
+    return f"{name} from {low:.4g} to {high:.4g} {_unit(words)}".rstrip()
 
 
 def _colouring(others, solved):

@@ -9,6 +9,7 @@ import numpy as np
 from .._version import __version__
 from ..element.frame import FREEDOMS
 from ..numerics.result import Result
+from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS
 from ..statics.sweep import SUMMARIES
 from ..statics.sweep_table import OPERATING_CLEARANCE, spread
@@ -143,7 +144,8 @@ def compare_report(found: Comparison) -> Report:
         ]
         parts.append(Grid(columns))
     same = len(found.quantities) - len(rows)
-    parts += [f"{same} results are the same"] if same else []
+    be = "is" if same == 1 else "are"
+    parts += [f"{shown_count(same, 'result')} {be} the same"] if same else []
     warned = [
         f"{name}: {text}"
         for name, one in zip(found.names, found.solved, strict=True)

@@ -8,6 +8,7 @@ from .._version import __version__
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
+from ..numerics.units import shown_count
 from .contact_table import ContactScene
 from .report_model import NEWTONS, Column, Grid, Report
 
@@ -66,7 +67,7 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
         length = 2e6 * float(sharp[0].solution.grid.half_y[0])
         found.append(
             f"{_named(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
-            " um long; under a sharp end it grows without limit as cells shrink:"
+            " µm long; under a sharp end it grows without limit as cells shrink:"
             " compare at fixed distances from the end"
         )
     return found
@@ -261,8 +262,8 @@ def _ending(cases):
     steps = max(int(case.solution.steps) for case in cases)
     residual = max(float(case.solution.residual) for case in cases)
     return (
-        f"converged in {steps} steps, largest gap left {residual:.1e} of the mean"
-        " displacement"
+        f"converged in {shown_count(steps, 'step')}, largest gap left"
+        f" {residual:.1e} of the mean displacement"
     )
 
 

@@ -45,8 +45,8 @@ td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 table.grid { width: auto; margin: .5rem 0 }
 .grid caption { text-align: left; padding: .3rem 0 }
 .grid th, .grid td { padding-right: 1.1rem }
-.grid .value { text-align: right; white-space: nowrap;
-  font-variant-numeric: tabular-nums }
+.grid .value { text-align: right; font-variant-numeric: tabular-nums }
+.grid td.value { white-space: nowrap } .grid th { vertical-align: bottom }
 .grid th .unit { font-weight: normal; color: #57606a }
 .cases th, .cases td { font-size: 11px; white-space: nowrap }
 .cases th { white-space: normal; vertical-align: bottom }
@@ -211,8 +211,11 @@ def _inputs(inputs: Mapping[str, Any]) -> str:
             for key, value in flat(held)
         ]
     body = "\n".join(rows)
-    note = "<p>All that was read, in SI; what the scene leaves out has its default.</p>"
-    return _section("Inputs", f"{note}\n<table>\n{body}\n</table>")
+    cases = ", [cases] as written" if "cases" in inputs else ""
+    note = (
+        f"All that was read, in SI{cases}; what the scene leaves out has its default."
+    )
+    return _section("Inputs", f"<p>{note}</p>\n<table>\n{body}\n</table>")
 
 
 def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
@@ -236,16 +239,16 @@ def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
 
 
 def _shown(value: Any) -> str:
-    """Format a value as text: numbers with at most twelve digits."""
+    """Format a value as text: numbers with at most eight digits, integers with all."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return ", ".join(map(_shown, value))
     if isinstance(value, bool):
         return str(value).lower()  # as in TOML
-    if isinstance(value, float):
-        return f"{value:.12g}"
+    if isinstance(value, int):
+        return str(value)
     number, space, unit = str(value).partition(" ")
     try:
-        return f"{float(number):.12g}{space}{unit}"
+        return f"{float(number):.8g}{space}{unit}"
     except ValueError:
         return str(value)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._version import __version__
 from ..numerics.result import Result
+from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
 from ..statics.rating import Ratings, ratings
 from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
@@ -266,7 +267,7 @@ def _lives(run) -> list[Part]:
     )
     at_rest = run.asked.life_hours is None
     told: list[Part] = [
-        f"{table.scene.name}: life under {table.cases.count} cases over"
+        f"{table.scene.name}: life under {shown_count(table.cases.count, 'case')} over"
         f" {', '.join(table.varied)}",
         rated["C"],
         rated["C0"],

@@ -6,6 +6,7 @@ from ..element.frame import LOADS
 from ..noise import ring_modes
 from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
+from ..numerics.units import shown_count
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import AXES
@@ -61,16 +62,16 @@ def _bearing(run):
             f" {tilts}",
             f"loaded by {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
             f" {outer:.5g} rpm",
-            f"record of {task.turns} turns, {float(record.duration):.4g} s, after"
-            f" {task.settle} to settle; {len(record.time)} samples, {run.steps} steps"
-            f" each{bridging}",
+            f"record of {shown_count(task.turns, 'turn')}, {float(record.duration):.4g}"
+            f" s, after {task.settle} to settle; {len(record.time)} samples,"
+            f" {shown_count(run.steps, 'step')} each{bridging}",
         ]
     )
 
 
 def _modes(run):
     found = [
-        f"{frequency:.5g} Hz, {name}"
+        f"{frequency:.5g} Hz {name.removeprefix('natural mode ')}"
         for name, frequency in ring_modes(run.modes, run.task.model)
     ]
     return "natural modes of the ring: " + ("; ".join(found) or "none")
@@ -124,11 +125,13 @@ def _lines(run):
 def _states(run):
     states = run.analysis.states
     text = ", ".join(
-        f"{k}: {100.0 * share:.3g} %" for k, share in enumerate(states.shares) if share
+        f"{k} for {100.0 * share:.3g} %"
+        for k, share in enumerate(states.shares)
+        if share
     )
     kind = f"{run.task.model.element.bearing.noun}s"
     return (
-        f"contacts of the {kind}, share of the time: {text};"
+        f"contacts of the {kind}: {text} of the time;"
         f" {states.switches_per_turn:.4g} open or close per turn of the shaft"
     )
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
-from ..numerics.units import CELSIUS, display_unit, unit_of
+from ..numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
@@ -31,11 +31,11 @@ def optimisation_report(task: Task, found: Optimised, best: Any = None) -> Repor
     """
     best = scene_of_design(task, found.element) if best is None else best
     cases = found.cases.count
-    plural = "s" * (cases != 1)
     head = (
-        f"{task.scene.name}: optimised over {cases} operating case{plural} in"
-        f" {len(found.history.objective) - 1} steps,\n{found.n_evaluations} designs"
-        f" evaluated, {found.n_gradients} with gradient, {len(found.rejected)} rejected"
+        f"{task.scene.name}: optimised over {shown_count(cases, 'operating case')} in"
+        f" {shown_count(len(found.history.objective) - 1, 'step')},\n"
+        f"{shown_count(found.n_evaluations, 'design')} evaluated,"
+        f" {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
     warned = [f"rejected: {why}" for why in dict.fromkeys(found.rejected)]
     warned += [*best.warnings, *found.after.warnings]
@@ -263,7 +263,9 @@ def _variables(found):
         low, high, before, after = (
             scale * (x - zero) for x in (v.lower, v.upper, first, last)
         )
-        bound = {v.lower: ", at the lower", v.upper: ", at the upper"}.get(last, "")
+        bound = {v.lower: ", at the lower one", v.upper: ", at the upper one"}.get(
+            last, ""
+        )
         name, bounds = (
             v.name.removeprefix("bearing."),
             f"{low:.5g} to {high:.5g}{bound}",
@@ -281,7 +283,7 @@ def _measures(found):
         shown, (first, last) = _as_reported(measure, values)
         scale, unit = _unit(shown)
         largest = isinstance(measure, AbstractMeasure) and measure.maximised
-        made = "made largest" if largest else "made least"
+        made = "maximised" if largest else "minimised"
         kept = made if k == 0 else _kept(found, k - 1, scale)
         exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
         rows.append((label_of(shown), *exact, unit, kept))

@@ -19,6 +19,7 @@ from ..design import (
     rows_of,
 )
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
+from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, Solution
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .life_report import life_section
@@ -53,8 +54,8 @@ def report(found: SolvedScene) -> Report:
         "Rating life": [] if life is None else life_section(scene, solution, life),
         "Friction and films": [] if scene.oil is None else oil_report(scene.oil, oil),
         "Solution": [
-            f"converged in {int(solution.stats.iterations)} steps, residual"
-            f" {float(solution.stats.residual):.1e} of the load"
+            f"converged in {shown_count(int(solution.stats.iterations), 'step')},"
+            f" residual {float(solution.stats.residual):.1e} of the load"
         ],
     }
     return Report(sections, found.warnings)

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from ..numerics.units import shown_count
 from ..rotor import STATION_FREEDOMS
+from ..rotor.nonlinear import BranchEnd
 from .fit_report import fit_report
 from .report import without_round_off
 from .report_model import NEWTONS, Column, Grid, Part, Report, Section
@@ -11,6 +13,13 @@ from .rotor_output import UNITS, mode_numbers
 from .rotor_run import RotorRun
 
 _HZ, _RPM = 0.5 / np.pi, 30.0 / np.pi
+_ENDS = {
+    BranchEnd.LIMIT: "is complete",
+    BranchEnd.POINTS: "ends at the largest number of points",
+    BranchEnd.SMALL_STEP: "ends, as no step leads on",
+    BranchEnd.NO_START: "has no orbit at the first frequency",
+    BranchEnd.REST: "ends at frequency zero",
+}
 _STIFFNESS = 1e-6, "N/µm"
 _AXES = tuple(enumerate("xyz"))
 _WHIRL = {1: "forward", -1: "backward", 0: "-"}
@@ -164,7 +173,7 @@ def _modes(run):
     title = f"modes at {rpm(run.task.speed)}"
     return [
         *([Grid(columns, title)] if there.any() else []),
-        *([f"{rest} modes do not oscillate"] if rest else []),
+        *([f"not oscillating: {shown_count(rest, 'mode')}"] if rest else []),
     ]
 
 
@@ -228,6 +237,7 @@ def _response(run, found: RotorResponse):
         Column("uy", ends[:, 1], "m", ".4g"),
     ]
     title = f"{head}: {len(span)} points, {span.min():.5g} to {span.max():.5g} Hz"
+    title += "; * is the `station` asked for"
     parts: list[Part] = [Grid(columns, title)]
     branch = found.branch
     if branch is None:
@@ -242,8 +252,7 @@ def _response(run, found: RotorResponse):
         )
     stable = int(branch.stable.sum())
     parts.append(
-        f"{stable} of {len(span)} points are stable; the branch ends:"
-        f" {branch.ending.label.replace('_', ' ')}"
+        f"{stable} of {len(span)} points are stable; the branch {_ENDS[branch.ending]}"
     )
     return parts
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..numerics.units import shown_count
 from .life_report import life_number, life_section
 from .oil_table import oil_report
 from .report import fits_section
@@ -28,7 +29,7 @@ def shaft_report(run: ShaftRun) -> Report:
         "Rating life": _lives(run),
         "Load cases": _cases(run),
         "Solution": [
-            f"converged in {int(run.solution.steps)} steps, residual"
+            f"converged in {shown_count(int(run.solution.steps), 'step')}, residual"
             f" {float(run.solution.residual):.1e} of the load"
         ],
     }

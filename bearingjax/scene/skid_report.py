@@ -4,6 +4,7 @@ import numpy as np
 
 from ..element.frame import LOADS
 from ..lubrication import Regime
+from ..numerics.units import shown_count
 from .lubricant_table import TRACTIONS, described
 from .report import ball_row, by_ring, roller_row
 from .report_model import DEGREES, NEWTONS, Column, Grid, Report, labelled
@@ -196,14 +197,15 @@ def _ending(run):
     found = run.found
     if run.task.steady:
         done = (
-            f"converged in {int(found.steps)} steps, residual"
+            f"converged in {shown_count(int(found.steps), 'step')}, residual"
             f" {float(found.residual):.1e} of the tractions"
         )
     else:
         missing = float(np.abs(found.imbalance).max())
         done = (
-            f"integrated in {int(found.steps)} steps, {int(found.rejected)} of them"
-            f" rejected; {missing:.1e} J of the work not accounted for"
+            f"integrated in {shown_count(int(found.steps), 'step')},"
+            f" {int(found.rejected)} of them rejected; {missing:.1e} J of the work not"
+            " accounted for"
         )
     return done
 

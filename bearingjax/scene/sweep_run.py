@@ -9,7 +9,7 @@ import numpy as np
 
 from .._version import __version__
 from ..design import radial_clearance, rows_of
-from ..numerics.units import display_unit
+from ..numerics.units import display_unit, shown_count
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS, LifeConditions
 from ..statics.preload import is_opposed, pressed
@@ -194,7 +194,8 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
     count = solved.cases.count
     told: list[Part] = [
-        f"{table.scene.name}: {count} cases over {', '.join(table.varied)}",
+        f"{table.scene.name}: {shown_count(count, 'case')} over"
+        f" {', '.join(table.varied)}",
         f"{counts}; {seconds:.3g} s, compiling included",
     ]
     if len(table.settings) > 1:

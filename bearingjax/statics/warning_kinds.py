@@ -19,6 +19,7 @@ from ..element.bearing_element import BearingElement
 from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
+from ..numerics.units import shown_count
 from . import warning_sizes as sizes
 from .rollers import EDGE_PRESSURE
 from .solution import Solution
@@ -213,8 +214,9 @@ def _land_words(size, where):
     return (
         "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
         f" more than {100.0 * sizes.LAND_SHARE:g} % of a contact's load:"
-        f" {where or f'{size:.0f} balls'}; pressure and stiffness there are worked out"
-        " with the curvature of the groove, a land presses harder and is softer"
+        f" {where or shown_count(round(size), 'ball')}; pressure and stiffness there"
+        " are worked out with the curvature of the groove, a land presses harder and is"
+        " softer"
     )
 
 
@@ -222,7 +224,7 @@ def _lifted_words(size, where):
     return (
         "lifted off the inner raceway by centrifugal force, more than"
         f" {100.0 * sizes.SMALLEST_LIFT:g} % of the largest load: "
-        f"{where or f'{size:.0f} balls'}"
+        f"{where or shown_count(round(size), 'ball')}"
     )
 
 
@@ -347,7 +349,7 @@ KINDS: dict[str, Kind] = {
         sizes.lifted_count,
         0.0,
         _lifted_words,
-        lambda s: f"balls {sizes.listed(np.flatnonzero(sizes.lifted(s)))}",
+        lambda s: sizes.numbered("ball", np.flatnonzero(sizes.lifted(s))),
     ),
     "edge_loaded": Kind(
         _of_rollers,

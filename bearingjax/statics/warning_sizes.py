@@ -152,15 +152,26 @@ def _one(solution, flags):
 
 
 def listed(numbers: Any) -> str:
-    """Whole numbers in words."""
-    return ", ".join(str(int(number)) for number in numbers)
+    """Rising whole numbers in words: "0 to 2, 10, 11"."""
+    found = np.asarray(numbers, dtype=int)
+    runs = np.split(found, np.flatnonzero(np.diff(found) != 1) + 1)
+    return ", ".join(
+        f"{run[0]} to {run[-1]}" if run.size > 2 else ", ".join(map(str, run))
+        for run in runs
+        if run.size
+    )
+
+
+def numbered(noun: str, numbers: Any) -> str:
+    """Some of several by their numbers, in words: "roller 2", "balls 0 to 3"."""
+    return f"{noun}{'' if len(numbers) == 1 else 's'} {listed(numbers)}"
 
 
 def of_raceways(solution: Solution, flags: Any) -> str:
     """Raceways and rolling elements where `flags` (element, 2) are set, in words."""
-    noun = f"{solution.element.bearing.noun}s"
+    noun = solution.element.bearing.noun
     return "; ".join(
-        f"{ring} raceway: {noun} {listed(np.flatnonzero(mine))}"
+        f"{ring} raceway: {numbered(noun, np.flatnonzero(mine))}"
         for ring, mine in zip(RINGS, np.asarray(flags).T, strict=True)
         if mine.any()
     )

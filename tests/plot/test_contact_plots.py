@@ -108,7 +108,7 @@ def test_centre_lines_beside_slices(solutions, sliced):
     legend = ax.get_legend()
     cell = 2e6 * float(solutions[0].grid.half_y[0])
     head = legend.get_title().get_text()
-    assert head == f"load: at the ends [MPa], cells of {cell:.3g} µm"
+    assert head == f"load: pressure in the end cells, {cell:.3g} µm long [MPa]"
     texts = [text.get_text() for text in legend.get_texts()]
     ends = 1e-6 * np.asarray(solutions[0].centre_pressure)[[0, -1]]
     assert texts[0] == f"1 kN: {ends[0]:.0f}, {ends[1]:.0f}"

@@ -138,6 +138,16 @@ def test_pressure_profiles_of_both_raceways_and_few_rollers(one_roller):
     assert len(legend(ax)) == 2
 
 
+def test_a_short_contact_leaves_room_for_the_legend(solution):
+    position = jnp.abs(solution.position)
+    short = jnp.where(position < 0.4 * position.max(), 1e9, 0.0)
+    pressure = jnp.broadcast_to(short, solution.contact_pressure.shape)
+    least = eqx.tree_at(lambda s: s.contact_pressure, solution, pressure)
+    assert plot.pressure_profiles(least).get_ylim()[1] > 1.5e3
+    long = eqx.tree_at(lambda s: s.contact_pressure, solution, 0.0 * pressure + 1e9)
+    assert plot.pressure_profiles(long).get_ylim()[1] < 1.2e3
+
+
 def test_pressure_profiles_mark_loaded_ends(solution):
     pressed = jnp.full_like(solution.edge_pressure, 1e9)
     edge = eqx.tree_at(lambda s: s.edge_pressure, solution, pressed)

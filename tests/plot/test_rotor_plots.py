@@ -1,6 +1,7 @@
 """What plots of rotors draw: sizes, lines, names and units, not pixels."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -174,6 +175,10 @@ def test_campbell_diagram_tells_directions_and_critical_speeds():
     marked = np.concatenate(named(ax, "critical speed") + named(ax, "_critical speed"))
     assert np.allclose(marked[:, 0], RPM * np.array([90.9, 111.1]))
     assert [t.get_text() for t in ax.texts] == ["1061 rpm"]
+    # Points have the colour of their whirl, and that of the legend has none.
+    handles, labels = ax.get_legend_handles_labels()
+    mark: Any = handles[labels.index("critical speed")]
+    assert mark.get_color() == "white"
     assert "planar, axial" not in legend(ax)
     # A mode along the axis has no direction, whatever its trace of whirl.
     axial = all_modes(

@@ -60,6 +60,19 @@ def test_a_grid_is_drawn_over_the_input_with_most_values():
     assert [name.partition("[µm]: ")[2] for name in names] == ["0", "20"]
 
 
+def test_inputs_that_neither_axis_nor_colour_tells_are_named():
+    play = np.repeat([0.0, 20e-6], 8)
+    tilt = np.tile(np.repeat([0.0, 2e-3], 4), 2)
+    fy = np.tile(FY[:4], 4)
+    beside = {"play [m]": play, "gx [rad]": tilt}
+    (legend,) = bj.plot.sweep_overview(swept(fy), beside).figure.legends
+    assert legend.get_title().get_text() == "curves of one colour: gx from 0 to 2 mrad"
+    # Without colours, as of seven clearances, the axis names them all.
+    many = {"play [m]": np.repeat(1e-6 * np.arange(8), 2)}
+    figure = bj.plot.sweep_overview(swept(np.tile(FY[:2], 8)), many)
+    assert figure.axes[0].get_xlabel() == "play [µm]"
+
+
 def test_other_cases_are_drawn_over_their_number():
     fy = np.where(np.arange(16) == 5, FY[4], FY)  # one load twice
     figure = bj.plot.sweep_overview(swept(fy), {"play [m]": PLAY})

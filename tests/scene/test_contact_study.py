@@ -168,7 +168,7 @@ def test_published_numbers(paper):
     assert numbers["peak_cell_length"] == near(0.015 / 35)
     assert numbers["load"] == near(3000.0) and numbers["tilt"] == 0.0
     assert any("make 3.814 deg" in text for text in numbers["warnings"])
-    assert any("an end cell, 428.6 um long" in text for text in numbers["warnings"])
+    assert any("an end cell, 428.6 µm long" in text for text in numbers["warnings"])
     json.dumps(numbers, allow_nan=False)
 
 

@@ -550,7 +550,13 @@ def test_a_temperature_is_found(scene):
         after=after,
     )
     (row,) = _variables(found).rows()
-    assert row == ("temperature.inner_ring", "50", "20", "°C", "20 to 80, at the lower")
+    assert row == (
+        "temperature.inner_ring",
+        "50",
+        "20",
+        "°C",
+        "20 to 80, at the lower one",
+    )
     own = "{elastic_modulus='206 GPa', poisson_ratio=0.3, density='7850 kg/m^3'}"
     for settings, key, ends, message in (
         ((), "temperature.inner_ring", ("20 °C", "500 °C"), "500 °C is not allowed"),
@@ -713,7 +719,7 @@ def test_optimise_command_life_by_interference(run, scene, tmp_path, untyped):
     assert done.status == 0 and done.err == "" and picture.exists()
     found = json.loads(out.read_text())
     hours, (best,) = found["rating_life"], found["variables"]
-    assert hours["after"] > 1.02 * hours["before"] and "made largest" in done.out
+    assert hours["after"] > 1.02 * hours["before"] and "maximised" in done.out
     damage = found["objective"]["after"]["exact"]
     assert hours["after"] == pytest.approx(1.0 / damage, rel=1e-12)
     # As the life of a scene with this interference.

@@ -124,7 +124,7 @@ def test_command_finds_the_clearance_of_a_stiffness(run, written, undrawn, tmp_p
 def test_seats_of_a_shaft(written):
     """The lives are those of `bearingjax shaft`."""
     done, found, paths = written("seats")
-    assert "rating life" in done.out and "made largest" in done.out
+    assert "rating life" in done.out and "maximised" in done.out
     before, after = (found["rating_life"][side] for side in ("before", "after"))
     assert after > 1.2 * before
     assert min(of["rating_life"]["after"] for of in found["bearings"].values()) == after

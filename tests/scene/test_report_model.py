@@ -5,6 +5,7 @@ import pytest
 from pages import missing_on_page
 
 from bearingjax.scene import Column, Grid, Origin, Report, report_page
+from bearingjax.scene.html_report import flat
 from bearingjax.scene.report_model import DEGREES, labelled
 
 
@@ -66,6 +67,17 @@ def test_report_text_and_page_hold_the_same():
     assert not missing_on_page(page, text)
     assert page.index("beware") < page.index("<h2>First</h2>")
     assert "<h2>Empty</h2>" not in page and page.count('<table class="grid">') == 2
+
+
+def test_inputs_are_rounded_but_for_integers():
+    angle, modulus = "0.43633231299858233 rad", "206000000000.0 Pa"
+    inputs = {"a": [angle, modulus], "seed": 1234567891, "on": True, "b": {"c": 0.1}}
+    assert flat(inputs) == [
+        ("a", "0.43633231 rad, 2.06e+11 Pa"),
+        ("seed", "1234567891"),
+        ("on", "true"),
+        ("b.c", "0.1"),
+    ]
 
 
 def test_report_only_selects_sections():

@@ -610,7 +610,7 @@ def test_rotor_command_unfinished_branch(run, tmp_path):
     assert "raise `rotor.response.points`" in done.err
     assert found["response"]["ending"] == BranchEnd.POINTS.label
     assert len(found["response"]["frequency"]) == 2
-    assert "the branch ends: points" in done.out
+    assert "the branch ends at the largest number of points" in done.out
 
 
 def test_a_wrong_scene_is_exit_status_two(run):

@@ -224,7 +224,7 @@ def test_edge_load_is_a_warning(rig):
     (text,) = rig.numbers["warnings"]
     assert text.startswith("edge-loaded roller:")
     for name in ("outer", "inner"):
-        assert f"{name} raceway: rollers 0, 1, 2, 10, 11" in text
+        assert f"{name} raceway: rollers 0 to 2, 10, 11" in text
     assert rig["line_load"][0, :, 0].min() > 0.0
 
 

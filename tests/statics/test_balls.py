@@ -137,7 +137,7 @@ def test_truncated_ellipse_is_warned_of(angular):
     assert not warnings(light)
     (line,) = warnings(heavy)
     assert line.startswith("truncated contact ellipse: it reaches over the shoulder")
-    assert "inner raceway: balls 0, 1" in line and "outer" not in line
+    assert "inner raceway: balls 0 to 11" in line and "outer" not in line
     load = float(heavy.contact_load[0, 1])
     assert f"contact load of up to {load:.5g} N" in line
     # Height of the end of the ellipse on its arc.

@@ -16,6 +16,7 @@ from bearingjax.statics import seat_warnings, speed_warnings, sweep_table
 from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
+from bearingjax.statics.warning_sizes import listed
 
 STILL = bj.Speed(inner=0.0)
 
@@ -73,7 +74,7 @@ def test_balls_out_of_the_load_zone_are_not_lifted(deep):
     fast = solved(deep, [0, -50.0, 0, 0, 0, 0], bj.Speed(inner=2000.0))
     (told,) = (t for t in bj.warnings(fast) if t.startswith("lifted off"))
     lifted = np.flatnonzero(np.asarray(fast.lifted))
-    assert told.endswith(f"largest load: balls {', '.join(map(str, lifted))}")
+    assert told.endswith(f"largest load: balls {listed(lifted)}")
     # On both sides of the share that counts.
     top = float(slow.contact_load.max())
     for share, count in ((0.049, 0), (0.051, np.asarray(slow.lifted).sum())):
@@ -269,7 +270,7 @@ def test_warnings_edge_loading_ignores_light_pressure(rollers):
     assert not light.edge_loaded.any() and bj.warnings(light) == []
     (text,) = bj.warnings(heavy)
     assert text.startswith("edge-loaded roller: 800 MPa")
-    assert "(inner raceway: rollers 2)" in text
+    assert "(inner raceway: roller 2)" in text
 
 
 def test_warnings_are_empty_for_failed_solution(rollers):
@@ -390,4 +391,9 @@ def test_balls_beyond_the_bottom_of_their_groove():
         texts = [t for t in bj.warnings(s) if t.startswith("balls beyond the bottom")]
         assert bool(texts) is told
     loaded = np.flatnonzero(np.asarray(s.load_zone))
-    assert f"inner raceway: balls {', '.join(map(str, loaded))};" in texts[0]
+    assert f"inner raceway: balls {listed(loaded)};" in texts[0]
+
+
+def test_numbers_in_a_row_are_listed_by_their_ends():
+    assert listed(np.array([0, 1, 2, 10, 11, 13])) == "0 to 2, 10, 11, 13"
+    assert listed(np.array([4])) == "4"
