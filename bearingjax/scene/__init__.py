@@ -6,9 +6,7 @@ from .bearing_run import solve_scene as solve_scene
 from .bearing_run import with_set_preload as with_set_preload
 from .cases_table import CaseTable as CaseTable
 from .cases_table import read_cases as read_cases
-from .catalogue_entry import CatalogueEntry as CatalogueEntry
-from .catalogue_entry import catalogue as catalogue
-from .catalogue_entry import catalogue_entry as catalogue_entry
+from .catalogue_keys import listed_bearing as listed_bearing
 from .catalogue_report import catalogue_as_dict as catalogue_as_dict
 from .catalogue_report import catalogue_details as catalogue_details
 from .catalogue_report import catalogue_table as catalogue_table

@@ -36,12 +36,13 @@ from ..design import (
     smoothing,
     with_radial_clearance,
 )
+from ..design.catalogue_entry import CLEARANCE, class_limits
 from ..design.fit_range import ClearanceRange
 from ..design.fits import PARTS, FitState
 from ..element import BearingElement, Speed
 from ..statics.installed import Installed
 from ..statics.service_warning import seat_warnings
-from .catalogue_entry import CLEARANCE, CLEARED_ROLLERS, FromCatalogue, class_limits
+from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema, number_schema
@@ -199,9 +200,13 @@ class FitKeys(Keys):
             key = f"{seat}_interference"
             given = getattr(self, seat) is not None
             others = (key, *_DRIVEN) if seat == "shaft" else (key,)
-            beside = [name for name in others if getattr(self, name) is not None]
-            if len(beside) + given != 1:
-                seat, *rest = [seat, *beside] if given else beside or [seat]
+            given_otherwise = [
+                name for name in others if getattr(self, name) is not None
+            ]
+            if len(given_otherwise) + given != 1:
+                seat, *rest = (
+                    [seat, *given_otherwise] if given else given_otherwise or [seat]
+                )
                 problem = f"stands beside `{rest[0]}`" if rest else "is missing"
                 cure = f"give a tolerance class, such as {example}, or `{key}`"
                 raise self.table.error(seat, f"{problem}; {cure}")
@@ -317,7 +322,7 @@ class Fits:
 
 
 def read_fits(
-    beside: Table,
+    parent: Table,
     own: Table,
     bearing: AbstractBearing | BearingSet,
     speed: Speed | None,
@@ -326,7 +331,7 @@ def read_fits(
     """Read the fits of a scene; return them and the bearing with unmounted clearance.
 
     Args:
-        beside: The table that holds [fit] and [temperature]: the scene, or one bearing
+        parent: The table that holds [fit] and [temperature]: the scene, or one bearing
             of a rotor.
         own: The table of the bearing, as it was read.
         bearing: The design, unmounted.
@@ -341,21 +346,21 @@ def read_fits(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    temperature = beside.table("temperature")
-    if "fit" not in beside:
+    temperature = parent.table("temperature")
+    if "fit" not in parent:
         if temperature.keys():
             problem = "goes with a [fit]; without one nothing depends on it"
-            raise beside.error("temperature", problem)
+            raise parent.error("temperature", problem)
         return bearing, None
     row = rows_of(bearing)[0].bearing
     if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
-        raise beside.error("fit", f"{problem} leave [fit] and [temperature] out")
+        raise parent.error("fit", f"{problem} leave [fit] and [temperature] out")
     designs = {id(one.bearing) for one in rows_of(bearing)}
     if len(designs) > 1 and not shares_rings(bearing):
         problem = "is for rows of one bearing; those of this set differ"
-        raise beside.error("fit", problem)
-    keys = read_keys(FitKeys, beside.table("fit"))
+        raise parent.error("fit", problem)
+    keys = read_keys(FitKeys, parent.table("fit"))
     table, place = keys.table, keys.at
     sizes = _sizes(keys, catalogue)
     taper = _taper(keys, catalogue)

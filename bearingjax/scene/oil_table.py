@@ -16,7 +16,7 @@ from ..statics.contact_films import Films, films
 from ..statics.friction import Friction, friction_torque
 from ..statics.friction_skf import SkfFriction, skf_friction_torque, skf_series
 from ..statics.solution import Solution
-from .catalogue_entry import FromCatalogue
+from .catalogue_keys import FromCatalogue
 from .lubricant_table import LubricantKeys, described
 from .schema import read_keys
 from .table import Table
