@@ -198,7 +198,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["damage_share"] = np.asarray(run.asked.damage_share).tolist()
     return {
         **found,
-        "columns": listed_columns(life_columns(run)),
+        "columns": listed_columns(life_columns(run, exact=True)),
         "counts": run.solved.counts(),
         "warnings": run.warnings,
         "inputs": run.table.inputs,
@@ -206,9 +206,14 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     }
 
 
-def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
-    """Return the cases and their lives as columns by header, in SI."""
-    return columns(run.solved, design_columns(run.table))
+def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
+    """Return the cases and their lives as columns by header, in SI.
+
+    Args:
+        run: From `run_life`.
+        exact: As in `sweep_table.columns`.
+    """
+    return columns(run.solved, design_columns(run.table), exact=exact)
 
 
 def equivalent_load(run: LifeRun) -> float:
@@ -265,7 +270,7 @@ def _lives(run) -> list[Part]:
         for what in ("rating_life", "life_hours")
     )
     at_rest = run.asked.life_hours is None
-    told: list[Part] = [
+    parts: list[Part] = [
         f"{table.scene.name}: life under {table.cases.count} cases over"
         f" {', '.join(table.varied)}",
         rated["C"],
@@ -278,9 +283,9 @@ def _lives(run) -> list[Part]:
     ]
     if at_rest:
         fixed_to = life_conditions(table.scene).load_fixed_to
-        told.append(turning(turns_against_load(None, fixed_to), True))
-    told += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
-    return [*told, *_by_case(run)]
+        parts.append(turning(turns_against_load(None, fixed_to), True))
+    parts += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
+    return [*parts, *_by_case(run)]
 
 
 def _on_seats(run) -> str:
@@ -318,10 +323,10 @@ def _by_case(run) -> list[Part]:
         columns.append(Column(word, np.asarray(values)[order], "rev"))
     name = f"damage ({run.asked_name})"
     columns.append(Column(name, shares, "1", ".4g", (100.0, "%")))
-    told: list[Part] = ["", Grid(columns, "each case alone")]
+    parts: list[Part] = ["", Grid(columns, "each case alone")]
     more = run.table.cases.count - len(order)
     if more:
-        told.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
+        parts.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
     found = differing(run.table)
     if found:
         # Non-breaking spaces keep a setting in one line.
@@ -329,8 +334,8 @@ def _by_case(run) -> list[Part]:
             ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
             for k in order
         ]
-        told += ["", Grid([Column("case", order), Column("what differs", apart)])]
-    return told
+        parts += ["", Grid([Column("case", order), Column("what differs", apart)])]
+    return parts
 
 
 def unsolved(run: LifeRun) -> str:
