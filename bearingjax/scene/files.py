@@ -104,12 +104,12 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
             made = writer is not None and _made(path, writer, moves, written)
             if not made and path.is_file():
                 stale.append(path)
-        for path, beside, target in moves:
+        for path, temporary, target in moves:
             with _naming(path):
-                os.replace(beside, target)
+                os.replace(temporary, target)
     finally:
-        for _, beside, _ in moves:
-            beside.unlink(missing_ok=True)
+        for _, temporary, _ in moves:
+            temporary.unlink(missing_ok=True)
     for path in stale:
         with _naming(path):
             path.unlink()
@@ -122,12 +122,12 @@ def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
     stream, target = _is_stream(path), _target(path)
     # The suffix determines the format.
     name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
-    beside = path if stream else target.with_name(name)
+    temporary = path if stream else target.with_name(name)
     if not stream:
-        moves.append((path, beside, target))
+        moves.append((path, temporary, target))
     with _naming(path):
         try:
-            writer(beside)
+            writer(temporary)
         except Incomplete as error:
             written.failed.append((path, error))
         except (OSError, SceneError):
@@ -136,10 +136,10 @@ def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
             written.failed.append((path, error))
             if not stream:
                 moves.pop()
-                beside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
             return False
         if not stream and target.exists():
-            shutil.copymode(target, beside)
+            shutil.copymode(target, temporary)
     return True
 
 

@@ -92,7 +92,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
         "basic, ISO 281": life.basic_rating_life,
         "reference, ISO/TS 16281": life.reference_rating_life,
     }
-    told = []
+    factors_line = []
     if life.modified_rating_life is not None:
         lives["modified (a1, a_ISO)"] = life.modified_rating_life
         factors = {
@@ -102,7 +102,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
             "a1": life.reliability_factor,
         }
         parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
-        told.append(", ".join(parts))
+        factors_line.append(", ".join(parts))
     elif life.reliability_factor < 0.999999:
         a1 = float(life.reliability_factor)
         lives[f"reference, a1 {a1:.4g}"] = a1 * life.reference_rating_life
@@ -110,7 +110,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
     hours = None if per_turn is None else {k: per_turn * x for k, x in lives.items()}
     return [
         lives_grid(lives, hours),
-        *told,
+        *factors_line,
         f"{axially} ratings",
         *(
             f"  {words}"

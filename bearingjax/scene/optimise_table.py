@@ -415,8 +415,8 @@ def _no_number(key, table, numbers):
     near, head = tuple(numbers), key
     while "." in head:
         head = head.rpartition(".")[0]
-        if beside := [name for name in numbers if name.startswith(f"{head}.")]:
-            near = tuple(beside)
+        if inner := [name for name in numbers if name.startswith(f"{head}.")]:
+            near = tuple(inner)
             break
     return not_among(key, near)
 

@@ -55,9 +55,9 @@ class Column:
 
     def cells(self) -> list[str]:
         """Format the values as text."""
-        beside = not isinstance(self.unit, str)
+        several = not isinstance(self.unit, str)
         return [
-            self._cell(value, factor) + (f" {unit}" if beside else "")
+            self._cell(value, factor) + (f" {unit}" if several else "")
             for value, (factor, unit) in zip(self.values, self._scales(), strict=False)
         ]
 

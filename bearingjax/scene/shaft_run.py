@@ -322,12 +322,12 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
         if bearing.scene is None or bearing.solution is None:
             continue
         # With cases each kind once, with the worst case.
-        told = (
+        texts = (
             solved_warnings(bearing.scene, bearing.solution, bearing.life)
             if run.duty is None
             else [*bearing.scene.warnings, *counted(run.duty.warned[k])]
         )
-        for text in told:
+        for text in texts:
             yield f"{bearing.name}: {text}"
     yield from load_doubts(system, loads)
 
@@ -430,7 +430,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     seat = run.task.system.seats[k]
     frame = np.asarray(run.task.system.shaft(seat.shaft).frame)
     moved = found.displacement[k]
-    told: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         "load": found.load[k].tolist(),
         "displacement": moved.tolist(),
         "tilt": (frame[:2] @ moved[3:]).tolist(),
@@ -439,23 +439,23 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     }
     scene, solution, life = bearing.scene, bearing.solution, bearing.life
     if scene is None or solution is None or life is None:
-        return told
+        return numbers
     of_balls = solution.element.bearing.is_ball
     names = ["roller_load", "azimuth", "roller_pressure"]
     names += ["contact_load", "contact_angle"] if of_balls else []
-    told |= {name: np.asarray(getattr(solution, name)).tolist() for name in names}
-    told["peak_pressure"] = float(np.max(solution.roller_pressure))
-    told |= life_as_dict(life, rating_origins(scene))
+    numbers |= {name: np.asarray(getattr(solution, name)).tolist() for name in names}
+    numbers["peak_pressure"] = float(np.max(solution.roller_pressure))
+    numbers |= life_as_dict(life, rating_origins(scene))
     hours = run.hours[k]
-    told["life_hours"] = _number(hours)
+    numbers["life_hours"] = _number(hours)
     if scene.oil is not None:
-        told |= oil_as_dict(bearing.oil)
-        told["temperature"] = scene.oil.temperature
-    told["friction_torque"] = _number(bearing.friction_torque)
-    told["clearance"] = bearing.clearance
+        numbers |= oil_as_dict(bearing.oil)
+        numbers["temperature"] = scene.oil.temperature
+    numbers["friction_torque"] = _number(bearing.friction_torque)
+    numbers["clearance"] = bearing.clearance
     if scene.fits is not None:
-        told["fit"] = fit_as_dict(scene.fits)
-    return told
+        numbers["fit"] = fit_as_dict(scene.fits)
+    return numbers
 
 
 def _wheels(run: ShaftRun) -> dict[str, Any]:

@@ -335,8 +335,8 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
             path
         )
-    beside = ("cases", "optimise")
-    alone = {key: value for key, value in data.items() if key not in beside}
+    elsewhere = ("cases", "optimise")
+    alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
         return _read(alone, path, known)
     count = columns[0].index.size
