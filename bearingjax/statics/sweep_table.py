@@ -77,10 +77,10 @@ def columns(
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
     Arrays are spread over columns, `displacement_inner_uy [m]`. Values that are zero in
-    every case, by construction (`left_out`) or load, have no column. Those that symmetry
-    makes zero, in every case below `ROUND_OFF` of the largest number of their kind,
-    are 0. The result is the code's label; where it is not "converged", numbers are NaN.
-    `warnings` holds the kinds of warning that are given for a case, each with its size.
+    every case, by construction (`left_out`) or load, have no column. Those that are
+    zero by symmetry, in every case below `ROUND_OFF` of the largest number of their
+    kind, are 0. The result is the code's label; where it is not "converged", numbers
+    are NaN. `warnings` holds the kinds of warning of a case, each with its size.
 
     Args:
         sweep: From `sweep`.
