@@ -84,12 +84,12 @@ from .rotor_table import read_rotor as read_rotor
 from .scene_file import shipped_scenes as shipped_scenes
 from .shaft_optimise import ShaftOptimisation as ShaftOptimisation
 from .shaft_optimise import read_optimisation as read_optimisation
+from .shaft_output import shaft_columns as shaft_columns
+from .shaft_output import shafts_as_dict as shafts_as_dict
 from .shaft_report import shaft_page as shaft_page
 from .shaft_report import shaft_report as shaft_report
 from .shaft_run import ShaftRun as ShaftRun
 from .shaft_run import run_shafts as run_shafts
-from .shaft_run import shaft_columns as shaft_columns
-from .shaft_run import shafts_as_dict as shafts_as_dict
 from .shaft_table import ShaftScene as ShaftScene
 from .shaft_table import read_shafts as read_shafts
 from .skid_output import skid_as_dict as skid_as_dict

@@ -8,6 +8,7 @@ import numpy as np
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
+from .files import plain
 from .life_ratings import not_published, rating_origins
 from .read import Scene
 from .report_model import Column, Grid, Part
@@ -34,8 +35,7 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
     """
     found = ratings_as_dict(life.ratings, origins)
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
-        value = getattr(life, name)
-        found[name] = None if value is None else _plain(value)
+        found[name] = plain(getattr(life, name))
     row, ring, track = life.weakest
     found["weakest"] = {"row": row, "ring": ring, "track": track}
     return {**found, "standards": dict(life.standards)}
@@ -51,7 +51,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for name, source in _SOURCES.items():
-        found[name] = _plain(getattr(ratings, name))
+        found[name] = plain(getattr(ratings, name))
         found[f"{name}_source"] = getattr(ratings, source)
         found[f"{name}_origin"] = origins.get(name)
     return found
@@ -68,15 +68,6 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
         f" ({origins.get(name, getattr(ratings, source))})"
         for shown, (name, source) in zip(_SHOWN, _SOURCES.items(), strict=True)
     }
-
-
-def _plain(value) -> Any:
-    values = np.asarray(value, dtype=float)
-    if np.isfinite(values).all():
-        return values.tolist()
-    plain = values.astype(object)
-    plain[~np.isfinite(values)] = None
-    return plain.tolist()
 
 
 def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..numerics.result import Result
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
 from ..statics.rating import Ratings, ratings
@@ -17,6 +16,7 @@ from ..statics.sweep import Sweep
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
+from .files import plain_run
 from .life_ratings import life_conditions, not_published, rating_origins
 from .life_report import (
     life_number,
@@ -29,7 +29,7 @@ from .quantity import SceneError
 from .report import design_sections
 from .report_model import NEWTONS, Column, Grid, Part, Report
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import all_warnings, design_columns, listed_columns, run_cases
+from .sweep_run import all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -189,21 +189,15 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     found = ratings_as_dict(run.ratings, run.origins)
     if run.converged:
         for name, life in run.lives.items():
-            found[name] = _finite(life.rating_life)
+            found[name] = life.rating_life
         found.setdefault("modified_rating_life", None)
         found["equivalent_load"] = equivalent_load(run)
-        found["static_safety"] = _finite(np.min(run.solved.static_safety))
-        hours = run.asked.life_hours
-        found["life_hours"] = None if hours is None else _finite(hours)
-        found["damage_share"] = np.asarray(run.asked.damage_share).tolist()
-    return {
-        **found,
-        "columns": listed_columns(life_columns(run, exact=True)),
-        "counts": run.solved.counts(),
-        "warnings": run.warnings,
-        "inputs": run.table.inputs,
-        "version": __version__,
-    }
+        found["static_safety"] = np.min(run.solved.static_safety)
+        found["life_hours"] = run.asked.life_hours
+        found["damage_share"] = run.asked.damage_share
+    found["columns"] = life_columns(run, exact=True)
+    found["counts"] = run.solved.counts()
+    return plain_run(found, run.warnings, run.table.inputs)
 
 
 def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
@@ -225,10 +219,6 @@ def equivalent_load(run: LifeRun) -> float:
     power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
     life = float(run.lives["basic_rating_life"].rating_life) / 1e6
     return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
-
-
-def _finite(value) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def spectrum_report(run: LifeRun) -> Report:

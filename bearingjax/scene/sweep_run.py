@@ -7,7 +7,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from .._version import __version__
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit
 from ..statics.cases import Cases
@@ -18,6 +17,7 @@ from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
+from .files import plain_run
 from .life_ratings import life_conditions
 from .preload_of_set import preload_warnings, range_warnings
 from .quantity import SceneError
@@ -262,25 +262,8 @@ def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     """Return a sweep as plain lists by column, in SI; null where a case failed."""
-    return {
-        "columns": listed_columns(columns(solved, design_columns(table), exact=True)),
+    numbers = {
+        "columns": columns(solved, design_columns(table), exact=True),
         "counts": solved.counts(),
-        "warnings": all_warnings(table, solved),
-        "inputs": table.inputs,
-        "version": __version__,
     }
-
-
-def listed_columns(found: dict[str, Any]) -> dict[str, list]:
-    """Return the columns of a table as plain lists; non-finite numbers become null.
-
-    Args:
-        found: NumPy arrays by header.
-    """
-
-    def listed(column):
-        if column.dtype.kind != "f":
-            return column.tolist()
-        return [float(x) if np.isfinite(x) else None for x in column]
-
-    return {name: listed(column) for name, column in found.items()}
+    return plain_run(numbers, all_warnings(table, solved), table.inputs)

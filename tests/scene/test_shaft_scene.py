@@ -10,7 +10,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.scene import SceneError, read_shafts, run_shafts, shaft_report
-from bearingjax.scene.shaft_run import shaft_columns
+from bearingjax.scene.shaft_output import shaft_columns
 
 SCENE = """
 [drive]
