@@ -1,6 +1,5 @@
 """The [bearing] and [set] tables of a scene: the design as drawn."""
 
-import dataclasses
 import difflib
 from typing import Any
 
@@ -111,7 +110,6 @@ def _completed(
     return whole
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpringKeys(Keys):
     """Spring that presses a row."""
 
@@ -134,7 +132,6 @@ class SpringKeys(Keys):
             return PreloadSpring(self.spring_force, self.spring_stiffness)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RowKeys(SpringKeys):
     """[[set.rows]]: a row in its place."""
 
@@ -167,7 +164,6 @@ class RowKeys(SpringKeys):
 _IN_PAIRS = ("preload_force", "preload_offset", "spring_force")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SetKeys(SpringKeys):
     """[set]: several bearings that act as one."""
 

@@ -227,7 +227,8 @@ def plain(value: Any) -> Any:
         return [plain(inner) for inner in value]
     values = np.asarray(value)
     if values.dtype.kind == "f" and not np.isfinite(values).all():
-        values = np.where(np.isfinite(values), values.astype(object), None)
+        finite, values = np.isfinite(values), values.astype(object)
+        values[~finite] = None
     return values.tolist()
 
 

@@ -122,7 +122,6 @@ _DRIVEN = ("drive_up", "clearance_reduction")
 """Keys that say how far a tapered bore is driven up its seat."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class FitKeys(Keys):
     """[fit]: the seats of a bearing."""
 
@@ -228,7 +227,6 @@ def _warm(part: str) -> Any:
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class TemperatureKeys(Keys):
     """[temperature]: how warm a bearing on its seats is."""
 

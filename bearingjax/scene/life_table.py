@@ -16,7 +16,6 @@ from .table import Table
 _RATED = "published for the `designation`, else from the geometry"
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LifeKeys(Keys):
     """[life]: conditions of the rating life, in addition to the bearing."""
 

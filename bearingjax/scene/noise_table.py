@@ -43,7 +43,6 @@ MOST_SAMPLES = 200_000
 """Most samples of a record: about 20 MB as JSON."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class VibrationKeys(Keys):
     """[vibration]: the test rig of a bearing, the record and its evaluation."""
 
