@@ -15,7 +15,7 @@ from ..rotor import Shaft
 from .bearing_table import EXTRA_KEYS
 from .catalogue_keys import FromCatalogue
 from .design_keys import BALLS
-from .fit_table import Fits
+from .fits import Fits
 from .quantity import SceneError
 from .read import Scene, scene_of
 from .table import Table

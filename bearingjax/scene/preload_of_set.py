@@ -15,7 +15,7 @@ from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
 from .files import plain
-from .fit_table import Fits
+from .fits import Fits
 from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6

@@ -21,7 +21,8 @@ from ..statics.options import DEFAULT_TOLERANCE
 from .bearing_table import designated, read_bearing
 from .catalogue_keys import FromCatalogue
 from .choices_table import KINEMATICS, read_choices
-from .fit_table import Fits, fit_warnings, installed, read_fits
+from .fit_table import read_fits
+from .fits import Fits, fit_warnings, installed
 from .leftover_keys import leftover_warnings
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil

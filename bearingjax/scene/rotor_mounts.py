@@ -11,7 +11,7 @@ from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
 from .catalogue_keys import FromCatalogue
-from .fit_table import Fits, fit_warnings, fits_at_speed, installed
+from .fits import Fits, fit_warnings, fits_at_speed, installed
 from .placed_bearing import check_seat, echoed, placed_bearing
 from .quantity import SceneError
 from .read import Scene, scene_of

@@ -30,7 +30,7 @@ from ..rotor import (
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
-from .fit_table import fits_at_speed
+from .fits import fits_at_speed
 from .life_ratings import life_conditions
 from .quantity import SceneError
 from .report_model import rpm

@@ -31,7 +31,7 @@ from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
-from .fit_table import fits_at_speed
+from .fits import fits_at_speed
 from .oil_table import OilFacts, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_warnings
