@@ -14,6 +14,9 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax.design import rows_of
+from bearingjax.design.catalogue_entry import UNITS
+from bearingjax.design.keywords import BALLS, ROLLERS
+from bearingjax.numerics.units import unit_of
 from bearingjax.scene import new_scene, read_cases, shipped_scenes
 from bearingjax.scene.read import scene_of
 
@@ -63,6 +66,19 @@ def test_catalogue_files_hold_known_keys_only():
             used |= {values["capacity_source"], values["geometry_source"]}
             used |= {values["other"]["source"]} if "other" in values else set()
         assert used == set(data["sources"]), path.name
+
+
+def test_catalogue_units_are_those_of_the_fields():
+    """Keys without a unit of their own are lengths in mm."""
+    alike = {"mm": "m", "um": "m", "deg": "rad", "": ""}
+    shown = ("_diameter", "_bore", "_height", "_centre", "_travel")
+    for entry in {e.type: e for e in ENTRIES}.values():
+        kind = {**BALLS, **ROLLERS}[entry.type]
+        for key, value in entry.design.items():
+            if isinstance(value, float) and key != "axial_internal_clearance":
+                assert alike[UNITS.get(key, "mm")] == unit_of(kind, key), key
+    for key in {key for entry in ENTRIES for key in entry.printed}:
+        assert key in UNITS or key.endswith(shown), key
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=NAMES)
