@@ -61,7 +61,7 @@ from bench import benchmark
 import bearingjax as bj
 
 
-def differences(entry: bj.scene.CatalogueEntry) -> dict:
+def differences(entry: bj.design.CatalogueEntry) -> dict:
     """Calculated over printed capacities less one, in percent; `None` if unknown."""
     c, c0 = (
         float(bj.dynamic_capacity(entry.bearing)),
