@@ -97,6 +97,8 @@ from .design import TaperedRollerBearing as TaperedRollerBearing
 from .design import TaperedThrustRollerBearing as TaperedThrustRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
 from .design import ToroidalRollerBearing as ToroidalRollerBearing
+from .design import catalogue as catalogue
+from .design import catalogue_entry as catalogue_entry
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import Speed as Speed
@@ -132,8 +134,6 @@ if _TYPE_CHECKING:
     from . import shafts as shafts
     from . import skid as skid
     from .scene import SceneError as SceneError
-    from .scene import catalogue as catalogue
-    from .scene import catalogue_entry as catalogue_entry
     from .scene import load_bearing as load_bearing
     from .scene import read_scene as read_scene
     from .scene import run as run
@@ -142,9 +142,7 @@ if _TYPE_CHECKING:
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = dict.fromkeys(
     "noise optimise plot rotor scene shafts skid".split()
-) | dict.fromkeys(
-    "SceneError catalogue catalogue_entry load_bearing read_scene run".split(), "scene"
-)
+) | dict.fromkeys("SceneError load_bearing read_scene run".split(), "scene")
 
 
 def __getattr__(name: str):

@@ -55,7 +55,6 @@ import numpy as np
 from bench import benchmark
 
 import bearingjax as bj
-from bearingjax.scene.quantity import to_si
 from bearingjax.statics import row_rating as by_row
 
 INCH = 25.4
@@ -100,9 +99,9 @@ FILLED = 0.87
 
 
 def listed() -> dict[str, list[tuple[str, dict]]]:
-    """Bearings with estimated geometry, as their files have them, by type."""
+    """Bearings with estimated geometry, as their files have them (mm, kN), by type."""
     found = {}
-    for path in (files("bearingjax.scene") / "catalogue").iterdir():
+    for path in (files("bearingjax.design") / "catalogue").iterdir():
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         found[data["type"]] = [
             (key, values)
@@ -112,20 +111,11 @@ def listed() -> dict[str, list[tuple[str, dict]]]:
     return found
 
 
-def number(values, key, kind="length"):
-    """Printed number in mm, kN or degrees; a bare one as it stands."""
-    given = values[key]
-    if not isinstance(given, str):
-        return given
-    scale = {"length": 1e3, "force": 1e-3, "angle": 180 / math.pi}[kind]
-    return scale * to_si(given, kind)
-
-
 def capacities(values):
     """C and C0 of the ordinary class, if it is listed [kN]."""
     names = ("dynamic_capacity", "static_capacity")
     given = {**values, **values.get("other", {})}
-    return tuple(number(given, name, "force") for name in names)
+    return tuple(given[name] for name in names)
 
 
 def improved(kind, values) -> float:
@@ -183,9 +173,9 @@ def circle(kind, values) -> float:
     """Halfway between the printed shoulders, or between bore and outside [mm]."""
     printed = values.get("printed", {})
     if kind in ("angular_contact_ball", "four_point_ball") or not printed:
-        return 0.5 * sum(number(values, key) for key in ("bore", "outside_diameter"))
+        return 0.5 * sum(values[key] for key in ("bore", "outside_diameter"))
     sides = ("inner_shoulder_diameter", "outer_shoulder_diameter")
-    return 0.5 * sum(number(printed, key) for key in sides)
+    return 0.5 * sum(printed[key] for key in sides)
 
 
 def contact_angle(kind, values) -> float:
@@ -199,7 +189,7 @@ def contact_angle(kind, values) -> float:
         return 0.5 * math.pi
     held = printed if "contact_angle" in printed else values["bearing"]
     if "contact_angle" in held:
-        return math.radians(number(held, "contact_angle", "angle"))
+        return math.radians(held["contact_angle"])
     return 0.0
 
 
@@ -207,7 +197,7 @@ def rollers(kind, values) -> dict[str, float]:
     """Number, diameter and length of rollers, and their pitch diameter [mm]."""
     c, c0 = capacities(values)
     if kind != "tapered_roller":
-        inner = number(values["printed"], "inner_raceway_diameter")
+        inner = values["printed"]["inner_raceway_diameter"]
         if kind == "needle_roller":
             # Of the diameters that leave it a needle the one that gives C.
             sizes = (2.5, 3.5, 4.5, 5.0, 6.0)
@@ -218,12 +208,12 @@ def rollers(kind, values) -> dict[str, float]:
                 if one["roller_length"] > 2.5 * one["roller_diameter"]
             ]
             return min(tries, key=lambda one: abs(one[1] / c - 1))[0]
-        outer = number(values["printed"], "outer_raceway_diameter")
+        outer = values["printed"]["outer_raceway_diameter"]
         size, pitch = 0.5 * (outer - inner), 0.5 * (outer + inner)
         return of_roller(size, pitch, 0.0, c0, 0.835)[0]
-    bore, outside = (number(values, key) for key in ("bore", "outside_diameter"))
+    bore, outside = (values[key] for key in ("bore", "outside_diameter"))
     angle, tries = contact_angle(kind, values), []
-    longest = 0.84 * number(values, "outer_width") / math.cos(angle)
+    longest = 0.84 * values["outer_width"] / math.cos(angle)
     c /= improved(kind, values)
     for share in np.arange(0.20, 0.2801, 0.005):
         size = round(share * (outside - bore), 1)
@@ -261,7 +251,7 @@ def rated(kind, count, size, length, pitch, angle) -> tuple[float, float]:
 
 def barrels(kind, values) -> dict[str, float]:
     """Rollers of the types in `ROWS`, their circle and arcs [mm]."""
-    sizes = (number(values, key) for key in ("bore", "outside_diameter", "width"))
+    sizes = (values[key] for key in ("bore", "outside_diameter", "width"))
     bore, outside, width = sizes
     printed, section = values["printed"], 0.5 * (outside - bore)
     c, c0 = capacities(values)
@@ -276,7 +266,7 @@ def barrels(kind, values) -> dict[str, float]:
             pitch = circle(kind, values)
             radius = 0.5 * (width / printed["clearance_factor"] + size)
         elif kind == "crossed_roller":
-            pitch = number(values["bearing"], "pitch_diameter")
+            pitch = values["bearing"]["pitch_diameter"]
         unit = rated(kind, 1.0, size, 1.0, pitch, angle)[1]
         most = math.pi / math.asin(size / pitch)
         if kind == "crossed_roller":  # effectively 0.8 times as long as thick
@@ -300,8 +290,8 @@ def barrels(kind, values) -> dict[str, float]:
         return found, mine
 
     if kind == "cylindrical_thrust_roller":
-        height = number(printed, "washer_height")
-        return of(round(number(values, "width") - 2.0 * height, 2))[0]
+        height = printed["washer_height"]
+        return of(round(values["width"] - 2.0 * height, 2))[0]
     tries = []
     usual = usual_size(kind, values, arc, angle)
     for size in np.unique(np.round(np.linspace(0.2, 0.7, 2001) * section, 1)):
@@ -315,18 +305,18 @@ def barrels(kind, values) -> dict[str, float]:
 
 def axis_and_arc(kind, values) -> tuple[float, float]:
     """Contact angle [rad] and radius of a spherical raceway, or 0 [mm]."""
-    printed, outside = values["printed"], number(values, "outside_diameter")
-    width = number(values, "width")
+    printed, outside = values["printed"], values["outside_diameter"]
+    width = values["width"]
     if kind == "spherical_roller":
-        edge = 0.5 * number(printed, "outer_shoulder_diameter")
+        edge = 0.5 * printed["outer_shoulder_diameter"]
         angle = math.atan(printed["axial_load_limit"] / 1.5)
         return angle, math.hypot(edge, 0.5 * width)
     if kind == "spherical_thrust_roller":
         # From the inside of the housing washer to its outside, at its whole height.
-        centre = width + number(printed, "pressure_centre")
-        rim = centre - number(printed, "housing_washer_height")
+        centre = width + printed["pressure_centre"]
+        rim = centre - printed["housing_washer_height"]
         arc = math.hypot(0.5 * outside, rim)
-        inside = math.acos(0.5 * number(printed, "housing_washer_bore") / arc)
+        inside = math.acos(0.5 * printed["housing_washer_bore"] / arc)
         return 0.5 * (inside + math.atan2(rim, 0.5 * outside)), arc
     angles = {"crossed_roller": 0.25 * math.pi, "toroidal_roller": 0.0}
     return angles.get(kind, 0.5 * math.pi), 0.0
@@ -336,9 +326,9 @@ def usual_size(kind, values, arc, angle) -> float | None:
     """Roller diameter between the edges of both raceways [mm]."""
     if kind not in ("spherical_roller", "toroidal_roller"):
         return None
-    half, printed = 0.5 * number(values, "width"), values["printed"]
+    half, printed = 0.5 * values["width"], values["printed"]
     names = ("inner_shoulder_diameter", "outer_shoulder_diameter")
-    inner, outer = (0.5 * number(printed, name) for name in names)
+    inner, outer = (0.5 * printed[name] for name in names)
     size = outer - inner
     for _ in range(60):
         if kind == "toroidal_roller":
@@ -355,7 +345,7 @@ def check(kind, key, values) -> dict:
     """What differs from the catalogue, and what `estimate_geometry` finds."""
     work_out = balls if "ball" in kind else barrels if kind in ROWS else rollers
     found = work_out(kind, values)
-    held = {name: number(values["bearing"], name) for name in found}
+    held = {name: values["bearing"][name] for name in found}
     # Lengths are listed to 0.1 mm, rounded pitch diameters to 1 µm.
     spread = {"roller_length": 0.051}
     differs = {
@@ -375,7 +365,7 @@ def check(kind, key, values) -> dict:
 def blind(kind, values, size) -> float | None:
     """Diameter by `estimate_geometry` over that of the catalogue, less one."""
     bore, outside, width = (
-        number(values, key) / 1e3 for key in ("bore", "outside_diameter", "width")
+        values[key] / 1e3 for key in ("bore", "outside_diameter", "width")
     )
     c, c0 = (1e3 * load for load in capacities(values))
     c /= improved(kind, values)

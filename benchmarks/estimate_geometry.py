@@ -344,7 +344,7 @@ def of_catalogue(every):
     """
     found: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
     for entry in bj.catalogue()[::every]:
-        if entry.table.get("arrangement", "NU") != "NU":
+        if entry.design.get("arrangement", "NU") != "NU":
             continue  # of the same inside
         kind = entry.type
         row = bj.design.rows_of(entry.bearing)[0].bearing

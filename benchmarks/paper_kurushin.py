@@ -134,6 +134,7 @@ import dataclasses
 import jax
 import numpy as np
 from bench import benchmark, timed
+from measured_levels import MEASURED, TOTAL
 
 import bearingjax as bj
 from bearingjax.contact import Ellipse
@@ -154,7 +155,7 @@ from bearingjax.noise import (
     vibration,
     waviness_force,
 )
-from bearingjax.noise.reference_levels import MEASURED, NORM, TOTAL
+from bearingjax.noise.level import NORM
 
 MASS, OVERSIZE = 0.3716, 24e-6
 SPEED = bj.Speed(inner=1500 * np.pi / 30)

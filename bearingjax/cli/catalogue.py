@@ -36,19 +36,19 @@ def add(commands):
 
 def run(options) -> int:
     """List bearings of the catalogue."""
+    from ..design import catalogue
     from ..scene import (
         SceneError,
-        catalogue,
         catalogue_as_dict,
         catalogue_details,
-        catalogue_entry,
         catalogue_table,
         catalogue_title,
+        listed_bearing,
         select,
         write_numbers,
     )
 
-    named = tuple(catalogue_entry(name) for name in options.designation)
+    named = tuple(listed_bearing(name) for name in options.designation)
     if options.plot is not None and not named:
         raise SceneError("--plot draws the bearings that are named; name some")
     if options.drawing is not None and len(named) != 1:

@@ -35,8 +35,8 @@ def run(options) -> int:
     """Print a scene of a bearing, of the catalogue or estimated, or of shafts."""
     from ..scene import (
         SceneError,
-        catalogue_entry,
         estimated_entry,
+        listed_bearing,
         new_scene,
         shipped_scenes,
     )
@@ -54,7 +54,7 @@ def run(options) -> int:
             raise SceneError("new: give a designation, or --type and sizes")
         if any(value is not None for value in others):
             raise SceneError(f"new {name}: sizes and ratings go with --type")
-        entry = catalogue_entry(name)
+        entry = listed_bearing(name)
     elif name:
         raise SceneError(f"new {name}: give a designation or --type, not both")
     else:

@@ -316,8 +316,8 @@ class LineContact(AbstractLineContact):
         last = knots.shape[0] - 1
         left = knots[jnp.maximum(highest - 1, 0)]
         right = knots[jnp.minimum(highest + 1, last)]
-        beside = left + (right - left) * jnp.linspace(0.0, 1.0, 17, dtype=left.dtype)
-        return jnp.concatenate([places, knots[highest][None], beside])
+        around = left + (right - left) * jnp.linspace(0.0, 1.0, 17, dtype=left.dtype)
+        return jnp.concatenate([places, knots[highest][None], around])
 
 
 class SliceContact(LineContact):

@@ -28,6 +28,9 @@ from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
 from .bearing_set import shares_rings as shares_rings
+from .catalogue_entry import CatalogueEntry as CatalogueEntry
+from .catalogue_entry import catalogue as catalogue
+from .catalogue_entry import catalogue_entry as catalogue_entry
 from .deviation import Deviation as Deviation
 from .deviation import deviation_of as deviation_of
 from .deviation import with_raceways as with_raceways
@@ -59,6 +62,7 @@ from .iso286 import Limits as Limits
 from .iso286 import limit_classes as limit_classes
 from .iso286 import limits as limits
 from .iso286 import standard_tolerance as standard_tolerance
+from .keywords import bearing_of as bearing_of
 from .logarithmic import FujiwaraKawase as FujiwaraKawase
 from .logarithmic import JohnsGohar as JohnsGohar
 from .logarithmic import Logarithmic as Logarithmic

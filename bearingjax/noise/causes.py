@@ -126,7 +126,7 @@ def _of_raceway(
     row, errors: RacewayErrors, ring, frequencies: KinematicFrequencies, highest: float
 ) -> Iterator[_Cause]:
     count = row[0].n_elements
-    passage, beside = (
+    passage, sideband = (
         (frequencies.outer_passage, frequencies.outer)
         if ring == "outer"
         else (frequencies.inner_passage, frequencies.inner)
@@ -140,7 +140,7 @@ def _of_raceway(
                     yield from _of_wave(row, ring, order, size, words)
         elif isinstance(shape, Spall):
             words = f"spall of the {ring} raceway"
-            yield from _of_spall(shape, float(passage), float(beside), words, highest)
+            yield from _of_spall(shape, float(passage), float(sideband), words, highest)
 
 
 def _of_elements(
@@ -170,9 +170,9 @@ def _multiples(frequency: float, highest: float) -> range:
     return range(1, int(highest / frequency) + 1 if frequency > 0.0 else 0)
 
 
-def _of_spall(shape, passage, beside, words, highest) -> Iterator[_Cause]:
+def _of_spall(shape, passage, sideband, words, highest) -> Iterator[_Cause]:
     depth = float(np.abs(np.asarray(shape.depth)).max())
-    sides = range(-_SIDEBANDS, _SIDEBANDS + 1) if beside else (0,)
-    for k in _multiples(passage, highest + _SIDEBANDS * beside) if depth else ():
+    sides = range(-_SIDEBANDS, _SIDEBANDS + 1) if sideband else (0,)
+    for k in _multiples(passage, highest + _SIDEBANDS * sideband) if depth else ():
         for m in sides:
-            yield _Cause(depth, k * passage + m * beside, words)
+            yield _Cause(depth, k * passage + m * sideband, words)

@@ -17,6 +17,13 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), which pri
     in m/s. The reference of ISO 1683 is 1e-6 m/s², 29.8 dB lower.
 """
 
+NORM = (23.0, 24.0, 25.0, 46.0, 36.0, 44.0, 49.0, 54.0, 64.0, 68.0, 77.0, 75.0)
+"""Largest allowed level in each octave band from 4 Hz to 8 kHz of the four-point ball
+bearing 85-176211D1 at 1500 rev/min, over `REFERENCE_ACCELERATION` [dB].
+
+Source: Kurushin et al. (2011), table 1.
+"""
+
 LOWEST_LEVEL = -300.0
 """Level of accelerations below 1e-15 of the reference, zero included [dB]."""
 

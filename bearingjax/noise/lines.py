@@ -188,16 +188,16 @@ def _combinations(
         (over_outer, "BPFO", 1, inner, names[0], 1),
         (over_inner, "BPFI", 1, outer, names[1], 1),
     )
-    for carrier, name, step, beside, beside_name, extra in kinds:
+    for carrier, name, step, sideband, sideband_name, extra in kinds:
         # Of products of waves on both rings only the first are worth a name.
         for k in range(1, (min(harmonics, _FIRST) if extra else harmonics) + 1):
-            for m in side if beside > 0 else (0,):
-                frequency = k * step * carrier + m * beside
+            for m in side if sideband > 0 else (0,):
+                frequency = k * step * carrier + m * sideband
                 if frequency > 0 and carrier > 0:
                     words = _times(k * step, name)
                     if m:
                         words += f" {'+' if m > 0 else '-'} "
-                        words += _times(abs(m), beside_name)
+                        words += _times(abs(m), sideband_name)
                     yield k + abs(m) + extra, frequency, words
 
 

@@ -436,23 +436,23 @@ def _keep(place, name, compiled, inputs, outputs, *more) -> None:
     """Keep a program; without a word if it cannot be, as on a full disk."""
     from jax.experimental.serialize_executable import serialize
 
-    beside = f"{name}.{os.getpid()}"
+    temporary = f"{name}.{os.getpid()}"
     try:
         executable, _, tree = serialize(compiled)
         program = _Program(executable, inputs, outputs, tree.num_leaves, *more)
         content = pickle.dumps(program)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-        file = os.open(beside, flags, 0o600, dir_fd=place)
+        file = os.open(temporary, flags, 0o600, dir_fd=place)
     except Exception:
         return
     try:
         with open(file, "wb") as stream:
             stream.write(_MARK + hashlib.sha256(content).digest() + content)
-        os.replace(beside, name, src_dir_fd=place, dst_dir_fd=place)
+        os.replace(temporary, name, src_dir_fd=place, dst_dir_fd=place)
         _drop_oldest(place)
     except OSError:
         with contextlib.suppress(OSError):
-            os.unlink(beside, dir_fd=place)
+            os.unlink(temporary, dir_fd=place)
 
 
 def _drop_oldest(place: int) -> None:

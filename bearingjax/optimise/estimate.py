@@ -389,7 +389,7 @@ def _residuals(rated, known, sizes, count):
     arc, share = 2.0 * (count - 1.0) * step, count * step / jnp.pi
     filling = jnp.where(known.by_arc, arc, share)
     usual = jnp.stack((jnp.exp(sizes[0]), sizes[1], filling, jnp.exp(sizes[2]), angle))
-    odd = (usual - known.typical) / known.spread
+    deviation = (usual - known.typical) / known.spread
     rolls, wall = rated.balls is None, 0.0 if rated.flat else _WALL
     tall = diameter * (1.0 if rated.flat else jnp.cos(angle))
     if rated.flat and rolls:
@@ -419,7 +419,7 @@ def _residuals(rated, known, sizes, count):
         )
     )
     return jnp.concatenate(
-        (wrong / known.rating_spread, odd, jnp.maximum(over, 0.0) / _EDGE)
+        (wrong / known.rating_spread, deviation, jnp.maximum(over, 0.0) / _EDGE)
     )
 
 

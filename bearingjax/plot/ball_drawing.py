@@ -92,9 +92,9 @@ def _arc_angle(bearing, groove, name):
     shares = (0.5, 0.3, 0.8) if name == "outer" else (0.8, 0.5, 0.3)
     turns = [start + share * (edge - start) for share in shares]
     # At least 8 degrees away from them, or as far as possible.
-    beside = [min(abs(turn - line) for line in lines) for turn in turns]
-    clear = [turn for turn, far in zip(turns, beside, strict=True) if far > 0.14]
-    return clear[0] if clear else turns[int(np.argmax(beside))]
+    distance = [min(abs(turn - line) for line in lines) for turn in turns]
+    clear = [turn for turn, far in zip(turns, distance, strict=True) if far > 0.14]
+    return clear[0] if clear else turns[int(np.argmax(distance))]
 
 
 def _shoulders(ax, bearing, lines):

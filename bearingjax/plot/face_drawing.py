@@ -70,8 +70,8 @@ def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
         _in_corner(ax, corner, text, at)
     for end, name in (((1.12 * reach, 0.0), "x"), ((0.0, 1.12 * reach), "y")):
         ax.annotate("", end, (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": GREY})
-        beside = (5, -3) if name == "y" else (4, 4)
-        ax.annotate(name, end, beside, textcoords="offset points", color=GREY)
+        offset = (5, -3) if name == "y" else (4, 4)
+        ax.annotate(name, end, offset, textcoords="offset points", color=GREY)
     ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
 
 

@@ -142,8 +142,8 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
     gaps = np.diff(angle, append=angle[0] + 2.0 * np.pi)
     between = angle + 0.5 * gaps
     # Text is wide and low: it fits best between rollers to the right or to the left.
-    beside = (load + np.roll(load, -1)) / (loads.max() or 1.0)
-    k = int(np.argmin(beside + 0.3 * np.abs(np.sin(between))))
+    neighbours = (load + np.roll(load, -1)) / (loads.max() or 1.0)
+    k = int(np.argmin(neighbours + 0.3 * np.abs(np.sin(between))))
     where, reach = between[k], max(most[k], most[(k + 1) % len(angle)])
     # The outermost would meet the labels of the azimuth.
     labelled = ticks[ticks <= 0.88 * limit]

@@ -157,8 +157,8 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
     wide = radius - at * np.sin(half)
     between(ax, spot - wide * across, spot + wide * across)
     text = f"D = {quantity(bearing.roller_diameter, 'm')}"
-    beside = spot + 0.5 * radius * across + 0.06 * parts.length * along
-    on_line(ax, beside, text, turn, "left")
+    place = spot + 0.5 * radius * across + 0.06 * parts.length * along
+    on_line(ax, place, text, turn, "left")
     below = -0.5 * radius * across
     between(ax, parts.axis[0] + below, parts.axis[1] + below)
     text = f"L = {quantity(bearing.roller_length, 'm')}"

@@ -6,9 +6,7 @@ from .bearing_run import solve_scene as solve_scene
 from .bearing_run import with_set_preload as with_set_preload
 from .cases_table import CaseTable as CaseTable
 from .cases_table import read_cases as read_cases
-from .catalogue_entry import CatalogueEntry as CatalogueEntry
-from .catalogue_entry import catalogue as catalogue
-from .catalogue_entry import catalogue_entry as catalogue_entry
+from .catalogue_keys import listed_bearing as listed_bearing
 from .catalogue_report import catalogue_as_dict as catalogue_as_dict
 from .catalogue_report import catalogue_details as catalogue_details
 from .catalogue_report import catalogue_table as catalogue_table
@@ -86,12 +84,12 @@ from .rotor_table import read_rotor as read_rotor
 from .scene_file import shipped_scenes as shipped_scenes
 from .shaft_optimise import ShaftOptimisation as ShaftOptimisation
 from .shaft_optimise import read_optimisation as read_optimisation
+from .shaft_output import shaft_columns as shaft_columns
+from .shaft_output import shafts_as_dict as shafts_as_dict
 from .shaft_report import shaft_page as shaft_page
 from .shaft_report import shaft_report as shaft_report
 from .shaft_run import ShaftRun as ShaftRun
 from .shaft_run import run_shafts as run_shafts
-from .shaft_run import shaft_columns as shaft_columns
-from .shaft_run import shafts_as_dict as shafts_as_dict
 from .shaft_table import ShaftScene as ShaftScene
 from .shaft_table import read_shafts as read_shafts
 from .skid_output import skid_as_dict as skid_as_dict

@@ -79,8 +79,8 @@ def with_set_preload(scene: Scene) -> Scene:
     found = preload_of_set(scene.fits, ground, scene.speed)
     if found is None:
         return scene
-    told = (*scene.warnings, *preload_warnings(found))
-    return dataclasses.replace(scene, preload_of_set=found, warnings=told)
+    warned = (*scene.warnings, *preload_warnings(found))
+    return dataclasses.replace(scene, preload_of_set=found, warnings=warned)
 
 
 def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):

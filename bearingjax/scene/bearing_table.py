@@ -1,6 +1,5 @@
 """The [bearing] and [set] tables of a scene: the design as drawn."""
 
-import dataclasses
 import difflib
 from typing import Any
 
@@ -11,10 +10,10 @@ from ..design import (
     SetRow,
     shares_rings,
 )
+from ..design.catalogue_entry import catalogue_entry
 from ..statics.preload import check_preload
-from .catalogue_entry import FromCatalogue, catalogue_entry, taken_from
+from .catalogue_keys import FromCatalogue, taken_from
 from .design_keys import BALLS, ROLLERS, read_row, two_row_name, with_both_rows
-from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
 from .table import Table
 
@@ -33,13 +32,14 @@ EXTRA_KEYS = (
 
 
 def read_bearing(
-    table: Table, beside: Table
+    table: Table, parent: Table, found: tuple[dict[str, Any], FromCatalogue] | None
 ) -> tuple[AbstractBearing | BearingSet, float | None]:
     """Read a bearing, or the set of such bearings, and its preload.
 
     Args:
         table: Table of the bearing.
-        beside: The table that holds its `set`, if there is one.
+        parent: The table that holds its `set`, if there is one.
+        found: From `designated`.
 
     Returns:
         Bearing or set, and its preload force [N] or `None`.
@@ -47,14 +47,14 @@ def read_bearing(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    table = _completed(table)
+    table = _completed(table, found)
     bearing = read_row(table)
-    if "set" not in beside:
+    if "set" not in parent:
         return with_both_rows(table, bearing), None
     if shares_rings(bearing):
         problem = f"a {two_row_name(bearing)} bearing has both its rows already"
-        raise beside.error("set", problem)
-    return _set(beside.table("set"), bearing)
+        raise parent.error("set", problem)
+    return _set(parent.table("set"), bearing)
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
@@ -81,7 +81,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
         raise table.error("designation", f"{name!r} {problem}")
     try:
         entry = catalogue_entry(name)
-    except SceneError as error:
+    except ValueError as error:
         raise table.error("designation", error) from error
     kind = given.get("type", entry.type)
     if kind != entry.type:
@@ -90,9 +90,10 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     return taken_from(entry, given)
 
 
-def _completed(table: Table) -> Table:
+def _completed(
+    table: Table, found: tuple[dict[str, Any], FromCatalogue] | None
+) -> Table:
     """Return the keys of a bearing, with those of its designation."""
-    found = designated(table)
     if found is None and "type" not in table:
         meant = difflib.get_close_matches("designation", table.keys(), 1, 0.7)
         if meant:
@@ -109,7 +110,6 @@ def _completed(table: Table) -> Table:
     return whole
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpringKeys(Keys):
     """Spring that presses a row."""
 
@@ -132,7 +132,6 @@ class SpringKeys(Keys):
             return PreloadSpring(self.spring_force, self.spring_stiffness)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RowKeys(SpringKeys):
     """[[set.rows]]: a row in its place."""
 
@@ -152,7 +151,8 @@ class RowKeys(SpringKeys):
         """
         bearing = common
         if "bearing" in self.table:
-            bearing = read_row(_completed(self.table.table("bearing")))
+            own = self.table.table("bearing")
+            bearing = read_row(_completed(own, designated(own)))
         if shares_rings(bearing):
             problem = f"a {two_row_name(bearing)} bearing is no row of a set"
             raise self.table.error("bearing", problem)
@@ -164,7 +164,6 @@ class RowKeys(SpringKeys):
 _IN_PAIRS = ("preload_force", "preload_offset", "spring_force")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SetKeys(SpringKeys):
     """[set]: several bearings that act as one."""
 

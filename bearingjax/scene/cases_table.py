@@ -132,7 +132,6 @@ def _raw(table: Table, name: str) -> Any:
     return table.raw(name, None)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class CasesKeys(Keys):
     """[cases]: what varies, named by the keys of the scene."""
 

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..design import rows_of
-from .catalogue_entry import CatalogueEntry
-from .design_keys import BALLS, ROLLERS
+from ..design.catalogue_entry import CatalogueEntry
+from ..design.keywords import BALLS, ROLLERS
+from ..statics import thermal_speed
+from .catalogue_keys import as_keys
 from .quantity import SceneError, to_si
 from .scene_file import shipped_scenes
 from .table import not_among
@@ -145,17 +147,19 @@ def catalogue_details(entry: CatalogueEntry) -> str:
         "limiting speed": entry.limiting_speed,
     }
     known = [f"{k} {_rpm(v):.0f} rpm" for k, v in speeds.items() if v is not None]
-    if (speed := entry.thermal_speed) is not None:
+    if (speed := thermal_speed(entry)) is not None:
         known.append(f"thermal reference speed {_rpm(speed):.0f} rpm (ISO 15312)")
     if entry.mass is not None:
         known.append(f"mass {entry.mass:.4g} kg")
     if known:
         lines.append(", ".join(known))
     if entry.printed:
-        words = (f"{k.replace('_', ' ')} {_plain(v)}" for k, v in entry.printed.items())
+        printed = as_keys(entry.printed).items()
+        words = (f"{k.replace('_', ' ')} {_plain(v)}" for k, v in printed)
         lines.append(f"printed: {', '.join(words)}")
     lines.append(f"inner geometry {entry.geometry}: {entry.sources['geometry']}")
-    lines += [f"  {key} = {_toml(value)}" for key, value in entry.table.items()]
+    keys = as_keys(entry.design)
+    lines += [f"  {key} = {_toml(value)}" for key, value in keys.items()]
     if entry.assumed:
         lines.append(f"assumed, as usual: {', '.join(entry.assumed)}")
     return "\n".join([*lines, *entry.notes])
@@ -169,15 +173,17 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
     """Return the bearings as plain numbers in SI.
 
     Returns:
-        `bearings`: the fields of `CatalogueEntry` of each, with `table` as written in
-        a scene, and its `thermal_speed`.
+        `bearings`: the fields of `CatalogueEntry` of each, with its `design` as the
+        `table` of a scene, and its `thermal_speed`.
     """
     return {
         "bearings": [
             {
-                **vars(entry),
+                **{k: v for k, v in vars(entry).items() if k != "design"},
+                "table": as_keys(entry.design),
+                "printed": as_keys(entry.printed),
                 "other": entry.other and entry.other._asdict(),
-                "thermal_speed": entry.thermal_speed,
+                "thermal_speed": thermal_speed(entry),
             }
             for entry in entries
         ]
@@ -204,7 +210,7 @@ def new_scene(entry: CatalogueEntry) -> str:
         "",
         "[bearing]",
         *_designation(entry),
-        *(f"{key} = {_toml(value)}" for key, value in entry.table.items()),
+        *(f"{key} = {_toml(value)}" for key, value in as_keys(entry.design).items()),
         "",
         "[operating]",
         'fixed_ring = "outer"',

@@ -1,6 +1,5 @@
 """Laws, kinematics and numerics that a scene chooses by name."""
 
-import dataclasses
 from typing import Any
 
 from ..contact.coupled import CoupledSlices
@@ -63,7 +62,6 @@ MOST_SLICES = 10_000
 """Most slices of a roller."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LineContactKeys(Keys):
     """[contact] of rollers: the law of their slices."""
 
@@ -92,7 +90,6 @@ class LineContactKeys(Keys):
         return LINE_LAWS[self.line_law]()
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class PointContactKeys(Keys):
     """[contact] of balls: the law of their contacts."""
 
@@ -126,7 +123,6 @@ class PointContactKeys(Keys):
 _BOTH = (("outer_constant", "inner_constant"), ("inner_constant", "outer_constant"))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ControlKeys(Keys):
     """Raceway control of balls that turn."""
 
@@ -156,7 +152,6 @@ class ControlKeys(Keys):
             return FrictionLimited(self.friction_coefficient)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class BallNumericsKeys(Keys):
     """[numerics] of balls."""
 
@@ -172,7 +167,6 @@ class BallNumericsKeys(Keys):
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RollerNumericsKeys(BallNumericsKeys):
     """[numerics] of rollers."""
 
@@ -208,7 +202,6 @@ class RollerNumericsKeys(BallNumericsKeys):
         return chosen
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class BarrelNumericsKeys(RollerNumericsKeys):
     """[numerics] of barrel rollers."""
 

@@ -12,14 +12,13 @@ from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS
 from ..statics.sweep import SUMMARIES
-from ..statics.sweep_table import OPERATING_CLEARANCE, spread
+from ..statics.sweep_table import OPERATING_CLEARANCE, kind, spread
 from .bearing_run import solve_scene
 from .html_report import flat
 from .read import Scene
 from .report import without_round_off
 from .report_model import Column, Grid, Part, Report
 from .solved import SolvedScene
-from .sweep_run import kind
 
 _FIELDS = "displacement", "force", "stiffness"
 _SUMMARIES = "largest_load", "peak_pressure", "n_loaded"

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from .contact_table import ContactScene
+from .files import plain_run
 from .report_model import NEWTONS, Column, Grid, Report
 
 WIDE = 0.2
@@ -103,9 +103,9 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
         grid = cases[0].solution.grid
         lengths = 2.0 * np.asarray(grid.half_y)
         found = {
-            "position": np.asarray(grid.y).tolist(),
-            "cell_length": lengths.tolist(),
-            "end_cell_length": float(lengths[0]),
+            "position": grid.y,
+            "cell_length": lengths,
+            "end_cell_length": lengths[0],
         }
         names = next(row for row in rows if row)
         found |= {name: [row.get(name) for row in rows] for name in names}
@@ -114,21 +114,15 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
     if not scene.listed:
         shared = ("position", "cell_length", "end_cell_length")
         found = {k: v if k in shared else v[0] for k, v in found.items()}
-    return {
-        **found,
-        "warnings": contact_warnings(scene, cases),
-        "inputs": scene.inputs,
-        "version": __version__,
-    }
+    return plain_run(found, contact_warnings(scene, cases), scene.inputs)
 
 
 def _status(solution) -> dict[str, Any]:
-    residual = float(solution.residual)
     return {
         "result": Result(int(solution.result)).label,
         "message": message(solution),
-        "residual": residual if np.isfinite(residual) else None,
-        "iterations": int(solution.steps),
+        "residual": solution.residual,
+        "iterations": solution.steps,
     }
 
 
@@ -136,31 +130,31 @@ def _numbers(scene, case: Compared) -> dict[str, Any]:
     solution, slices, peak = case.solution, case.slices, case.peak
     grid = solution.grid
     numbers = {
-        "load": float(solution.load),
-        "approach": float(solution.approach),
-        "moment": float(solution.moment),
-        "tilt": float(solution.tilt),
-        "peak_pressure": float(solution.peak_pressure),
-        "peak_position": float(grid.y[peak]) if case.touches else None,
-        "peak_cell_length": 2.0 * float(grid.half_y[peak]) if case.touches else None,
-        "centre_pressure": np.asarray(solution.centre_pressure).tolist(),
-        "line_load": np.asarray(solution.line_load).tolist(),
-        "half_width": case.half_width.tolist(),
-        "cell_width": 2.0 * float(grid.half_x),
-        "grid_half_width": float(grid.half_width),
-        "truncated": bool(solution.truncated),
+        "load": solution.load,
+        "approach": solution.approach,
+        "moment": solution.moment,
+        "tilt": solution.tilt,
+        "peak_pressure": solution.peak_pressure,
+        "peak_position": grid.y[peak] if case.touches else None,
+        "peak_cell_length": 2.0 * grid.half_y[peak] if case.touches else None,
+        "centre_pressure": solution.centre_pressure,
+        "line_load": solution.line_load,
+        "half_width": case.half_width,
+        "cell_width": 2.0 * grid.half_x,
+        "grid_half_width": grid.half_width,
+        "truncated": solution.truncated,
         "slices": {
-            "approach": float(slices.approach) if case.touches else None,
-            "line_load": np.asarray(slices.line_load).tolist(),
-            "contact_pressure": np.asarray(slices.pressure).tolist(),
-            "peak_pressure": float(slices.peak_pressure),
+            "approach": slices.approach if case.touches else None,
+            "line_load": slices.line_load,
+            "contact_pressure": slices.pressure,
+            "peak_pressure": slices.peak_pressure,
         },
         "edge_factor": case.edge_factor if case.touches else None,
     }
     if scene.field:
         numbers["field"] = {
-            "x": np.asarray(grid.x).tolist(),
-            "pressure": np.asarray(solution.pressure).tolist(),
+            "x": grid.x,
+            "pressure": solution.pressure,
         }
     return numbers
 

@@ -36,7 +36,6 @@ _PROFILE = {"$ref": "#/$defs/profile"}
 _MATERIAL = {"$ref": "#/$defs/material"}
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RollerKeys(Keys):
     """[roller]: a cylindrical or tapered roller."""
 
@@ -82,7 +81,6 @@ class RollerKeys(Keys):
             raise self.table.error("large_diameter", problem)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RacewayKeys(Keys):
     """[raceway]: a plane, a cylinder or a cone."""
 
@@ -125,7 +123,6 @@ class RacewayKeys(Keys):
             self.table.choice("side", tuple(SIDES))  # raises that it is missing
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ContactOperatingKeys(Keys):
     """[operating] of one contact: how roller and raceway are pressed."""
 
@@ -165,7 +162,6 @@ class ContactOperatingKeys(Keys):
             raise self.table.error("load", "is an empty list; give one load at least")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ContactNumericsKeys(Keys):
     """[numerics] of one contact: the cells of its grid, and when to stop."""
 
@@ -202,7 +198,6 @@ class ContactNumericsKeys(Keys):
     max_steps: int = scene_key("most steps of the solver", default=500)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SliceLawKeys(Keys):
     """[contact]: the slices that a contact is compared with."""
 
@@ -219,7 +214,6 @@ class SliceLawKeys(Keys):
         return read_keys(LineContactKeys, self.table).law
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ContactOutputKeys(Keys):
     """[output] of one contact."""
 

@@ -7,72 +7,22 @@ from ..design import (
     AbstractBearing,
     AbstractProfile,
     AbstractRollerBearing,
-    AngularContactBallBearing,
     BearingSet,
-    CircularCrown,
     CrossedRollerRow,
-    CrownedEnds,
-    CylindricalRollerBearing,
-    CylindricalThrustRollerBearing,
-    DeepGrooveBallBearing,
-    FourPointBallBearing,
-    FujiwaraKawase,
-    JohnsGohar,
-    Logarithmic,
-    Lundberg,
     Material,
-    NeedleRollerBearing,
     Rib,
     Ribs,
-    SelfAligningBallRow,
-    SphericalRollerRow,
-    SphericalThrustRollerBearing,
-    Straight,
-    Tabulated,
-    TaperedRollerBearing,
-    TaperedThrustRollerBearing,
-    ThrustBallBearing,
-    ToroidalRollerBearing,
     pitch_on_sphere,
     shares_rings,
 )
+from ..design.keywords import BALLS, PROFILES, ROLLERS, both_rows
 from ..element import RINGS
 from .table import Table, written, written_numbers
 
-ROLLERS = {
-    "cylindrical_roller": CylindricalRollerBearing,
-    "needle_roller": NeedleRollerBearing,
-    "tapered_roller": TaperedRollerBearing,
-    "spherical_roller": SphericalRollerRow,
-    "toroidal_roller": ToroidalRollerBearing,
-    "cylindrical_thrust_roller": CylindricalThrustRollerBearing,
-    "tapered_thrust_roller": TaperedThrustRollerBearing,
-    "spherical_thrust_roller": SphericalThrustRollerBearing,
-    "crossed_roller": CrossedRollerRow,
-}
-BALLS = {
-    "deep_groove_ball": DeepGrooveBallBearing,
-    "angular_contact_ball": AngularContactBallBearing,
-    "four_point_ball": FourPointBallBearing,
-    "self_aligning_ball": SelfAligningBallRow,
-    "thrust_ball": ThrustBallBearing,
-}
-"""Bearings by `type` in a scene; readers, schema and messages follow from `ROLLERS` and
-`BALLS`."""
 SPHERES = "spherical_roller", "spherical_thrust_roller"
 """Rollers in an outer raceway whose radius may stand for the pitch diameter."""
 WITH_LETTERS = "cylindrical_roller", "needle_roller"
 """Rollers whose ribs have an `arrangement` by letters."""
-PROFILES = {
-    "straight": Straight,
-    "circular_crown": CircularCrown,
-    "crowned_ends": CrownedEnds,
-    "logarithmic": Logarithmic,
-    "lundberg": Lundberg,
-    "johns_gohar": JohnsGohar,
-    "fujiwara_kawase": FujiwaraKawase,
-    "tabulated": Tabulated,
-}
 
 
 def read_design(table: Table) -> AbstractBearing | BearingSet:
@@ -106,13 +56,14 @@ def with_both_rows(
         table: As in `read_design`.
         bearing: From `read_row`.
     """
-    if not shares_rings(bearing):
-        return bearing
-    if isinstance(bearing, CrossedRollerRow):
-        return BearingSet.crossed(bearing)
-    staggered = bearing.is_ball or table.flag("staggered", True)
+    staggered = (
+        not shares_rings(bearing)
+        or bearing.is_ball
+        or isinstance(bearing, CrossedRollerRow)
+        or table.flag("staggered", True)
+    )
     with table.building():
-        return BearingSet.self_aligning(bearing, staggered=staggered)
+        return both_rows(bearing, staggered)
 
 
 def two_row_name(bearing: AbstractBearing) -> str:

@@ -1,6 +1,5 @@
 """The [deviations] table of a scene: form errors of raceways and rolling elements."""
 
-import dataclasses
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
@@ -39,7 +38,6 @@ class ErrorContext(NamedTuple):
     row: int
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DeviationKeys(Keys):
     """A form error of a part of every row, or of one."""
 
@@ -91,7 +89,6 @@ class DeviationKeys(Keys):
             raise self.table.error(name, problem)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DirectedKeys(DeviationKeys):
     """A form error that a raceway may have in several directions."""
 
@@ -121,7 +118,6 @@ def _orders(table: Table, name: str) -> tuple[Any, ...]:
 _ORDER = {"type": "integer", "minimum": 1, "maximum": MOST_ORDER["raceway"]}
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class WavesKeys(DirectedKeys):
     """[[deviations.waves]]: waves around a part."""
 
@@ -160,7 +156,6 @@ class WavesKeys(DirectedKeys):
         return Harmonics(self.order, sizes, np.broadcast_to(self.phase, sizes.shape))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpectrumKeys(DirectedKeys):
     """[[deviations.spectrum]]: waves of every order of a range."""
 
@@ -192,7 +187,6 @@ class SpectrumKeys(DirectedKeys):
         return Harmonics.spectrum(self.lowest, self.highest, sizes, self.slope, phase)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ProfileKeys(DirectedKeys):
     """[[deviations.profile]]: measured heights at even angles."""
 
@@ -230,7 +224,6 @@ class ProfileKeys(DirectedKeys):
         return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpallKeys(DeviationKeys):
     """[[deviations.spalls]]: a place where the surface is lower."""
 
@@ -254,7 +247,6 @@ class SpallKeys(DeviationKeys):
         return Spall(every + self.angle, every + self.length, depth)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DeviationsKeys(Keys):
     """[deviations]: form errors of raceways and rolling elements."""
 

@@ -1,7 +1,6 @@
 """The [cage] and [dynamics] tables of a scene: cage, drag and time integration of
 skidding balls or rollers."""
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -29,14 +28,12 @@ MOST_PLACES = 2000
 """Most positions along an orbit: a matrix of 0.5 GB."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class CageKeys(Keys):
     """[cage]: the cage of balls or rollers that skid."""
 
     numbers: ClassVar[Mapping[str, type]] = {"": Cage}
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SeriesKeys(Keys):
     """Values over time."""
 
@@ -52,7 +49,6 @@ class SeriesKeys(Keys):
         return found
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpeedSeriesKeys(SeriesKeys):
     """Speeds of the rings over time, linear between the times."""
 
@@ -82,7 +78,6 @@ def _component(about: str, kind: str) -> Any:
 _CONSTANT = "that of [operating]"
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LoadSeriesKeys(SeriesKeys):
     """Load over time, linear between times, or a sine about that of [operating]."""
 
@@ -132,7 +127,6 @@ class LoadSeriesKeys(SeriesKeys):
         return LoadHistory(np.array(time), np.stack(whole, axis=1))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DynamicsKeys(Keys):
     """[dynamics]: what surrounds balls or rollers that skid, and their motion."""
 

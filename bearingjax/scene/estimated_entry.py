@@ -1,13 +1,21 @@
 """Entry of an unlisted bearing, estimated from its boundary dimensions and ratings."""
 
 from collections.abc import Mapping
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
 from ..design import rows_of
+from ..design.catalogue_entry import (
+    CLEARANCE,
+    CLEARANCES,
+    UNITS,
+    CatalogueEntry,
+    class_clearance,
+    from_catalogue_unit,
+)
 from ..optimise.estimate import estimate_geometry
-from .catalogue_entry import CLEARANCE, CLEARANCES, CatalogueEntry, class_clearance
 from .quantity import SceneError, to_si
 from .table import not_among
 
@@ -21,7 +29,6 @@ SIZES = {
 """Required values in addition to the type, with their quantity kinds."""
 
 _LENGTHS = ("pitch_diameter", "ball_diameter", "roller_diameter", "roller_length")
-_ANGLES = ("contact_angle", "shim_angle", "roller_axis_angle", "roller_half_angle")
 _INNER = "inner_raceway_radius"
 _PARTS = {
     "deep_groove_ball": (),
@@ -81,12 +88,12 @@ def estimated_entry(
         )
     except ValueError as error:
         raise SceneError(_by_options(str(error))) from error
-    table, notes = _table(kind, rows_of(found.bearing)[0].bearing), [found.report()]
+    design, notes = _design(kind, rows_of(found.bearing)[0].bearing), [found.report()]
     if kind in CLEARANCES:
         try:
-            table[CLEARANCE], note = class_clearance(kind, "CN", numbers["bore"])
+            design[CLEARANCE], note = class_clearance(kind, "CN", numbers["bore"])
         except ValueError:
-            table[CLEARANCE], note = "0 um", "no class of clearance has limits here"
+            design[CLEARANCE], note = 0.0, "no class of clearance has limits here"
         notes.append(note)
     if kind == "cylindrical_roller":
         notes.append("no ribs: `arrangement` and `rib` of [bearing] give them")
@@ -106,10 +113,10 @@ def estimated_entry(
         mass=None,
         other=None,
         geometry="estimated",
-        assumed=tuple(k for k in _USUAL if k in table),
+        assumed=tuple(k for k in _USUAL if k in design),
         sources={"capacity": "as given", "geometry": "estimate_geometry, from these"},
         notes=tuple(notes),
-        table=table,
+        design=design,
     )
 
 
@@ -145,35 +152,37 @@ def _by_options(text: str) -> str:
 _ANGLE = "contact_angle"
 
 
-def _table(kind: str, row: Any) -> dict[str, Any]:
-    """Return the keys of [bearing] of an estimated row."""
+def _design(kind: str, row: Any) -> dict[str, Any]:
+    """Return the keywords of the design of an estimated row, to 4 to 6 digits."""
     element = "balls" if kind.endswith("ball") else "rollers"
     names = [f"n_{element}", *_LENGTHS, "outer_osculation", "inner_osculation"]
-    table: dict[str, Any] = {"type": kind}
+    design: dict[str, Any] = {"type": kind}
     for name in (*names, *_PARTS[kind]):
         # The outer raceway of a self-aligning bearing is a sphere.
         if hasattr(row, name) and (kind, name) != _SPHERE:
-            table[name] = _written(name, getattr(row, name))
-    if element == "rollers" and _INNER not in table:
-        table["roller_profile"] = {"type": "logarithmic"}
+            design[name] = _rounded(name, getattr(row, name))
+    if element == "rollers" and _INNER not in design:
+        design["roller_profile"] = {"type": "logarithmic"}
     if kind == "tapered_roller":
-        rib = row.ribs.inner_minus
-        ends = {"end_radius": rib.end_radius, "contact_height": rib.contact_height}
-        table["ribs"] = {
-            "inner_minus": {k: f"{1e3 * float(x):.4g} mm" for k, x in ends.items()}
+        rib, ends = row.ribs.inner_minus, ("end_radius", "contact_height")
+        design["ribs"] = {
+            "inner_minus": {k: _rounded(k, getattr(rib, k), 4) for k in ends}
         }
-        table[CLEARANCE] = "0 um"
-    return table
+        design[CLEARANCE] = 0.0
+    return design
 
 
 _SPHERE = ("self_aligning_ball", "outer_osculation")
 
 
-def _written(name: str, value: Any) -> Any:
+def _rounded(name: str, value: Any, digits: int = 5) -> Any:
+    """Return a value as it would be printed."""
     if name.startswith("n_"):
         return int(value)
-    if name in _ANGLES:
-        return f"{np.rad2deg(float(value)):.6g} deg"
     if name.endswith("osculation"):
         return round(float(value), 6)
-    return f"{1e3 * float(value):.5g} mm"
+    if UNITS.get(name) == "deg":
+        shown = f"{np.rad2deg(float(value)):.6g}"
+    else:
+        shown = f"{1e3 * float(value):.{digits}g}"
+    return from_catalogue_unit(name, Decimal(shown))

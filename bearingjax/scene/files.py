@@ -5,7 +5,6 @@ A reader of an output file sees either all of the old file or all of the new one
 
 import contextlib
 import json
-import math
 import os
 import shutil
 from collections.abc import Callable, Iterable, Mapping
@@ -14,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._version import __version__
 from .quantity import SceneError
 from .scene_file import bearing_files, find_scene, parse_scene, profile_files
 
@@ -104,12 +104,12 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
             made = writer is not None and _made(path, writer, moves, written)
             if not made and path.is_file():
                 stale.append(path)
-        for path, beside, target in moves:
+        for path, temporary, target in moves:
             with _naming(path):
-                os.replace(beside, target)
+                os.replace(temporary, target)
     finally:
-        for _, beside, _ in moves:
-            beside.unlink(missing_ok=True)
+        for _, temporary, _ in moves:
+            temporary.unlink(missing_ok=True)
     for path in stale:
         with _naming(path):
             path.unlink()
@@ -122,12 +122,12 @@ def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
     stream, target = _is_stream(path), _target(path)
     # The suffix determines the format.
     name = f".bearingjax-{os.getpid()}-{len(moves)}{target.suffix.lower()}"
-    beside = path if stream else target.with_name(name)
+    temporary = path if stream else target.with_name(name)
     if not stream:
-        moves.append((path, beside, target))
+        moves.append((path, temporary, target))
     with _naming(path):
         try:
-            writer(beside)
+            writer(temporary)
         except Incomplete as error:
             written.failed.append((path, error))
         except (OSError, SceneError):
@@ -136,10 +136,10 @@ def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
             written.failed.append((path, error))
             if not stream:
                 moves.pop()
-                beside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
             return False
         if not stream and target.exists():
-            shutil.copymode(target, beside)
+            shutil.copymode(target, temporary)
     return True
 
 
@@ -209,18 +209,41 @@ def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:
     Raises:
         OSError: If the file cannot be written.
     """
-    text = json.dumps(_finite(numbers), indent=1, allow_nan=False)
+    text = json.dumps(plain(numbers), indent=1, allow_nan=False)
     Path(path).write_text(text + "\n", encoding="utf-8")
 
 
-def _finite(value):
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
+def plain(value: Any) -> Any:
+    """Return what the JSON has: lists for arrays, `None` for non-finite numbers.
+
+    Args:
+        value: A number, an array, a word or `None`, or tables and lists of these.
+    """
+    if value is None or isinstance(value, str):
+        return value
     if isinstance(value, Mapping):
-        return {key: _finite(inner) for key, inner in value.items()}
+        return {key: plain(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(inner) for inner in value]
-    return value
+        return [plain(inner) for inner in value]
+    values = np.asarray(value)
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        finite, values = np.isfinite(values), values.astype(object)
+        values[~finite] = None
+    return values.tolist()
+
+
+def plain_run(
+    numbers: Mapping[str, Any], warnings: Iterable[str], inputs: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the JSON of a run.
+
+    Args:
+        numbers: Its numbers and status, as `plain` takes them.
+        warnings: Its warnings.
+        inputs: The scene as it was read.
+    """
+    common = {"warnings": list(warnings), "inputs": inputs, "version": __version__}
+    return {**plain(numbers), **common}
 
 
 def _target(path: Path) -> Path:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..design import TaperedRollerBearing, rows_of
-from .fit_table import Fits
+from .fits import Fits
 from .report_model import Column, Grid, Part
 
 ACROSS_TAPERS = "normal to the outer raceway"

@@ -1,7 +1,6 @@
 """The [fit] and [temperature] tables of a scene: seats of a bearing, temperatures."""
 
 import dataclasses
-import functools
 from typing import Any
 
 import jax
@@ -21,8 +20,6 @@ from ..design import (
     TaperedRollerBearing,
     WarmMaterial,
     bore_limits,
-    clearance_range,
-    fit_state,
     limit_classes,
     limits,
     mounted,
@@ -36,12 +33,11 @@ from ..design import (
     smoothing,
     with_radial_clearance,
 )
-from ..design.fit_range import ClearanceRange
-from ..design.fits import PARTS, FitState
-from ..element import BearingElement, Speed
-from ..statics.installed import Installed
-from ..statics.service_warning import seat_warnings
-from .catalogue_entry import CLEARANCE, CLEARED_ROLLERS, FromCatalogue, class_limits
+from ..design.catalogue_entry import CLEARANCE, class_limits
+from ..design.fits import PARTS
+from ..element import Speed
+from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
+from .fits import Fits
 from .quantity import SceneError
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema, number_schema
@@ -121,7 +117,6 @@ _DRIVEN = ("drive_up", "clearance_reduction")
 """Keys that say how far a tapered bore is driven up its seat."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class FitKeys(Keys):
     """[fit]: the seats of a bearing."""
 
@@ -199,9 +194,13 @@ class FitKeys(Keys):
             key = f"{seat}_interference"
             given = getattr(self, seat) is not None
             others = (key, *_DRIVEN) if seat == "shaft" else (key,)
-            beside = [name for name in others if getattr(self, name) is not None]
-            if len(beside) + given != 1:
-                seat, *rest = [seat, *beside] if given else beside or [seat]
+            given_otherwise = [
+                name for name in others if getattr(self, name) is not None
+            ]
+            if len(given_otherwise) + given != 1:
+                seat, *rest = (
+                    [seat, *given_otherwise] if given else given_otherwise or [seat]
+                )
                 problem = f"stands beside `{rest[0]}`" if rest else "is missing"
                 cure = f"give a tolerance class, such as {example}, or `{key}`"
                 raise self.table.error(seat, f"{problem}; {cure}")
@@ -223,7 +222,6 @@ def _warm(part: str) -> Any:
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class TemperatureKeys(Keys):
     """[temperature]: how warm a bearing on its seats is."""
 
@@ -255,69 +253,8 @@ class TemperatureKeys(Keys):
         return FitConditions(**warm, **speeds)
 
 
-@dataclasses.dataclass(frozen=True)
-class FitFacts:
-    """Effects of fits, as plain numbers.
-
-    Attributes:
-        free: Radial clearance before mounting [m].
-        mounted: State when mounted, at rest, at the reference temperature.
-        operating: State in operation.
-        mounted_range: Radial clearance over all tolerances, mounted.
-        operating_range: Radial clearance over all tolerances, in operation.
-        loosest: State in operation at the sizes with the largest clearance.
-    """
-
-    free: float
-    mounted: FitState
-    operating: FitState
-    mounted_range: ClearanceRange
-    operating_range: ClearanceRange
-    loosest: FitState
-
-
-@dataclasses.dataclass(frozen=True)
-class Fits:
-    """Seats of the bearing of a scene.
-
-    Attributes:
-        mounting: The seats, with the interferences at `place`; raceways and clearance
-            are those of the bearing.
-        conditions: Temperatures and speeds.
-        place: Position within the tolerances, one of `PLACES`.
-        limits: `Limits` of clearance and seats, as in `clearance_range`.
-        names: Tolerance classes of shaft and housing; empty for numbers.
-        unknown: Parts of the bearing of unknown thermal expansion, at reference
-            temperature, with the key of their material in [bearing].
-        bearing: The bearing on them, unmounted.
-    """
-
-    mounting: Mounting
-    conditions: FitConditions
-    place: str
-    limits: dict[str, Any]
-    names: tuple[str, str]
-    unknown: dict[str, str]
-    bearing: AbstractBearing | BearingSet
-
-    @functools.cached_property
-    def facts(self) -> FitFacts:
-        """Their effects."""
-        mounting = jax.device_get(sized(self.mounting, self.bearing))
-        warm, cold = jax.device_get((self.conditions, FitConditions()))
-        loosest = mounting_at(mounting, "loosest", **self.limits)
-        return FitFacts(
-            float(mounting.radial_clearance),
-            fit_state(mounting, cold),
-            fit_state(mounting, warm),
-            clearance_range(mounting, **self.limits, conditions=cold),
-            clearance_range(mounting, **self.limits, conditions=warm),
-            fit_state(loosest, warm),
-        )
-
-
 def read_fits(
-    beside: Table,
+    parent: Table,
     own: Table,
     bearing: AbstractBearing | BearingSet,
     speed: Speed | None,
@@ -326,7 +263,7 @@ def read_fits(
     """Read the fits of a scene; return them and the bearing with unmounted clearance.
 
     Args:
-        beside: The table that holds [fit] and [temperature]: the scene, or one bearing
+        parent: The table that holds [fit] and [temperature]: the scene, or one bearing
             of a rotor.
         own: The table of the bearing, as it was read.
         bearing: The design, unmounted.
@@ -341,21 +278,21 @@ def read_fits(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    temperature = beside.table("temperature")
-    if "fit" not in beside:
+    temperature = parent.table("temperature")
+    if "fit" not in parent:
         if temperature.keys():
             problem = "goes with a [fit]; without one nothing depends on it"
-            raise beside.error("temperature", problem)
+            raise parent.error("temperature", problem)
         return bearing, None
     row = rows_of(bearing)[0].bearing
     if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
-        raise beside.error("fit", f"{problem} leave [fit] and [temperature] out")
+        raise parent.error("fit", f"{problem} leave [fit] and [temperature] out")
     designs = {id(one.bearing) for one in rows_of(bearing)}
     if len(designs) > 1 and not shares_rings(bearing):
         problem = "is for rows of one bearing; those of this set differ"
-        raise beside.error("fit", problem)
-    keys = read_keys(FitKeys, beside.table("fit"))
+        raise parent.error("fit", problem)
+    keys = read_keys(FitKeys, parent.table("fit"))
     table, place = keys.table, keys.at
     sizes = _sizes(keys, catalogue)
     taper = _taper(keys, catalogue)
@@ -399,53 +336,6 @@ def read_fits(
         fits = Fits(mounting, conditions, place, given, names, unknown, bearing)
         mounted(bearing, fits.mounting, conditions)
     return bearing, fits
-
-
-def fit_warnings(fits: Fits, load_fixed_to: str = "space") -> list[str]:
-    """Return warnings about fits, one sentence each.
-
-    Args:
-        fits: From `read_fits`.
-        load_fixed_to: As in `LifeConditions`.
-    """
-    facts, conditions = fits.facts, fits.conditions
-    speed = Speed(conditions.speed, conditions.outer_speed)
-    seats = facts.mounted, facts.operating, facts.loosest
-    return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
-
-
-def fits_at_speed(fits: Fits | None, speed: float) -> Fits | None:
-    """Return the fits on a rotating shaft in a stationary housing.
-
-    Args:
-        fits: From `read_fits`.
-        speed: Speed of shaft and inner ring [rad/s].
-    """
-    if fits is None:
-        return None
-    given = dataclasses.replace(fits.conditions, speed=speed, outer_speed=0.0)
-    return dataclasses.replace(fits, conditions=given)
-
-
-def installed(
-    drawing: BearingElement[Any],
-    preload: float | None,
-    fits: Fits | None,
-    catalogue: FromCatalogue | None = None,
-) -> Installed:
-    """Return a bearing with the preload and the seats of its scene.
-
-    Args:
-        drawing: The bearing with its laws and numerics.
-        preload: Preload force to which its rows are ground [N], or `None`.
-        fits: From `read_fits`.
-        catalogue: Catalogue entry of its designation, or `None`.
-    """
-    names = "limiting_speed", "reference_speed"
-    speeds = {k: getattr(catalogue.entry, k) for k in names} if catalogue else {}
-    if fits is None:
-        return Installed(drawing, preload, **speeds)
-    return Installed(drawing, preload, fits.mounting, fits.conditions, **speeds)
 
 
 def _with_clearance(bearing, clearance):

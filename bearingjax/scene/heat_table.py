@@ -1,6 +1,5 @@
 """The [heat] table of a system of shafts: where friction heat goes."""
 
-import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,7 +20,6 @@ _CONDUCTANCES = "inner", "outer"
 """By default half of this each, over the area of the seats."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class HeatKeys(Keys):
     """[heat]: temperatures from friction, in equilibrium and in time."""
 

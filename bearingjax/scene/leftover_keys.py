@@ -3,15 +3,14 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..design.fit_limits import CLEARANCE_CLASSES
-from .catalogue_entry import (
+from ..design.catalogue_entry import (
     CLEARANCE,
     CLEARANCES,
     CatalogueEntry,
-    FromCatalogue,
     catalogue,
-    same_key,
 )
+from ..design.fit_limits import CLEARANCE_CLASSES
+from .catalogue_keys import FromCatalogue, same_key
 from .quantity import SceneError, to_si
 
 _FAR = 0.05
@@ -46,7 +45,9 @@ def _of_another(keys, taken) -> tuple[str, ...]:
     entry, changed = taken.entry, set(taken.overridden) - {CLEARANCE}
     others = [e for e in catalogue() if e.type == entry.type]
     cure = "leave out the lines that are not meant"
-    whole = [e for e in others if changed & set(e.table) and _agrees(keys, e, e.table)]
+    whole = [
+        e for e in others if changed & set(e.design) and _agrees(keys, e, e.design)
+    ]
     if whole:
         words = f"the lines beside `designation` are those of {_names(whole)}"
         return (f"bearing: {words}, not of {entry.designation}; {cure}",)
@@ -54,7 +55,7 @@ def _of_another(keys, taken) -> tuple[str, ...]:
     if len(main) < 2:
         return ()
     alike = [e for e in others if _agrees(keys, e, main)]
-    pitch, own = (_length(table, "pitch_diameter") for table in (keys, entry.table))
+    pitch, own = _length(keys, "pitch_diameter"), entry.design.get("pitch_diameter")
     if not alike and (pitch is None or own is None or abs(pitch / own - 1.0) < _FAR):
         return ()
     shown = " and ".join(f"`{key}`" for key in main)

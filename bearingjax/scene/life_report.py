@@ -8,6 +8,7 @@ import numpy as np
 from ..element.frame import RINGS
 from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
+from .files import plain
 from .life_ratings import not_published, rating_origins
 from .read import Scene
 from .report_model import Column, Grid, Part
@@ -34,8 +35,7 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
     """
     found = ratings_as_dict(life.ratings, origins)
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
-        value = getattr(life, name)
-        found[name] = None if value is None else _plain(value)
+        found[name] = plain(getattr(life, name))
     row, ring, track = life.weakest
     found["weakest"] = {"row": row, "ring": ring, "track": track}
     return {**found, "standards": dict(life.standards)}
@@ -51,7 +51,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for name, source in _SOURCES.items():
-        found[name] = _plain(getattr(ratings, name))
+        found[name] = plain(getattr(ratings, name))
         found[f"{name}_source"] = getattr(ratings, source)
         found[f"{name}_origin"] = origins.get(name)
     return found
@@ -70,15 +70,6 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
     }
 
 
-def _plain(value) -> Any:
-    values = np.asarray(value, dtype=float)
-    if np.isfinite(values).all():
-        return values.tolist()
-    plain = values.astype(object)
-    plain[~np.isfinite(values)] = None
-    return plain.tolist()
-
-
 def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
     """Return the report section of a rating life.
 
@@ -92,7 +83,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
         "basic, ISO 281": life.basic_rating_life,
         "reference, ISO/TS 16281": life.reference_rating_life,
     }
-    told = []
+    factors_line = []
     if life.modified_rating_life is not None:
         lives["modified (a1, a_ISO)"] = life.modified_rating_life
         factors = {
@@ -102,7 +93,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
             "a1": life.reliability_factor,
         }
         parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
-        told.append(", ".join(parts))
+        factors_line.append(", ".join(parts))
     elif life.reliability_factor < 0.999999:
         a1 = float(life.reliability_factor)
         lives[f"reference, a1 {a1:.4g}"] = a1 * life.reference_rating_life
@@ -110,7 +101,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
     hours = None if per_turn is None else {k: per_turn * x for k, x in lives.items()}
     return [
         lives_grid(lives, hours),
-        *told,
+        *factors_line,
         f"{axially} ratings",
         *(
             f"  {words}"

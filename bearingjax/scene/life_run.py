@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
@@ -18,6 +17,7 @@ from ..statics.sweep import Sweep
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
+from .files import plain_run
 from .life_ratings import life_conditions, not_published, rating_origins
 from .life_report import (
     life_number,
@@ -30,7 +30,7 @@ from .quantity import SceneError
 from .report import design_sections
 from .report_model import NEWTONS, Column, Grid, Part, Report
 from .scene_file import find_scene, parse_bearing
-from .sweep_run import all_warnings, design_columns, listed_columns, run_cases
+from .sweep_run import all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 _SHOWN = 12
@@ -190,26 +190,25 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     found = ratings_as_dict(run.ratings, run.origins)
     if run.converged:
         for name, life in run.lives.items():
-            found[name] = _finite(life.rating_life)
+            found[name] = life.rating_life
         found.setdefault("modified_rating_life", None)
         found["equivalent_load"] = equivalent_load(run)
-        found["static_safety"] = _finite(np.min(run.solved.static_safety))
-        hours = run.asked.life_hours
-        found["life_hours"] = None if hours is None else _finite(hours)
-        found["damage_share"] = np.asarray(run.asked.damage_share).tolist()
-    return {
-        **found,
-        "columns": listed_columns(life_columns(run)),
-        "counts": run.solved.counts(),
-        "warnings": run.warnings,
-        "inputs": run.table.inputs,
-        "version": __version__,
-    }
+        found["static_safety"] = np.min(run.solved.static_safety)
+        found["life_hours"] = run.asked.life_hours
+        found["damage_share"] = run.asked.damage_share
+    found["columns"] = life_columns(run, exact=True)
+    found["counts"] = run.solved.counts()
+    return plain_run(found, run.warnings, run.table.inputs)
 
 
-def life_columns(run: LifeRun) -> dict[str, np.ndarray]:
-    """Return the cases and their lives as columns by header, in SI."""
-    return columns(run.solved, design_columns(run.table))
+def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
+    """Return the cases and their lives as columns by header, in SI.
+
+    Args:
+        run: From `run_life`.
+        exact: As in `sweep_table.columns`.
+    """
+    return columns(run.solved, design_columns(run.table), exact=exact)
 
 
 def equivalent_load(run: LifeRun) -> float:
@@ -221,10 +220,6 @@ def equivalent_load(run: LifeRun) -> float:
     power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
     life = float(run.lives["basic_rating_life"].rating_life) / 1e6
     return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
-
-
-def _finite(value) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def spectrum_report(run: LifeRun) -> Report:
@@ -266,7 +261,7 @@ def _lives(run) -> list[Part]:
         for what in ("rating_life", "life_hours")
     )
     at_rest = run.asked.life_hours is None
-    told: list[Part] = [
+    parts: list[Part] = [
         f"{table.scene.name}: life under {shown_count(table.cases.count, 'case')} over"
         f" {', '.join(table.varied)}",
         rated["C"],
@@ -279,9 +274,9 @@ def _lives(run) -> list[Part]:
     ]
     if at_rest:
         fixed_to = life_conditions(table.scene).load_fixed_to
-        told.append(turning(turns_against_load(None, fixed_to), True))
-    told += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
-    return [*told, *_by_case(run)]
+        parts.append(turning(turns_against_load(None, fixed_to), True))
+    parts += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
+    return [*parts, *_by_case(run)]
 
 
 def _on_seats(run) -> str:
@@ -319,10 +314,10 @@ def _by_case(run) -> list[Part]:
         columns.append(Column(word, np.asarray(values)[order], "rev"))
     name = f"damage ({run.asked_name})"
     columns.append(Column(name, shares, "1", ".4g", (100.0, "%")))
-    told: list[Part] = ["", Grid(columns, "each case alone")]
+    parts: list[Part] = ["", Grid(columns, "each case alone")]
     more = run.table.cases.count - len(order)
     if more:
-        told.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
+        parts.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
     found = differing(run.table)
     if found:
         # Non-breaking spaces keep a setting in one line.
@@ -330,8 +325,8 @@ def _by_case(run) -> list[Part]:
             ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
             for k in order
         ]
-        told += ["", Grid([Column("case", order), Column("what differs", apart)])]
-    return told
+        parts += ["", Grid([Column("case", order), Column("what differs", apart)])]
+    return parts
 
 
 def unsolved(run: LifeRun) -> str:

@@ -16,7 +16,6 @@ from .table import Table
 _RATED = "published for the `designation`, else from the geometry"
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LifeKeys(Keys):
     """[life]: conditions of the rating life, in addition to the bearing."""
 
@@ -112,15 +111,15 @@ def rating_warnings(
         bearing: The design.
     """
     usual = sum(_usual_load(row.bearing) for row in rows_of(bearing))
-    told = []
+    found = []
     for name, share in _USUAL.items():
         value = getattr(life, name, None)
         if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
-            told.append(
+            found.append(
                 f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
                 f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
             )
-    return tuple(told)
+    return tuple(found)
 
 
 def _usual_load(row: Any) -> float:

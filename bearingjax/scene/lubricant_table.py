@@ -1,6 +1,5 @@
 """The [lubricant] table of a scene: an oil, its temperature, its law of traction."""
 
-import dataclasses
 from collections.abc import Mapping
 from typing import ClassVar
 
@@ -46,7 +45,6 @@ _OF_PRESSURE = ("barus", "roelands")
 """Laws of the pressure alone, which require the ambient viscosity."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LubricantKeys(Keys):
     """[lubricant]: an oil by its name, or by a law of its viscosity over pressure."""
 

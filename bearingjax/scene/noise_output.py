@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
+from .files import plain_run
 from .noise_run import NoiseRun, RandomBearings
 from .noise_scene import AXES
 from .tolerance_table import Tighter
@@ -41,44 +41,34 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     parts: dict[str, Any] = {}
     if run.modes is not None and run.converged:
         there = run.modes.frequency > LOOSE
-        parts["natural_frequency"] = run.modes.frequency[there].tolist()
-        parts["ring_share"] = run.modes.ring_share[there].tolist()
+        parts["natural_frequency"] = run.modes.frequency[there]
+        parts["ring_share"] = run.modes.ring_share[there]
     if run.analysis is not None:
         parts |= _analysis(run)
     if run.many is not None:
         parts["monte_carlo"] = _many(run.many, run.task.tighter)
-    return {
-        **parts,
-        "result": run.result.label,
-        "message": run.message,
-        "warnings": list(run.warnings),
-        "inputs": run.task.inputs,
-        "version": __version__,
-    }
+    parts |= {"result": run.result.label, "message": run.message}
+    return plain_run(parts, run.warnings, run.task.inputs)
 
 
 def _analysis(run: NoiseRun) -> dict[str, Any]:
     analysis = run.analysis
     assert analysis is not None  # checked by the caller
     states = analysis.states
-    three = len(AXES)
     return {
-        "direction": list(AXES),
-        "time": analysis.record.time.tolist(),
-        "acceleration": analysis.acceleration.tolist(),
-        "displacement": np.asarray(analysis.record.displacement)[:, :three].tolist(),
-        "level": analysis.level.tolist(),
-        "bands": {
-            "centre": run.task.bands.centre.tolist(),
-            "level": analysis.band_level.tolist(),
-        },
+        "direction": AXES,
+        "time": analysis.record.time,
+        "acceleration": analysis.acceleration,
+        "displacement": np.asarray(analysis.record.displacement)[:, : len(AXES)],
+        "level": analysis.level,
+        "bands": {"centre": run.task.bands.centre, "level": analysis.band_level},
         "lines": [
-            {**line._asdict(), "causes": list(causes)}
+            {**line._asdict(), "causes": causes}
             for line, causes in zip(analysis.lines, analysis.causes, strict=True)
         ],
         "contact_states": {
             "contacts": list(range(len(states.samples))),
-            "samples": states.samples.tolist(),
+            "samples": states.samples,
             "switches_per_turn": states.switches_per_turn,
         },
         "reference": run.task.reference,
@@ -92,23 +82,24 @@ PERCENTILES = (5.0, 50.0, 95.0)
 def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
     numbers: dict[str, Any] = {
-        "level": np.asarray(levels.level).tolist(),
-        "band_level": np.asarray(levels.bands).tolist(),
+        "level": levels.level,
+        "band_level": levels.bands,
         "percentile": {
-            "share": list(PERCENTILES),
-            "level": np.asarray(levels.percentile(PERCENTILES)).tolist(),
+            "share": PERCENTILES,
+            "level": levels.percentile(PERCENTILES),
         },
     }
-    if many.contributions is not None:
-        numbers["sources"] = list(many.contributions.sources)
-        numbers["part"] = parts_of(many.contributions).tolist()
-        total = float(many.contributions.mean_square)
-        numbers["part_error"] = (np.asarray(many.contributions.error) / total).tolist()
-        numbers["part_by_band"] = np.asarray(many.contributions.by_band).tolist()
-        numbers["tighter"] = [
-            {"name": name, "gain": float(many.contributions.gain_together(ratio))}
-            for name, ratio in tighter
-        ]
+    if (found := many.contributions) is not None:
+        numbers |= {
+            "sources": found.sources,
+            "part": parts_of(found),
+            "part_error": np.asarray(found.error) / float(found.mean_square),
+            "part_by_band": found.by_band,
+            "tighter": [
+                {"name": name, "gain": found.gain_together(ratio)}
+                for name, ratio in tighter
+            ],
+        }
     return numbers
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..element.frame import LOADS
 from ..noise import ring_modes
 from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
@@ -11,9 +10,8 @@ from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import AXES
 from .report import bearing_text
-from .report_model import Column, Grid, Report
+from .report_model import Column, Grid, Report, load_text, rpm
 
-_RPM = 30.0 / np.pi
 _WORTH = 0.1
 """Part of a band above which its largest source is named [1]."""
 
@@ -38,12 +36,7 @@ def noise_report(run: NoiseRun) -> Report:
 def _bearing(run):
     model = run.task.model
     bearing = model.element.bearing
-    load = ", ".join(
-        f"{name} {value:.5g} {'N' if name[0] == 'F' else 'N m'}"
-        for name, value in zip(LOADS, np.asarray(model.load), strict=True)
-        if value
-    )
-    inner, outer = (float(s) * _RPM for s in (model.speed.inner, model.speed.outer))
+    inner, outer = rpm(model.speed.inner), rpm(model.speed.outer)
     task, record = run.task, run.analysis.record
     inertia = model.inertia
     tilts = "does not tilt"
@@ -60,8 +53,8 @@ def _bearing(run):
             bearing_text(task.scene, bearing),
             f"the {model.moving_ring} ring moves, {float(model.mass):.4g} kg, and"
             f" {tilts}",
-            f"loaded by {load or 'nothing'}; inner ring {inner:.5g} rpm, outer ring"
-            f" {outer:.5g} rpm",
+            f"loaded by {load_text(model.load) or 'nothing'}; inner ring {inner}, outer"
+            f" ring {outer}",
             f"record of {shown_count(task.turns, 'turn')}, {float(record.duration):.4g}"
             f" s, after {task.settle} to settle; {len(record.time)} samples,"
             f" {shown_count(run.steps, 'step')} each{bridging}",

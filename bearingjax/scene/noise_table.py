@@ -24,7 +24,7 @@ from ..noise import (
     octave_bands,
     third_octave_bands,
 )
-from ..noise.reference_levels import NORM
+from ..noise.level import NORM
 from .deviations_table import read_deviations
 from .noise_scene import AXES, NoiseScene
 from .read import Scene, scene_of, with_speed_warnings
@@ -43,7 +43,6 @@ MOST_SAMPLES = 200_000
 """Most samples of a record: about 20 MB as JSON."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class VibrationKeys(Keys):
     """[vibration]: the test rig of a bearing, the record and its evaluation."""
 

@@ -16,7 +16,8 @@ from ..statics.contact_films import Films, films
 from ..statics.friction import Friction, friction_torque
 from ..statics.friction_skf import SkfFriction, skf_friction_torque, skf_series
 from ..statics.solution import Solution
-from .catalogue_entry import FromCatalogue
+from .catalogue_keys import FromCatalogue
+from .files import plain
 from .lubricant_table import LubricantKeys, described
 from .schema import read_keys
 from .table import Table
@@ -212,30 +213,27 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     by_palmgren = {}
     if friction is not None:
         by_palmgren = {
-            "friction_torque": float(friction.torque),
+            "friction_torque": friction.torque,
             "friction": {
-                "load": friction.load_torque.tolist(),
-                "viscous": friction.viscous_torque.tolist(),
-                "flange": friction.flange_torque.tolist(),
-                "power": float(friction.power),
+                "load": friction.load_torque,
+                "viscous": friction.viscous_torque,
+                "flange": friction.flange_torque,
+                "power": friction.power,
             },
         }
-    return {
+    numbers = {
         **by_palmgren,
         **({} if skf is None else {"friction_skf": _skf_as_dict(skf)}),
-        "film": {name: _listed(getattr(found, name)) for name in names},
+        "film": {name: getattr(found, name) for name in names},
     }
+    return plain(numbers)
 
 
 def _skf_as_dict(skf):
     return {
-        "torque": float(skf.torque),
-        "rolling": skf.rolling_torque.tolist(),
-        "sliding": skf.sliding_torque.tolist(),
-        "power": float(skf.power),
+        "torque": skf.torque,
+        "rolling": skf.rolling_torque,
+        "sliding": skf.sliding_torque,
+        "power": skf.power,
         "series": skf.series,
     }
-
-
-def _listed(values):
-    return [[float(x) if np.isfinite(x) else None for x in row] for row in values]

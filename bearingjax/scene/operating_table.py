@@ -1,6 +1,5 @@
 """The [operating], [numerics] and [output] tables of a scene: load, speeds, support."""
 
-import dataclasses
 from typing import Any
 
 from ..element import FREEDOMS, LOADS, RINGS, Speed
@@ -13,7 +12,6 @@ MOST_POINTS = 10_000
 roller as JSON."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class LoadKeys(Keys):
     """Load on the moving ring."""
 
@@ -25,7 +23,6 @@ class LoadKeys(Keys):
     Mz: float | None = scene_key("moment about the axis", "moment")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class MotionKeys(Keys):
     """Displacements at which the moving ring is held."""
 
@@ -41,7 +38,6 @@ def _named(example: str) -> str:
     return f"name the components, {{ {example} }}"
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class OperatingKeys(Keys):
     """[operating]: load, support and speeds of a bearing."""
 
@@ -109,7 +105,6 @@ class OperatingKeys(Keys):
             self.table.fill("free", moving)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SolveKeys(Keys):
     """[numerics] of a load solve."""
 
@@ -121,7 +116,6 @@ class SolveKeys(Keys):
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class OutputKeys(Keys):
     """[output] of a bearing of rollers."""
 

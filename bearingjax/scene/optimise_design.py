@@ -10,7 +10,7 @@ import numpy as np
 from ..design import Limits, radial_clearance, rows_of
 from ..numerics.types import as_array
 from ..statics.installed import Installed
-from .fit_table import Fits, fit_warnings
+from .fits import Fits, fit_warnings
 from .optimise_table import Optimisation
 from .shaft_optimise import ShaftOptimisation
 

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
+from .files import plain_run
 from .optimise_design import scene_of_design
 from .optimise_table import Optimisation
 from .output import fits_as_dict
@@ -128,26 +128,20 @@ def optimisation_as_dict(
         of `bearing_facts` by the names of the bearings.
     """
     best = scene_of_design(task, found.element) if best is None else best
-    history = {
-        name: np.asarray(values).tolist()
-        for name, values in found.history._asdict().items()
-        if np.isfinite(values).all()
-    }
-    return {
+    history = found.history._asdict().items()
+    numbers = {
         **(_numbers(found, best) if found.converged else {}),
         "result": found.result,
         "message": found.message,
-        "optimality": found.optimality if np.isfinite(found.optimality) else None,
-        "history": history,
+        "optimality": found.optimality,
+        "history": {k: values for k, values in history if np.isfinite(values).all()},
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
-        "rejected": list(found.rejected),
+        "rejected": found.rejected,
         **(fits_as_dict(best) if isinstance(best, Scene) else {}),
-        "warnings": [*best.warnings, *found.after.warnings],
         "warnings_before": _warned_before(task, found),
-        "inputs": task.inputs,
-        "version": __version__,
     }
+    return plain_run(numbers, [*best.warnings, *found.after.warnings], task.inputs)
 
 
 def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
@@ -160,13 +154,8 @@ def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
     Returns:
         result ("start_not_solved"), message, warnings, inputs and version.
     """
-    return {
-        "result": "start_not_solved",
-        "message": str(error),
-        "warnings": list(task.scene.warnings),
-        "inputs": task.inputs,
-        "version": __version__,
-    }
+    status = {"result": "start_not_solved", "message": str(error)}
+    return plain_run(status, task.scene.warnings, task.inputs)
 
 
 def _numbers(found, best):
@@ -176,8 +165,8 @@ def _numbers(found, best):
             "name": v.name,
             "lower": v.lower,
             "upper": v.upper,
-            "before": float(x),
-            "after": float(y),
+            "before": x,
+            "after": y,
         }
         for v, x, y in zip(found.variables, before.values, after.values, strict=True)
     ]
@@ -189,8 +178,8 @@ def _numbers(found, best):
     constraints = [
         {
             "measure": label_of(c.measure),
-            "lower": None if c.lower is None else float(c.lower),
-            "upper": None if c.upper is None else float(c.upper),
+            "lower": c.lower,
+            "upper": c.upper,
             **sides(k),
         }
         for k, c in enumerate(found.constraints, start=1)
@@ -204,22 +193,15 @@ def _numbers(found, best):
     }
 
 
-def _finite(value: Any) -> float | None:
-    """Return a number of the JSON; `None` if it is not finite."""
-    return float(value) if np.isfinite(value) else None
-
-
 def _bearings(found, best):
     if isinstance(best, Scene):
         sides = {"before": found.before, "after": found.after}
-        return {
-            "peak_pressure": {k: _peaks(side).tolist() for k, side in sides.items()}
-        }
+        return {"peak_pressure": {k: _peaks(side) for k, side in sides.items()}}
     facts = bearing_facts(found)
     return {
         "bearings": {
             seat.name: {
-                key: {side: _finite(values[k]) for side, values in pair.items()}
+                key: {side: values[k] for side, values in pair.items()}
                 for key, pair in facts.items()
             }
             for k, seat in enumerate(best.system.seats)
@@ -233,9 +215,8 @@ def _shown(found):
     measure, ((_, before), (_, after)) = _as_reported(found.objective, pair)
     if measure is found.objective:
         return {}
-    ends = {"before": before, "after": after}
-    finite = {k: _finite(x) for k, x in ends.items()}
-    return {label_of(measure).replace(" ", "_"): finite}
+    name = label_of(measure).replace(" ", "_")
+    return {name: {"before": before, "after": after}}
 
 
 def _measured(outcome: Outcome):

@@ -124,7 +124,6 @@ def bound_key(end: str, bare: str = "") -> Any:
     return scene_key(about, default=None, reader=_later, json=both)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class BoundKeys(Keys):
     """[[optimise.constraints]]: a bound on a measure."""
 
@@ -153,7 +152,6 @@ class BoundKeys(Keys):
             return Constraint(measure, *ends)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ConstraintKeys(BoundKeys):
     """[[optimise.constraints]]: a bound on a measure."""
 
@@ -163,7 +161,6 @@ class ConstraintKeys(BoundKeys):
     freedom: str | None = _freedom("measure")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SearchKeys(Keys):
     """[optimise]: variables and the search for the best design."""
 
@@ -192,7 +189,6 @@ class SearchKeys(Keys):
             raise self.table.error("method", f"{problem} out")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class OptimiseKeys(SearchKeys):
     """[optimise]: variables, objective and constraints."""
 
@@ -415,8 +411,8 @@ def _no_number(key, table, numbers):
     near, head = tuple(numbers), key
     while "." in head:
         head = head.rpartition(".")[0]
-        if beside := [name for name in numbers if name.startswith(f"{head}.")]:
-            near = tuple(beside)
+        if inner := [name for name in numbers if name.startswith(f"{head}.")]:
+            near = tuple(inner)
             break
     return not_among(key, near)
 

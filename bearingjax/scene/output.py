@@ -3,12 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from .._version import __version__
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, message
-from .files import write_numbers
+from .files import plain, plain_run, write_numbers
 from .fit_report import fit_as_dict
 from .life_ratings import rating_origins
 from .life_report import life_as_dict
@@ -91,16 +88,13 @@ def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
         found: From `solve_scene`.
     """
     scene, solution = found.scene, found.numbers
-    residual = float(solution.stats.residual)
-    return {
+    status = {
         "result": Result(int(solution.result)).label,
         "message": message(solution, scene.moving_ring),
-        "residual": residual if np.isfinite(residual) else None,
-        "iterations": int(solution.stats.iterations),
-        "warnings": found.warnings,
-        "inputs": scene.inputs,
-        "version": __version__,
+        "residual": solution.stats.residual,
+        "iterations": solution.stats.iterations,
     }
+    return plain_run(status, found.warnings, scene.inputs)
 
 
 def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
@@ -148,33 +142,19 @@ def _catalogue(scene):
 def _numbers(solution):
     numbers = _of_elements(solution)
     if solution.spring_force is not None:
-        numbers |= {name: _listed(getattr(solution, name)) for name in OF_SPRINGS}
-    return numbers
+        numbers |= {name: getattr(solution, name) for name in OF_SPRINGS}
+    return plain(numbers)
 
 
 def _of_elements(solution):
     if not isinstance(solution, BallSolution):
-        return {name: _listed(getattr(solution, name)) for name in OF_ROLLERS}
-    names = OF_BALLS
+        return {name: getattr(solution, name) for name in OF_ROLLERS}
     moving = solution.kinematics
     if moving is None:
-        return {name: _listed(getattr(solution, name)) for name in names}
-    numbers = {
-        name: _listed(getattr(solution, name)) for name in (*names, *OF_TURNING_BALLS)
-    }
-    speeds = {
-        name: _listed(getattr(moving, field)) for name, field in KINEMATICS.items()
-    }
-    return {**numbers, **speeds}
-
-
-def _listed(values):
-    values = np.asarray(values)
-    if np.isfinite(values).all():
-        return values.tolist()
-    plain = values.astype(object)
-    plain[~np.isfinite(values)] = None
-    return plain.tolist()
+        return {name: getattr(solution, name) for name in OF_BALLS}
+    names = (*OF_BALLS, *OF_TURNING_BALLS)
+    speeds = {name: getattr(moving, field) for name, field in KINEMATICS.items()}
+    return {**{name: getattr(solution, name) for name in names}, **speeds}
 
 
 def write_json(path: str | Path, found: SolvedScene) -> None:

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ..design.catalogue_entry import catalogue_entry
 from ..rotor import Shaft
 from .bearing_table import EXTRA_KEYS
-from .catalogue_entry import FromCatalogue, catalogue_entry
+from .catalogue_keys import FromCatalogue
 from .design_keys import BALLS
-from .fit_table import Fits
+from .fits import Fits
 from .quantity import SceneError
 from .read import Scene, scene_of
 from .table import Table
@@ -34,7 +35,7 @@ def placed_bearing(
     table: Table,
     name: str,
     path: Path,
-    beside: tuple[str, ...] = (),
+    other_keys: tuple[str, ...] = (),
     speed: float = 1.0,
     known: dict[str, Any] | None = None,
 ) -> Scene:
@@ -45,7 +46,7 @@ def placed_bearing(
         table: `[bearings.NAME]`.
         name: NAME.
         path: Path of the scene.
-        beside: Keys of the table that the machine reads itself.
+        other_keys: Keys of the table that the machine reads itself.
         speed: Speed of the inner ring [rad/s]; lives and fits take that of the machine.
         known: Scenes read before, by what was read; added to.
 
@@ -54,7 +55,7 @@ def placed_bearing(
             the keys of the machine.
     """
     known = {} if known is None else known
-    own = {k: v for k, v in table.keys_given().items() if k not in beside}
+    own = {k: v for k, v in table.keys_given().items() if k not in other_keys}
     table.skip(*own)
     inside = (*EXTRA_KEYS, *_COMMON)
     data: dict[str, Any] = {
@@ -83,7 +84,7 @@ def placed_bearing(
         data["life"].pop("edge_stress", None)
     mark = repr(data)
     if mark not in known:
-        known[mark] = _scene(data, name, path, own, (*inside, *beside))
+        known[mark] = _scene(data, name, path, own, (*inside, *other_keys))
     scene = known[mark]
     for key, value in echoed(scene.inputs).items():
         table.fill(key, value)
@@ -99,11 +100,11 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     Args:
         inputs: `Scene.inputs`.
     """
-    beside = {key: dict(inputs[key]) for key in EXTRA_KEYS if key in inputs}
-    beside.get("numerics", {}).pop("tolerance", None)  # of its own load solve
+    tables = {key: dict(inputs[key]) for key in EXTRA_KEYS if key in inputs}
+    tables.get("numerics", {}).pop("tolerance", None)  # of its own load solve
     operating = inputs.get("operating", {})
     chosen = {key: operating[key] for key in EXTRA_KEYS if key in operating}
-    return {**inputs["bearing"], **beside, **chosen}
+    return {**inputs["bearing"], **tables, **chosen}
 
 
 def check_seat(
@@ -121,9 +122,9 @@ def check_seat(
         shaft: The shaft.
         station: Its station with the bearing.
     """
-    beside = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
+    segments = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
     diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
-    there = diameters[:, beside].T
+    there = diameters[:, segments].T
     if fits is not None:
         seat = fits.mounting
         wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
@@ -148,7 +149,7 @@ def check_seat(
 
 
 def _scene(
-    data: dict[str, Any], name: str, path: Path, own: Any, beside: tuple[str, ...]
+    data: dict[str, Any], name: str, path: Path, own: Any, other_keys: tuple[str, ...]
 ) -> Scene:
     # The message names tables of a bearing alone: [bearing], `fit.bore`; not hints.
     tables = [key for key in (*EXTRA_KEYS, *_COMMON) if key in own]
@@ -161,7 +162,9 @@ def _scene(
         return f"bearings.{name}{inside}"
 
     try:
-        return dataclasses.replace(scene_of(data, path, beside=beside), name=name)
+        return dataclasses.replace(
+            scene_of(data, path, other_keys=other_keys), name=name
+        )
     except SceneError as error:
         raise SceneError(re.sub(pattern, renamed, str(error))) from error
 
@@ -170,6 +173,6 @@ def _is_ball(own: Mapping[str, Any]) -> bool:
     """Whether the keys of a bearing are of one with balls."""
     kind, name = own.get("type"), own.get("designation")
     if kind is None and isinstance(name, str):
-        with contextlib.suppress(SceneError):
+        with contextlib.suppress(ValueError):
             kind = catalogue_entry(name).type
     return kind in BALLS

@@ -14,7 +14,8 @@ from ..numerics.types import as_array
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
-from .fit_table import Fits
+from .files import plain
+from .fits import Fits
 from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6
@@ -199,16 +200,12 @@ def preload_as_dict(found: PreloadOfSet) -> dict[str, Any]:
         each at the loosest and the tightest sizes.
     """
     numbers: dict[str, Any] = {
-        name: _plain(getattr(found, name))
-        for name in ("ground", "mounted", "operating")
+        name: getattr(found, name) for name in ("ground", "mounted", "operating")
     }
     ranges = {"mounted": found.mounted_range, "operating": found.operating_range}
-    worst = {k: [_plain(x) for x in ends] for k, ends in ranges.items() if ends}
-    return {**numbers, "worst": worst} if worst else numbers
-
-
-def _plain(force: float) -> float | None:
-    return force if np.isfinite(force) else None
+    if worst := {k: ends for k, ends in ranges.items() if ends}:
+        numbers["worst"] = worst
+    return plain(numbers)
 
 
 def preload_report(found: PreloadOfSet) -> list[Part]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..design import AbstractBearing, BearingSet, rows_of
+from ..design.catalogue_entry import catalogue_entry
 from ..element import (
     RINGS,
     BearingElement,
@@ -18,9 +19,10 @@ from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from .bearing_table import designated, read_bearing
-from .catalogue_entry import FromCatalogue, catalogue_entry
+from .catalogue_keys import FromCatalogue
 from .choices_table import KINEMATICS, read_choices
-from .fit_table import Fits, fit_warnings, installed, read_fits
+from .fit_table import read_fits
+from .fits import Fits, fit_warnings, installed
 from .leftover_keys import leftover_warnings
 from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
@@ -130,7 +132,7 @@ def load_bearing(source: str | Path) -> Any:
     need_float64()
     try:
         return catalogue_entry(str(source)).bearing
-    except SceneError as error:
+    except ValueError as error:
         scenes = ", ".join(shipped_scenes())
         problem = f"{error}; nor is it a .toml file or a shipped scene ({scenes})"
         raise SceneError(problem) from error
@@ -172,7 +174,7 @@ def scene_of(
     data: dict[str, Any],
     path: Path,
     varied: Iterable[str] = (),
-    beside: Iterable[str] = (),
+    other_keys: Iterable[str] = (),
 ) -> Scene:
     """Build the scene of parsed data.
 
@@ -181,7 +183,7 @@ def scene_of(
         path: Path of the file, for messages.
         varied: Keys varied by its cases: these count as given, even where equal to
             the catalogue.
-        beside: Keys that may stand in the table of the bearing and are read elsewhere.
+        other_keys: Keys of the table of the bearing that are read elsewhere.
 
     Raises:
         SceneError: As `read_scene`.
@@ -193,9 +195,9 @@ def scene_of(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         table = top.table("bearing", required=True)
-        table.know(*beside)
-        bearing, preload = read_bearing(table, top)
-    found = designated(table)
+        table.know(*other_keys)
+        found = designated(table)
+        bearing, preload = read_bearing(table, top, found)
     catalogue = None if found is None else found[1].varied(varied)
     warned = tuple(str(w.message) for w in caught)
     if found is not None:

@@ -21,6 +21,7 @@ from ..design import (
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, Solution
+from ..statics.sweep_table import ROUND_OFF
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .life_report import life_section
 from .oil_table import oil_report
@@ -29,9 +30,6 @@ from .preload_of_set import preload_report
 from .read import Scene
 from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .solved import SolvedScene
-
-ROUND_OFF = 1e-11
-"""Size over the largest of its kind below which a number is shown as zero [1]."""
 
 
 def report(found: SolvedScene) -> Report:

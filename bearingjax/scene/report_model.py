@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..element.frame import LOAD_UNITS, LOADS
 from ..numerics.units import display_unit
 
 RULE = "-" * 78
@@ -55,9 +56,9 @@ class Column:
 
     def cells(self) -> list[str]:
         """Format the values as text."""
-        beside = not isinstance(self.unit, str)
+        several = not isinstance(self.unit, str)
         return [
-            self._cell(value, factor) + (f" {unit}" if beside else "")
+            self._cell(value, factor) + (f" {unit}" if several else "")
             for value, (factor, unit) in zip(self.values, self._scales(), strict=False)
         ]
 
@@ -134,6 +135,25 @@ def _wrapped(line: str, indent: str) -> list[str]:
 Part = str | Grid
 """Part of a section: one or several lines of sentences, or a table."""
 Section = Sequence[Part]
+
+
+def rpm(speed: Any) -> str:
+    """Format a speed in rpm.
+
+    Args:
+        speed: Speed [rad/s].
+    """
+    return f"{float(speed) * 30.0 / np.pi:.5g} rpm"
+
+
+def load_text(load: Iterable[Any]) -> str:
+    """Format the parts of a load that are not zero; "" without any.
+
+    Args:
+        load: (Fx, Fy, Fz, Mx, My, Mz) [N, N m].
+    """
+    parts = zip(LOADS, LOAD_UNITS, np.asarray(load), strict=True)
+    return ", ".join(f"{name} {x:.5g} {unit}" for name, unit, x in parts if x)
 
 
 def labelled(rows: Iterable[tuple[str, str]]) -> Grid:

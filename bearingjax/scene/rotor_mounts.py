@@ -1,6 +1,5 @@
 """The [[rotor.bearings]] and [bearings.NAME] tables of a scene: shaft supports."""
 
-import dataclasses
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,8 +10,8 @@ from ..rotor import Housing, Shaft
 from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
 from ..statics.installed import Installed
-from .catalogue_entry import FromCatalogue
-from .fit_table import Fits, fit_warnings, fits_at_speed, installed
+from .catalogue_keys import FromCatalogue
+from .fits import Fits, fit_warnings, fits_at_speed, installed
 from .placed_bearing import check_seat, echoed, placed_bearing
 from .quantity import SceneError
 from .read import Scene, scene_of
@@ -39,7 +38,6 @@ def _side(about: str, kind: str, other: str) -> Any:
     return scene_key(about, kind, least=0, needs=(other,), without=without)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SpringKeys(Keys):
     """[rotor.bearings.stiffness]: springs in place of a bearing."""
 
@@ -60,7 +58,6 @@ class SpringKeys(Keys):
         return (*across, self.axial, self.tilt, self.tilt)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DamperKeys(SpringKeys):
     """[rotor.bearings.damping]: dampers beside the bearing or the springs."""
 
@@ -90,7 +87,6 @@ def _of_axes(about: str, kind: str, **default: float) -> Any:
     return scene_key(about, kind, **default, least=0, reader=read, json=json)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class HousingKeys(Keys):
     """[rotor.bearings.housing]: a mass on springs, between the bearing and ground."""
 
@@ -109,7 +105,6 @@ class HousingKeys(Keys):
             return Housing(**self.given)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class MountKeys(Keys):
     """[[rotor.bearings]]: supports of the shaft, each a bearing or springs."""
 

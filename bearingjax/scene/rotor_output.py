@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
+from .files import plain_run
 from .fit_report import fit_as_dict
 from .life_ratings import rating_origins
 from .life_report import life_as_dict
@@ -76,14 +76,8 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
     if run.transient is not None:
         parts["transient"] = _transient(run.transient)
     worst = max((one.result for one in run.failures), default=Result.CONVERGED)
-    return {
-        **parts,
-        "result": worst.label,
-        "message": rotor_message(run),
-        "warnings": list(run.warnings),
-        "inputs": run.task.inputs,
-        "version": __version__,
-    }
+    parts |= {"result": worst.label, "message": rotor_message(run)}
+    return plain_run(parts, run.warnings, run.task.inputs)
 
 
 def rotor_message(run: RotorRun) -> str:
@@ -179,15 +173,15 @@ def _of_motions(values):
 
 def _modes(found: Modes) -> dict[str, Any]:
     there = np.imag(found.eigenvalue) > 0
-    return {name: values[there].tolist() for name, values in mode_numbers(found)}
+    return {name: values[there] for name, values in mode_numbers(found)}
 
 
 def _critical(found: CriticalSpeeds) -> dict[str, Any]:
     there = np.isfinite(found.speed)
     return {
-        "critical_speed": found.speed[there].tolist(),
-        "critical_whirl": found.whirl[there].tolist(),
-        "critical_damping_ratio": found.damping_ratio[there].tolist(),
+        "critical_speed": found.speed[there],
+        "critical_whirl": found.whirl[there],
+        "critical_damping_ratio": found.damping_ratio[there],
     }
 
 
@@ -196,12 +190,12 @@ def _static(run: RotorRun) -> dict[str, Any]:
     assert settled is not None  # checked by the caller
     nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
     return {
-        "station": np.asarray(task.shaft.stations).tolist(),
-        "displacement": np.asarray(settled.displacement)[nodes].tolist(),
+        "station": task.shaft.stations,
+        "displacement": np.asarray(settled.displacement)[nodes],
         "bearing": [mount.name for mount in task.mounts],
         "bearing_station": [mount.station for mount in task.mounts],
-        "load": np.asarray(settled.support_load).tolist(),
-        "stiffness": np.asarray(settled.stiffness).tolist(),
+        "load": settled.support_load,
+        "stiffness": settled.stiffness,
     }
 
 
@@ -209,7 +203,7 @@ def _fits(task: RotorScene) -> list[dict[str, Any]]:
     return [
         {
             "bearing": mount.name,
-            "stations": list(stations),
+            "stations": stations,
             "speed": task.speed,
             **fit_as_dict(mount.fits),
         }
@@ -221,21 +215,20 @@ def _fits(task: RotorScene) -> list[dict[str, Any]]:
 def _campbell(
     found: Modes, speeds: np.ndarray, onsets: tuple[Onset, ...]
 ) -> dict[str, Any]:
-    numbers = {name: values.tolist() for name, values in mode_numbers(found)}
     begun = {
         f"onset_{name}": [getattr(onset, name) for onset in onsets]
         for name in ("speed", "frequency", "mode")
     }
-    return {"speed": speeds.tolist(), **numbers, **begun}
+    return {"speed": speeds, **dict(mode_numbers(found)), **begun}
 
 
 def _response(found: RotorResponse) -> dict[str, Any]:
     points, branch = len(found.frequency), found.branch
     whole = {
         "method": found.method,
-        "frequency": (found.frequency / _TURN).tolist(),
+        "frequency": found.frequency / _TURN,
         "coordinate": coordinates(found.amplitude.shape[1]),
-        "amplitude": found.amplitude.reshape(points, -1).tolist(),
+        "amplitude": found.amplitude.reshape(points, -1),
     }
     if branch is None:
         return whole
@@ -244,13 +237,13 @@ def _response(found: RotorResponse) -> dict[str, Any]:
         {
             "kind": event.kind,
             "frequency": event.frequency / _TURN,
-            "amplitude": amplitude.ravel().tolist(),
+            "amplitude": amplitude.ravel(),
         }
         for event, amplitude in zip(branch.events, found.event_amplitude, strict=True)
     ]
     return whole | {
-        "stable": branch.stable.tolist(),
-        "multipliers": both.tolist(),
+        "stable": branch.stable,
+        "multipliers": both,
         "events": events,
         "ending": branch.ending.label,
     }
@@ -259,9 +252,9 @@ def _response(found: RotorResponse) -> dict[str, Any]:
 def _transient(found: RotorTransient) -> dict[str, Any]:
     times = len(found.time)
     return {
-        "time": found.time.tolist(),
-        "speed": found.speed.tolist(),
+        "time": found.time,
+        "speed": found.speed,
         "coordinate": coordinates(found.displacement.shape[1]),
-        "displacement": found.displacement.reshape(times, -1).tolist(),
-        "velocity": found.velocity.reshape(times, -1).tolist(),
+        "displacement": found.displacement.reshape(times, -1),
+        "velocity": found.velocity.reshape(times, -1),
     }

@@ -7,12 +7,12 @@ from ..rotor import STATION_FREEDOMS
 from ..rotor.nonlinear import BranchEnd
 from .fit_report import fit_report
 from .report import without_round_off
-from .report_model import NEWTONS, Column, Grid, Part, Report, Section
+from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_output import UNITS, mode_numbers
 from .rotor_run import RotorRun
 
-_HZ, _RPM = 0.5 / np.pi, 30.0 / np.pi
+_HZ = 0.5 / np.pi
 _ENDS = {
     BranchEnd.LIMIT: "is complete",
     BranchEnd.POINTS: "ends at the largest number of points",
@@ -278,12 +278,3 @@ def _transient(run, found: RotorTransient):
         f" {rpm(found.speed[0])} to {rpm(found.speed[n - 1])}"
     )
     return [Grid(columns, title)]
-
-
-def rpm(speed: float) -> str:
-    """Format a speed in rpm.
-
-    Args:
-        speed: Speed [rad/s].
-    """
-    return f"{float(speed) * _RPM:.5g} rpm"

@@ -30,9 +30,10 @@ from ..rotor import (
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
-from .fit_table import fits_at_speed
+from .fits import fits_at_speed
 from .life_ratings import life_conditions
 from .quantity import SceneError
+from .report_model import rpm
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import Mount, RotorScene
 from .rotor_supports import support_of
@@ -93,7 +94,6 @@ class RotorRun:
         return not self.failures
 
 
-_RPM = 30.0 / np.pi
 _DRIFT = 0.5e-6
 """Change of radial clearance over the speed above which a warning is given [m]."""
 _COARSE = 1e-3
@@ -236,7 +236,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
         )
     if follows is not settled.rotor and (found["critical"].speed > highest).any():
         parts.warnings.append(
-            f"above {highest * _RPM:.5g} rpm critical speeds are those of the stiffness"
+            f"above {rpm(highest)} critical speeds are those of the stiffness"
             " that bearings have there; it is known to the highest speed of"
             " [rotor.campbell] and [rotor.response], or to twice the speed"
         )
@@ -260,7 +260,7 @@ def _following(task, rotor, settled, highest, parts) -> Rotor | None:
             parts.warnings.append(
                 f"the stiffness of the bearings over the speed is known to"
                 f" {100.0 * float(over.error):.2g} % between rest and"
-                f" {highest * _RPM:.5g} rpm, in critical speeds and"
+                f" {rpm(highest)}, in critical speeds and"
                 " Campbell diagram"
             )
         return over.rotor
@@ -314,8 +314,8 @@ def held_fits(task: RotorScene) -> Iterator[str]:
         if abs(left[far] - left[task.speed]) > _DRIFT:
             yield (
                 f"{mount.name}: all speeds are solved with the radial clearance at"
-                f" {task.speed * _RPM:.5g} rpm, {1e6 * left[task.speed]:.4g} µm; at"
-                f" {far * _RPM:.5g} rpm its fits leave {1e6 * left[far]:.4g} µm"
+                f" {rpm(task.speed)}, {1e6 * left[task.speed]:.4g} µm; at"
+                f" {rpm(far)} its fits leave {1e6 * left[far]:.4g} µm"
             )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..element import BearingElement
 from ..rotor import AbstractDamping, AbstractPart, Housing, Shaft
 from ..statics.installed import Installed
-from .fit_table import Fits
+from .fits import Fits
 from .read import Scene
 from .rotor_tasks import ResponseKeys, TransientKeys
 

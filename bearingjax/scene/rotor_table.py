@@ -56,7 +56,6 @@ MATERIAL: Any = {
 }
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SegmentKeys(Keys):
     """[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends."""
 
@@ -79,7 +78,6 @@ _OF_DISC: Any = {"without": {"mass": "give either `mass` or the sizes of a disc"
 _OF_MASS: Any = {"least": 0, "needs": ("mass",)}
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DiscKeys(Keys):
     """[[rotor.discs]]: discs, by their sizes or inertia, and point masses."""
 
@@ -121,7 +119,6 @@ class DiscKeys(Keys):
             return Disc(self.station, self.mass, *both)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DampingKeys(Keys):
     """[rotor.damping]: damping in proportion to mass and stiffness of the shaft."""
 
@@ -131,7 +128,6 @@ class DampingKeys(Keys):
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class UnbalanceKeys(Keys):
     """[[rotor.excitation.unbalance]]: masses off the axis."""
 
@@ -140,7 +136,6 @@ class UnbalanceKeys(Keys):
     phase: float = scene_key("azimuth at time 0, from x to y", "angle", default=0.0)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ForceKeys(Keys):
     """[[rotor.excitation.forces]]: constant forces and moments."""
 
@@ -163,7 +158,6 @@ class ForceKeys(Keys):
         return self.Fx, self.Fy, self.Fz, self.Mx, self.My
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class BaseKeys(Keys):
     """[rotor.excitation.base_acceleration]: amplitude along each axis."""
 
@@ -172,7 +166,6 @@ class BaseKeys(Keys):
     z: float = scene_key("along z", "acceleration", default=0.0)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ExcitationKeys(Keys):
     """[rotor.excitation]: loads on the rotor in addition to its weight."""
 
@@ -196,7 +189,6 @@ class ExcitationKeys(Keys):
             return RotorLoads(unbalances, forces, gravity, base)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class RotorKeys(Keys):
     """[rotor]: a shaft on its bearings."""
 

@@ -1,6 +1,5 @@
 """Tables of the rotor analyses beyond modes: Campbell diagram, response, motion."""
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,6 @@ _STATION: Any = {
 }
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class CampbellKeys(Keys):
     """[rotor.campbell]: speeds of the Campbell diagram."""
 
@@ -37,7 +35,6 @@ class CampbellKeys(Keys):
         return np.linspace(self.begin, self.end, self.count)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ResponseKeys(Keys):
     """[rotor.response]: periodic vibration over a range of frequencies."""
 
@@ -113,7 +110,6 @@ class ResponseKeys(Keys):
             raise self.table.error("samples", problem)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class TransientKeys(Keys):
     """[rotor.transient]: motion in time from rest in the static equilibrium."""
 

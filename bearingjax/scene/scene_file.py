@@ -12,7 +12,7 @@ from typing import Any
 
 import jax
 
-from .catalogue_entry import catalogue_entry
+from ..design.catalogue_entry import catalogue_entry
 from .quantity import SceneError
 
 
@@ -61,7 +61,7 @@ def _of_catalogue(name: str) -> str:
     """Return the hint for a designation given as a scene; "" if it is not one."""
     try:
         catalogue_entry(name)
-    except SceneError:
+    except ValueError:
         return ""
     return f"; `bearingjax new {name} > my.toml` writes the scene of this bearing"
 

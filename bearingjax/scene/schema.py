@@ -10,7 +10,15 @@ import functools
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple, TypeVar, get_args, get_origin
+from typing import (
+    Any,
+    ClassVar,
+    NamedTuple,
+    TypeVar,
+    dataclass_transform,
+    get_args,
+    get_origin,
+)
 
 from ..numerics.units import CELSIUS
 from .quantity import KINDS, to_si
@@ -161,9 +169,12 @@ class Field(NamedTuple):
         return self.default is _REQUIRED
 
 
+@dataclass_transform(
+    kw_only_default=True, frozen_default=True, field_specifiers=(scene_key,)
+)
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Keys:
-    """Base of the classes that describe tables.
+    """Base of the classes that describe tables, which are frozen dataclasses too.
 
     Attributes:
         table: The table that was read, for errors and the echo.
@@ -174,6 +185,9 @@ class Keys:
     key that requires them; read by `built`."""
 
     table: Table = dataclasses.field(repr=False, compare=False)
+
+    def __init_subclass__(cls) -> None:
+        dataclasses.dataclass(frozen=True, kw_only=True)(cls)
 
     @property
     def given(self) -> dict[str, Any]:

@@ -211,7 +211,7 @@ def _shaft_scene() -> dict[str, Any]:
         must += ["teeth"] if key == "gear" else []
         tables[key] = _by_name({**found, "required": must})
     heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
-    beside = {
+    own = {
         **place,
         "preload": {
             **number_schema("force"),
@@ -225,11 +225,11 @@ def _shaft_scene() -> dict[str, Any]:
         "heat": heat,
     }
     within = _rotor_scene()["properties"]["bearings"]["additionalProperties"]
-    bearing = {**within, "properties": beside | within["properties"]}
+    bearing = {**within, "properties": own | within["properties"]}
     springs = {**place, "stiffness": table_schema(SpringKeys)}
-    springs["housing"] = beside["housing"]
+    springs["housing"] = own["housing"]
     springs = object_schema(springs, ["stiffness"], "springs in place of a bearing")
-    del beside["stiffness"]
+    del own["stiffness"]
     tables |= {
         "bearings": _by_name({"anyOf": [bearing, springs]}),
         "drive": table_schema(DriveKeys),

@@ -52,7 +52,6 @@ def _of() -> Any:
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ShaftConstraintKeys(BoundKeys):
     """[[optimise.constraints]]: a bound on a measure."""
 
@@ -62,7 +61,6 @@ class ShaftConstraintKeys(BoundKeys):
     of: str | None = _of()
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ShaftOptimiseKeys(SearchKeys):
     """[optimise]: variables, objective and constraints."""
 

@@ -8,10 +8,9 @@ from ..numerics.units import shown_count
 from .life_report import life_number, life_section
 from .oil_table import oil_report
 from .report import fits_section
-from .report_model import NEWTONS, Column, Grid, Part, Report, Section
+from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .shaft_run import ShaftRun, bearing_loss
 
-_RPM = 30.0 / np.pi
 _MICRO = 1e6, "µrad"
 
 
@@ -71,15 +70,15 @@ def _head(run: ShaftRun) -> list[Part]:
     into = drive.into if drive.into in names else system.wheel(drive.into).shaft
     speed = float(power.speed[names.index(into)])
     lines.append(
-        f"driven at {drive.into}: {float(power.drive):.5g} N m at {speed * _RPM:.5g}"
-        f" rpm, {1e-3 * float(power.drive) * speed:.5g} kW"
+        f"driven at {drive.into}: {float(power.drive):.5g} N m at {rpm(speed)},"
+        f" {1e-3 * float(power.drive) * speed:.5g} kW"
     )
     if power.output is not None and abs(float(power.output)) > 0:
         at = names.index(str(power.output_shaft))
         out = -float(power.output * power.speed[at])
         lines.append(
             f"out by shaft {power.output_shaft}: {abs(float(power.output)):.5g} N m at"
-            f" {float(power.speed[at]) * _RPM:.5g} rpm, {1e-3 * out:.5g} kW"
+            f" {rpm(power.speed[at])}, {1e-3 * out:.5g} kW"
         )
     losses = {"meshes": float(power.loss), "bearings": bearing_loss(run)}
     shown = [f"{k} {v:.4g} W" for k, v in losses.items() if v is not None and v > 1e-6]
@@ -95,9 +94,7 @@ def _shafts(run: ShaftRun) -> Grid:
     return Grid(
         [
             Column("shaft", [line.name for line in run.task.system.shafts]),
-            Column(
-                "speed", [_RPM * float(s.speed) for s in states], ["rpm"] * len(bent)
-            ),
+            Column("speed", [float(s.speed) for s in states], ["rad/s"] * len(bent)),
             Column("deflection", bent, "m", ".2f"),
             Column("bending moment", moment, "N m", ".4g"),
             Column("at", where, "m", ".1f", (1e3, "mm")),

@@ -1,4 +1,4 @@
-"""Run the scene of a system of shafts; its numbers in SI and its table."""
+"""Run the scene of a system of shafts."""
 
 import dataclasses
 import functools
@@ -8,7 +8,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from .._version import __version__
 from ..design import radial_clearance, rows_of
 from ..numerics.programs import called
 from ..numerics.result import Result
@@ -23,7 +22,7 @@ from ..shafts import (
     system_life,
     warm_up,
 )
-from ..shafts.doubts import axial_load, load_doubts
+from ..shafts.doubts import load_doubts
 from ..shafts.equilibrium import searched_system, unsolved
 from ..shafts.heat import overheated
 from ..shafts.seats import adjusted, speed_of
@@ -32,11 +31,8 @@ from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
-from .fit_report import fit_as_dict
-from .fit_table import fits_at_speed
-from .life_ratings import rating_origins
-from .life_report import life_as_dict
-from .oil_table import OilFacts, oil_as_dict, oil_facts
+from .fits import fits_at_speed
+from .oil_table import OilFacts, oil_facts
 from .quantity import SceneError
 from .read import Scene, with_speed_warnings
 from .shaft_table import ShaftScene
@@ -322,90 +318,14 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
         if bearing.scene is None or bearing.solution is None:
             continue
         # With cases each kind once, with the worst case.
-        told = (
+        texts = (
             solved_warnings(bearing.scene, bearing.solution, bearing.life)
             if run.duty is None
             else [*bearing.scene.warnings, *counted(run.duty.warned[k])]
         )
-        for text in told:
+        for text in texts:
             yield f"{bearing.name}: {text}"
     yield from load_doubts(system, loads)
-
-
-def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
-    """Return the numbers of a run as plain numbers and lists, in SI.
-
-    Args:
-        run: From `run_shafts`.
-
-    Returns:
-        `bearings`, `gear`, `belt`, `shaft` by name, `system_life_hours`, `power`, of
-        several cases `cases`; `result`, `message`, `warnings`, `inputs`, `version`.
-    """
-    found = run.solution
-    code = Result(int(found.result))
-    if run.duty is not None and not run.converged:
-        code = Result(int(np.max(run.duty.result)))
-    numbers: dict[str, Any] = {}
-    if run.bearings:
-        numbers = {
-            "bearings": {
-                bearing.name: _bearing(run, k) for k, bearing in enumerate(run.bearings)
-            },
-            **_wheels(run),
-            "shaft": {
-                line.name: _shaft(state)
-                for line, state in zip(
-                    run.task.system.shafts, found.shafts, strict=True
-                )
-            },
-            "power": {
-                "drive": float(found.power.drive),
-                "output": _number(found.power.output),
-                "output_shaft": found.power.output_shaft,
-                "mesh_loss": float(found.power.loss),
-                "bearing_loss": bearing_loss(run),
-            },
-            "system_life_hours": _number(run.system_hours),
-            **_thermal(run),
-        }
-        if run.duty is not None:
-            numbers["cases"] = _cases(run, run.duty)
-    return {
-        **numbers,
-        "result": code.label,
-        "message": run.problem,
-        "residual": _number(found.residual),
-        "iterations": int(found.steps),
-        "warnings": list(run.warnings),
-        "inputs": run.task.inputs,
-        "version": __version__,
-    }
-
-
-def _thermal(run: ShaftRun) -> dict[str, Any]:
-    state, warming = run.thermal, run.warming
-    if state is None:
-        return {}
-    names = [seat.name for seat in run.task.system.seats]
-    found: dict[str, Any] = {
-        "inner_ring": dict(zip(names, map(_number, state.inner_ring), strict=True)),
-        "outer_ring": dict(zip(names, map(_number, state.outer_ring), strict=True)),
-        "housing": _number(state.housing),
-        "friction": dict(zip(names, map(_number, state.friction), strict=True)),
-        "slowest_rate": _number(state.slowest),
-    }
-    if warming is not None and run.task.times is not None:
-        found["time"] = run.task.times.tolist()
-        for k, name in enumerate(names):
-            both = zip(("inner_ring", "outer_ring"), (2 * k, 2 * k + 1), strict=True)
-            for ring, node in both:
-                found.setdefault(f"{ring}_over_time", {})[name] = _plain(
-                    warming[:, node]
-                )
-        if warming.shape[1] > 2 * len(names):
-            found["housing_over_time"] = _plain(warming[:, -1])
-    return {"heat": found}
 
 
 def bearing_loss(run: ShaftRun) -> float | None:
@@ -419,163 +339,3 @@ def bearing_loss(run: ShaftRun) -> float | None:
             return None
         total += torque * abs(float(bearing.scene.speed.inner))
     return total
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None or not np.isfinite(value) else float(value)
-
-
-def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
-    found, bearing = run.solution, run.bearings[k]
-    seat = run.task.system.seats[k]
-    frame = np.asarray(run.task.system.shaft(seat.shaft).frame)
-    moved = found.displacement[k]
-    told: dict[str, Any] = {
-        "load": found.load[k].tolist(),
-        "displacement": moved.tolist(),
-        "tilt": (frame[:2] @ moved[3:]).tolist(),
-        "axial_load": axial_load(run.task.system, k, np.asarray(found.load[k])),
-        "stiffness": found.stiffness[k].tolist(),
-    }
-    scene, solution, life = bearing.scene, bearing.solution, bearing.life
-    if scene is None or solution is None or life is None:
-        return told
-    of_balls = solution.element.bearing.is_ball
-    names = ["roller_load", "azimuth", "roller_pressure"]
-    names += ["contact_load", "contact_angle"] if of_balls else []
-    told |= {name: np.asarray(getattr(solution, name)).tolist() for name in names}
-    told["peak_pressure"] = float(np.max(solution.roller_pressure))
-    told |= life_as_dict(life, rating_origins(scene))
-    hours = run.hours[k]
-    told["life_hours"] = _number(hours)
-    if scene.oil is not None:
-        told |= oil_as_dict(bearing.oil)
-        told["temperature"] = scene.oil.temperature
-    told["friction_torque"] = _number(bearing.friction_torque)
-    told["clearance"] = bearing.clearance
-    if scene.fits is not None:
-        told["fit"] = fit_as_dict(scene.fits)
-    return told
-
-
-def _wheels(run: ShaftRun) -> dict[str, Any]:
-    found: dict[str, dict[str, Any]] = {"gear": {}, "belt": {}}
-    task = run.task
-    for mesh, apart in zip(
-        run.solution.power.meshes, run.solution.misalignment, strict=True
-    ):
-        wheel = task.system.wheel(mesh.wheel)
-        numbers = {
-            "force": mesh.force.tolist(),
-            "torque": float(mesh.torque),
-            "mate": mesh.mate,
-        }
-        kind = "gear" if hasattr(wheel, "teeth") else "belt"
-        if kind == "gear":
-            numbers["misalignment"] = float(apart)
-            numbers["radius"] = float(np.linalg.norm(mesh.place))
-        same = found[kind].get(mesh.wheel)
-        if same is None:
-            found[kind][mesh.wheel] = numbers
-        else:
-            # An idler: the sum, and each mesh.
-            meshes = same.pop("meshes", [dict(same)])
-            total = np.asarray(same["force"]) + mesh.force
-            same |= {"force": total.tolist(), "meshes": [*meshes, numbers]}
-    return found
-
-
-def _shaft(state: Any) -> dict[str, Any]:
-    moved = state.displacement
-    return {
-        "position": state.position.tolist(),
-        "deflection": moved[:, :3].tolist(),
-        "tilt": moved[:, 3:].tolist(),
-        "shear": state.shear.tolist(),
-        "moment": state.moment.tolist(),
-        "speed": float(state.speed),
-    }
-
-
-def _cases(run: ShaftRun, duty: DutyResult) -> dict[str, Any]:
-    hours = [case.hours for case in run.task.cases]
-    names = [seat.name for seat in run.task.system.seats]
-    return {
-        "hours": None if None in hours else hours,
-        "settings": list(run.task.settings),
-        "result": [Result(int(code)).label for code in duty.result],
-        "misalignment": duty.misalignment.tolist(),
-        "speed": duty.speed.tolist(),
-        "bearings": {
-            name: {
-                "load": duty.load[:, k].tolist(),
-                "peak_pressure": _plain(duty.peak_pressure[:, k]),
-                **{key: _plain(of[:, k]) for key, of in duty.lives.items()},
-                **{key: _plain(of[:, k]) for key, of in _warmth(run).items()},
-            }
-            for k, name in enumerate(names)
-        },
-    }
-
-
-def _warmth(run: ShaftRun) -> dict[str, np.ndarray]:
-    """Return temperatures of the rings in all cases by name (case, bearing) [K]."""
-    if run.rings is None:
-        return {}
-    return {"inner_ring": run.rings[..., 0], "outer_ring": run.rings[..., 1]}
-
-
-def _plain(values: Any) -> list[float | None]:
-    return [_number(value) for value in values]
-
-
-def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
-    """Return a row for each bearing, of several cases one for each bearing and case.
-
-    Args:
-        run: Solved run.
-    """
-    names = [seat.name for seat in run.task.system.seats]
-    forces = "Fx Fy Fz Mx My Mz".split()
-    units = ["N"] * 3 + ["N m"] * 3
-    if run.duty is None:
-        found: dict[str, Any] = {"bearing": names}
-        load = run.solution.load
-        pressure = [
-            np.nan if b.solution is None else np.max(b.solution.roller_pressure)
-            for b in run.bearings
-        ]
-        lives = {
-            key: [
-                np.nan if getattr(b.life, key, None) is None else getattr(b.life, key)
-                for b in run.bearings
-            ]
-            for key in (
-                "static_safety",
-                "basic_rating_life",
-                "reference_rating_life",
-                "modified_rating_life",
-                "life_hours",
-            )
-        }
-    else:
-        count = len(run.task.cases)
-        found = {
-            "case": np.repeat(np.arange(count), len(names)),
-            "bearing": names * count,
-        }
-        for key in run.task.varied:
-            values = [one[key] for one in run.task.settings]
-            found[key] = np.repeat(np.array(values), len(names))
-        load = run.duty.load.reshape(-1, 6)
-        pressure = run.duty.peak_pressure.ravel()
-        lives = {key: of.ravel() for key, of in run.duty.lives.items()}
-        lives |= {key: of.ravel() for key, of in _warmth(run).items()}
-    for k, (name, unit) in enumerate(zip(forces, units, strict=True)):
-        found[f"{name} [{unit}]"] = load[:, k]
-    found["peak_pressure [Pa]"] = np.asarray(pressure, float)
-    for key, values in lives.items():
-        unit = {"life_hours": " [h]", "static_safety": "", "damage": " [1/rev]"}
-        unit |= dict.fromkeys(("inner_ring", "outer_ring"), " [K]")
-        found[key + unit.get(key, " [rev]")] = np.asarray(values, float)
-    return {name: np.asarray(values) for name, values in found.items()}

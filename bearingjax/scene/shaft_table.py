@@ -70,7 +70,6 @@ def _axis(about: str) -> Any:
     return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SegmentKeys(Keys):
     """[[shaft.NAME.segments]]: segments of the shaft, one after the other."""
 
@@ -85,7 +84,6 @@ class SegmentKeys(Keys):
             raise self.table.error("bore", problem)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ShaftKeys(Keys):
     """[shaft.NAME]: a shaft; positions on it count from its first segment."""
 
@@ -193,7 +191,6 @@ def _source(about: str, kind: str, other: str) -> Any:
     return scene_key(about, kind, without={other: ""})
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class DriveKeys(Keys):
     """[drive]: where power enters the system, and how fast it turns."""
 
@@ -206,7 +203,6 @@ class DriveKeys(Keys):
     power: float | None = _source("into that shaft", "power", "torque")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SeatKeys(Keys):
     """[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing."""
 
@@ -259,7 +255,6 @@ class SeatKeys(Keys):
             )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class HousingKeys(Keys):
     """[housing]: one stiffness matrix over several seats."""
 
@@ -270,7 +265,6 @@ class HousingKeys(Keys):
     seats: tuple[str, ...] = scene_key("bearings, in the order of the matrix")
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class SystemKeys(Keys):
     """[system]: numbers and settings common to all shafts."""
 
@@ -335,8 +329,8 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
             path
         )
-    beside = ("cases", "optimise")
-    alone = {key: value for key, value in data.items() if key not in beside}
+    elsewhere = ("cases", "optimise")
+    alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
         return _read(alone, path, known)
     count = columns[0].index.size

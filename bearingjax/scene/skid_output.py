@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from .._version import __version__
 from ..element import RINGS
 from ..numerics.result import Result
 from ..skid import by_raceway
 from ..skid.transient import CAUSES
 from ..statics.solution import message
 from ..statics.sweep_table import column_header
+from .files import plain_run
 from .skid_run import SkidRun
 
 UNITS = {
@@ -75,18 +75,15 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         result, message, residual, iterations, warnings, inputs (the file can be read
         as a scene) and version. Without a solution numbers are left out.
     """
-    residual, steady = _residual(run), run.task.steady
-    numbers = (_end if steady else _motion)(run) if run.has_numbers else {}
-    return {
-        **numbers,
+    of_run = _end if run.task.steady else _motion
+    status = {
         "result": run.result.label,
         "message": skid_message(run),
-        "residual": residual if np.isfinite(residual) else None,
-        "iterations": int(run.found.steps),
-        "warnings": list(run.warnings),
-        "inputs": run.task.inputs,
-        "version": __version__,
+        "residual": _residual(run),
+        "iterations": run.found.steps,
     }
+    numbers = of_run(run) if run.has_numbers else {}
+    return plain_run({**numbers, **status}, run.warnings, run.task.inputs)
 
 
 def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
@@ -218,17 +215,17 @@ def _powers(run) -> dict[str, Any]:
 def _end(run):
     found = run.found
     orbit = each_ball(run)
-    own = {name: values[at_balls(run)].tolist() for name, values in orbit.items()}
-    own["azimuth"] = found.solution.azimuth.tolist()
+    own = {name: values[at_balls(run)] for name, values in orbit.items()}
+    own["azimuth"] = found.solution.azimuth
     return {
-        "cage_speed": float(found.cage_speed),
-        "rolling_cage_speed": float(rolling_cage_speed(run)),
+        "cage_speed": found.cage_speed,
+        "rolling_cage_speed": rolling_cage_speed(run),
         **own,
-        "friction_torque": float(found.friction_torque),
-        "ring_torque": found.ring_torque.tolist(),
-        "power": {k: float(v) for k, v in _powers(run).items()},
-        **({"wander": float(found.wander)} if hasattr(found, "wander") else {}),
-        "orbit": {name: values.tolist() for name, values in orbit.items()},
+        "friction_torque": found.friction_torque,
+        "ring_torque": found.ring_torque,
+        "power": _powers(run),
+        **({"wander": found.wander} if hasattr(found, "wander") else {}),
+        "orbit": orbit,
     }
 
 
@@ -238,11 +235,11 @@ def _of_time(run):
 
 
 def _motion(run):
-    listed = {**_of_time(run), **each_ball(run)}
-    work, (mean, orbits) = run.found.work._asdict(), run.found.mean_friction_torque
+    mean, orbits = run.found.mean_friction_torque
     return {
         "mean_friction_torque": mean if orbits else None,
-        **{name: values.tolist() for name, values in listed.items()},
-        "power": {k: v.tolist() for k, v in _powers(run).items()},
-        "work": {k: v.tolist() for k, v in work.items()},
+        **_of_time(run),
+        **each_ball(run),
+        "power": _powers(run),
+        "work": run.found.work._asdict(),
     }

@@ -2,16 +2,23 @@
 
 import numpy as np
 
-from ..element.frame import LOADS
 from ..lubrication import Regime
 from ..numerics.units import shown_count
 from .lubricant_table import TRACTIONS, described
 from .report import ball_row, by_ring, roller_row
-from .report_model import DEGREES, NEWTONS, Column, Grid, Report, labelled
+from .report_model import (
+    DEGREES,
+    NEWTONS,
+    Column,
+    Grid,
+    Report,
+    labelled,
+    load_text,
+    rpm,
+)
 from .skid_output import at_balls, each_ball, rolling_cage_speed
 from .skid_run import SkidRun
 
-_RPM = 30.0 / np.pi
 _SMALL = 1e-6
 """Load over the largest one below which a contact counts as open."""
 
@@ -36,30 +43,22 @@ def _bearing(run):
     task, model = run.task, run.task.model
     row = ball_row if model.bearing.is_ball else roller_row
     named = {kind: name for name, kind in TRACTIONS.items()}
-    load = ", ".join(
-        f"{name} {value:.5g} {'N' if name[0] == 'F' else 'N m'}"
-        for name, value in zip(LOADS, task.scene.load, strict=True)
-        if value
-    )
+    load = load_text(task.scene.load)
     speed, varies = task.speed, "" if task.loads is None else ", varying in time"
     return "\n".join(
         [
             *row(model.bearing, task.name),
             f"load on the {task.scene.moving_ring} ring: {load or 'none'}{varies};"
-            f" inner ring {_rpm(speed.inner)}, outer ring {_rpm(speed.outer)}",
+            f" inner ring {rpm(speed.inner)}, outer ring {rpm(speed.outer)}",
             f"{task.oil} at {described(model.lubricant, float(model.temperature))};"
             f" traction: {named[type(model.traction)]}",
         ]
     )
 
 
-def _rpm(speed):
-    return f"{float(speed) * _RPM:.5g} rpm"
-
-
 def _cage(speed, rolling):
     slip = f", slip {100.0 * (1.0 - speed / rolling):.3g} %" if rolling else ""
-    text = f"{speed:.6g} rad/s ({_rpm(speed)}); pure rolling {rolling:.6g} rad/s{slip}"
+    text = f"{speed:.6g} rad/s ({rpm(speed)}); pure rolling {rolling:.6g} rad/s{slip}"
     return "cage", text
 
 

@@ -7,7 +7,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from .._version import __version__
 from ..design import radial_clearance, rows_of
 from ..numerics.units import display_unit, shown_count
 from ..statics.cases import Cases
@@ -18,10 +17,10 @@ from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
+from .files import plain_run
 from .life_ratings import life_conditions
 from .preload_of_set import preload_warnings, range_warnings
 from .quantity import SceneError
-from .report import ROUND_OFF
 from .report_model import Column, Grid, Part, Report
 
 OUTPUTS = (
@@ -193,7 +192,7 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     """
     counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
     count = solved.cases.count
-    told: list[Part] = [
+    parts: list[Part] = [
         f"{table.scene.name}: {shown_count(count, 'case')} over"
         f" {', '.join(table.varied)}",
         f"{counts}; {seconds:.3g} s, compiling included",
@@ -201,10 +200,10 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     if len(table.settings) > 1:
         kinds = len(table.design_groups)
         of = f" of {kinds} structures, solved one after the other"
-        told.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
+        parts.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
     if OPERATING_PRELOAD in solved.outputs and table.scene.preload_of_set is None:
         words = "at `fit.at` alone, not over the tolerances of the seats"
-        told.append(f"preload of the set in operation: {words} (`solve` tells those)")
+        parts.append(f"preload of the set in operation: {words} (`solve` tells those)")
     rows = []
     for header, pair in _spans(solved).items():
         name, _, unit = header.partition(" [")
@@ -213,14 +212,13 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
     if rows:
         names = "result", "least", "largest", "unit"
         given = zip(names, zip(*rows, strict=True), strict=True)
-        told += ["", Grid([Column(name, found) for name, found in given])]
-    return Report({"Cases": told}, all_warnings(table, solved))
+        parts += ["", Grid([Column(name, found) for name, found in given])]
+    return Report({"Cases": parts}, all_warnings(table, solved))
 
 
 def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
-    """Return the range of each result over the solved cases, without results that are
-    zero, or round-off relative to others of the same result and unit."""
-    spans, sizes = {}, {}
+    """Return the range of each result over the solved cases, without those of zero."""
+    spans = {}
     for header, column in columns(solved).items():
         values = np.asarray(column)
         if values.dtype.kind not in "fi" or header == "design":
@@ -228,22 +226,7 @@ def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
         values = values[solved.converged & np.isfinite(values)]
         if values.any():
             spans[header] = values.min(), values.max()
-            alike = kind(header)
-            sizes[alike] = max(sizes.get(alike, 0.0), np.abs(values).max())
-    return {
-        header: ends
-        for header, ends in spans.items()
-        if np.abs(ends).max() >= ROUND_OFF * sizes[kind(header)]
-    }
-
-
-def kind(header: str) -> tuple[str, str]:
-    """Return first word and unit of a header, equal for comparable numbers.
-
-    Args:
-        header: "name_axis [unit]".
-    """
-    return header.partition("_")[0], header.partition(" [")[2]
+    return spans
 
 
 def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
@@ -280,25 +263,8 @@ def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
     """Return a sweep as plain lists by column, in SI; null where a case failed."""
-    return {
-        "columns": listed_columns(columns(solved, design_columns(table))),
+    numbers = {
+        "columns": columns(solved, design_columns(table), exact=True),
         "counts": solved.counts(),
-        "warnings": all_warnings(table, solved),
-        "inputs": table.inputs,
-        "version": __version__,
     }
-
-
-def listed_columns(found: dict[str, Any]) -> dict[str, list]:
-    """Return the columns of a table as plain lists; non-finite numbers become null.
-
-    Args:
-        found: NumPy arrays by header.
-    """
-
-    def listed(column):
-        if column.dtype.kind != "f":
-            return column.tolist()
-        return [float(x) if np.isfinite(x) else None for x in column]
-
-    return {name: listed(column) for name, column in found.items()}
+    return plain_run(numbers, all_warnings(table, solved), table.inputs)

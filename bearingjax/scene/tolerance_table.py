@@ -32,7 +32,6 @@ Tighter = tuple[tuple[str, dict[str, float]], ...]
 """Names of tighter tolerances, with their factor on each source [1]."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
 class ToleranceKeys(Keys):
     """[vibration.tolerance]: how bearings off the line scatter."""
 

@@ -108,13 +108,13 @@ def check_torques(system: ShaftSystem, shaft: Any, left: Any, most: Any) -> None
     """
     given = [*(w for w in system.wheels if w.torque is not None or w.power is not None)]
     given += [c for c in system.couplings]
-    beside = [part.name for part in given if part.shaft == shaft]
-    if left is None or not beside or is_traced(left):
+    known = [part.name for part in given if part.shaft == shaft]
+    if left is None or not known or is_traced(left):
         return
     if abs(float(left)) > 1e-6 * float(most):
         raise ValueError(
             f"ShaftSystem: the torques do not balance: {float(left):.6g} N m are left"
-            f" on shaft {shaft} beside {', '.join(beside)}; leave out one of the"
+            f" on shaft {shaft} beside {', '.join(known)}; leave out one of the"
             " torques, which then follows from the others."
         )
 

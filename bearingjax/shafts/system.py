@@ -71,9 +71,9 @@ class HousingStiffness(eqx.Module):
         known = np.asarray(self.matrix)
         check(self, "matrix", np.isfinite(known).all(), "finite")
         size = np.sqrt(np.abs(np.diagonal(known)))
-        odd = np.abs(known - known.T) > 1e-6 * np.outer(size, size) + 1e-300
-        if odd.any():
-            row, column = map(int, np.argwhere(odd)[0])
+        unequal = np.abs(known - known.T) > 1e-6 * np.outer(size, size) + 1e-300
+        if unequal.any():
+            row, column = map(int, np.argwhere(unequal)[0])
             raise ValueError(
                 f"HousingStiffness: `matrix` is not symmetric: {known[row, column]:.6g}"
                 f" in row {row}, column {column}, {known[column, row]:.6g} in its"

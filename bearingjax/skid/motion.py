@@ -150,17 +150,17 @@ def one_ball(
     speed = environment.speed.at(time)
     here = azimuth, speed, state.centre, state.ring
     ball, unbalanced, on_ring = environment.loads.at(*here)
-    of, motion = equations_of_motion(ball), BallState(state.spin, state.orbit)
+    equations, motion = equations_of_motion(ball), BallState(state.spin, state.orbit)
     if isinstance(ball, LoadedRoller):
         motion = RollerState(state.spin[0], state.orbit)
-    moving = of.sliding(ball, motion, speed)
+    moving = equations.sliding(ball, motion, speed)
     turning = state.orbit, ball.frontal_area, ball.pitch_radius
     return ElementState(
         ball,
         azimuth,
         motion,
         moving,
-        of.tractions(ball, model.traction, moving),
+        equations.tractions(ball, model.traction, moving),
         model.cage.force(-state.lead * ball.pitch_radius),
         model.drag.force(*turning, environment.density),
         -ball.mass * environment.gravity * jnp.cos(azimuth),

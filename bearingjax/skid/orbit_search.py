@@ -239,12 +239,12 @@ class AbstractOrbit(eqx.Module):
         def moved(way):
             here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
             now = own + here[None], common + shared, ring + turned
-            forces, beside = self._forces(*now, sloped)
-            return forces, (forces, beside)
+            forces, other = self._forces(*now, sloped)
+            return forces, (forces, other)
 
         way = jnp.zeros(2 * k + c + _RING, y.dtype)
-        slopes, (forces, beside) = jax.jacfwd(moved, has_aux=True)(way)
-        (out, pulls, _), (sizes, solved) = forces, beside
+        slopes, (forces, other) = jax.jacfwd(moved, has_aux=True)(way)
+        (out, pulls, _), (sizes, solved) = forces, other
         of_places, of_ring, motion = slopes
         here, sloped, shared = jnp.split(of_places, [k, 2 * k], axis=2)
         by_own, by_shared = motion[:, :, :k], motion[:, :, 2 * k :]

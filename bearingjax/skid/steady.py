@@ -223,7 +223,7 @@ def end_state(
         misfit = _unlike(solution) & (result == int(Result.CONVERGED))
         result = jnp.where(misfit, int(Result.GRID_MISFIT), result)
     y = with_derivatives(orbit, found.y, result)
-    told = orbit.described(
+    end = orbit.described(
         y,
         found.solved,
         solution=solution,
@@ -234,10 +234,10 @@ def end_state(
         result=result,
     )
     # Forces in balance whose powers are not: too few places, or lost in round-off.
-    lost = _missing(told, speed, orbit) > _IMBALANCE[str(ring.dtype)]
+    lost = _missing(end, speed, orbit) > _IMBALANCE[str(ring.dtype)]
     wrong = Result.STEP_LIMIT if count == 1 else Result.GRID_MISFIT
     result = jnp.where(lost & (result == int(Result.CONVERGED)), int(wrong), result)
-    return eqx.tree_at(lambda t: t.result, told, result.astype(jnp.int32))
+    return eqx.tree_at(lambda t: t.result, end, result.astype(jnp.int32))
 
 
 def _missing(found, speed, orbit):

@@ -282,8 +282,10 @@ def _reported(environment, time, state):
         angle, spin = balls.ball.angle, balls.moving.spin
         of_balls = {"contact_angle": angle, "contact_spin": spin}
     else:
-        told = jax.vmap(partial(conditions_of, environment.model))
-        of_balls = {"conditions": told(balls.ball, balls.moving, balls.pulls.film)}
+        conditions = jax.vmap(partial(conditions_of, environment.model))
+        of_balls = {
+            "conditions": conditions(balls.ball, balls.moving, balls.pulls.film)
+        }
     return dict(
         **of_balls,
         azimuth=balls.azimuth,

@@ -108,6 +108,7 @@ from .rating import static_capacity as static_capacity
 from .reference_speed import heat_area as heat_area
 from .reference_speed import reference_factors as reference_factors
 from .reference_speed import reference_speed as reference_speed
+from .reference_speed import thermal_speed as thermal_speed
 from .refine import Refined as Refined
 from .refine import refine as refine
 from .refined_life import refined_lamina_loads as refined_lamina_loads

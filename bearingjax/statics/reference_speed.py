@@ -1,8 +1,10 @@
 """Thermal reference speed: where friction is the heat that a bearing gives off."""
 
 import math
+import re
 from typing import Any
 
+from ..design.catalogue_entry import CatalogueEntry
 from ..design.checks import positive
 from ..numerics.types import Scalar
 
@@ -126,3 +128,40 @@ def reference_speed(
     for _ in range(8):
         x = x - (a * x**5 + b * x**3 - heat) / (5.0 * a * x**4 + 3.0 * b * x**2)
     return x**3 * math.pi / 30.0
+
+
+_SERIES = {
+    "deep_groove_ball": r"^6([23])\d\d$",
+    "angular_contact_ball": r"^7(2)\d\d ",
+    "cylindrical_roller": r"^[A-Z]+ (2[23]|2)\d\d ",
+    "spherical_roller": r"^2([2-4][0-3])\d\d ",
+    "tapered_roller": r"^3([0-3][0-3]|[02])\d\d ",
+    "cylindrical_thrust_roller": r"^8(1[12])\d\d ",
+    "spherical_thrust_roller": r"^2(9[2-4])\d\d ",
+}
+"""Dimension series within a designation."""
+
+
+def thermal_speed(entry: CatalogueEntry) -> float | None:
+    """Thermal reference speed of a bearing of the catalogue by ISO 15312 [rad/s].
+
+    Args:
+        entry: The bearing.
+
+    Returns:
+        Speed (`reference_speed`); `None` without factors for its series or without C0.
+    """
+    found = re.search(_SERIES.get(entry.type, "(?!)"), entry.designation)
+    factors = found and reference_factors(entry.type, found[1].zfill(2))
+    if not factors or entry.static_capacity is None:
+        return None
+    d, outside = entry.bore, entry.outside_diameter
+    thrust = entry.type.endswith("thrust_roller")
+    flat = entry.type == "cylindrical_thrust_roller"
+    area = heat_area(d, outside, entry.width, flat=flat)
+    if thrust and not flat:
+        keys = "shaft_washer_diameter", "housing_washer_bore"
+        shaft, housing = (entry.printed[key] for key in keys)
+        area = 0.25 * math.pi * (outside**2 + shaft**2 - housing**2 - d**2)
+    mean, load = 0.5 * (d + outside), entry.static_capacity
+    return float(reference_speed(mean, area, load, factors, thrust=thrust))

@@ -31,6 +31,9 @@ MOST_ROWS = 2**20 - 1
 NOTHING = 1e-12
 """Size of a result below which it counts as zero."""
 
+ROUND_OFF = 1e-11
+"""Size of a result below which it is round-off, relative to the largest of its kind."""
+
 WARNINGS = "warnings"
 """Header of the column of warnings."""
 
@@ -66,18 +69,23 @@ empty: a pure number."""
 
 
 def columns(
-    sweep: Sweep, extra: Mapping[str, np.ndarray] | None = None
+    sweep: Sweep,
+    extra: Mapping[str, np.ndarray] | None = None,
+    *,
+    exact: bool = False,
 ) -> dict[str, np.ndarray]:
     """A sweep as columns by header, "name [unit]": first the cases, then the results.
 
     Arrays are spread over columns, `displacement_inner_uy [m]`. Values that are zero in
-    every case, by construction (`left_out`) or load, have no column. The result
-    is the code's label; where it is not "converged", numbers are NaN. `warnings` holds
-    the kinds of warning that are given for a case, each with its size.
+    every case, by construction (`left_out`) or load, have no column. Those that are
+    zero by symmetry, in every case below `ROUND_OFF` of the largest number of their
+    kind, are 0. The result is the code's label; where it is not "converged", numbers
+    are NaN. `warnings` holds the kinds of warning of a case, each with its size.
 
     Args:
         sweep: From `sweep`.
         extra: Further columns, placed first (case,).
+        exact: Whether to keep round-off as it was computed.
 
     Returns:
         Header -> array (case,), in SI.
@@ -89,6 +97,8 @@ def columns(
         for header, column in spread(name, values, left_out(sweep))
         if column is not None and not _is_nothing(sweep, column)
     }
+    if not exact:
+        found = _without_round_off(sweep, found)
     labels = np.array([code.label for code in Result])
     return {
         **(extra or {}),
@@ -97,6 +107,32 @@ def columns(
         **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
         **found,
     }
+
+
+def _without_round_off(sweep, found):
+    """The columns, zero where all numbers of one are round-off."""
+    sizes, largest = {}, {}
+    for header, column in found.items():
+        if column.dtype.kind == "f":
+            known = column[sweep.converged & np.isfinite(column)]
+            sizes[header] = np.abs(known).max(initial=0.0)
+            alike = kind(header)
+            largest[alike] = max(largest.get(alike, 0.0), sizes[header])
+    return {
+        header: np.where(np.isfinite(column), 0.0, column)
+        if header in sizes and sizes[header] < ROUND_OFF * largest[kind(header)]
+        else column
+        for header, column in found.items()
+    }
+
+
+def kind(header: str) -> tuple[str, str]:
+    """First word and unit of a header, equal for comparable numbers.
+
+    Args:
+        header: "name_axis [unit]".
+    """
+    return header.partition("_")[0], header.partition(" [")[2]
 
 
 def _is_nothing(sweep, column) -> bool:

@@ -500,8 +500,8 @@ def _implausible(bearing):
 def oddities(solution: Solution) -> Any:
     """Number of design values far outside their usual ranges."""
     rows = rows_of(solution.element.bearing)
-    odd = [odd for row in rows for *_, odd in _implausible(row.bearing)]
-    return sum(_one(solution, flag) for flag in odd)
+    found = [strange for row in rows for *_, strange in _implausible(row.bearing)]
+    return sum(_one(solution, flag) for flag in found)
 
 
 def odd_names(solution: Solution) -> str:
@@ -509,7 +509,9 @@ def odd_names(solution: Solution) -> str:
     rows = rows_of(solution.element.bearing)
     found = [part for row in rows for part in _implausible(row.bearing)]
     return ", ".join(
-        dict.fromkeys(f"{n} {float(v):.4g} {unit}" for n, v, unit, odd in found if odd)
+        dict.fromkeys(
+            f"{n} {float(v):.4g} {unit}" for n, v, unit, strange in found if strange
+        )
     )
 
 

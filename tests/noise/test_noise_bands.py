@@ -20,8 +20,10 @@ from bearingjax.noise import (
     total_root_mean_square,
 )
 from bearingjax.noise.bands import LEAST_SHIFT, leakage
-from bearingjax.noise.reference_levels import OCTAVES
 from bearingjax.noise.warning import _total
+
+OCTAVES = (4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1e3, 2e3, 4e3, 8e3)
+"""Nominal centres of the octave bands [Hz]."""
 
 SHAFT = 25.0
 

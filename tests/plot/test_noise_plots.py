@@ -15,7 +15,7 @@ from bearingjax.noise import (
     octave_bands,
     spectrum,
 )
-from bearingjax.noise.reference_levels import NORM
+from bearingjax.noise.level import NORM
 
 
 def record(turns=2, samples=256, balls=7):

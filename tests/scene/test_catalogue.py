@@ -14,8 +14,10 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax.design import rows_of
+from bearingjax.design.catalogue_entry import UNITS
+from bearingjax.design.keywords import BALLS, ROLLERS
+from bearingjax.numerics.units import unit_of
 from bearingjax.scene import new_scene, read_cases, shipped_scenes
-from bearingjax.scene.quantity import to_si
 from bearingjax.scene.read import scene_of
 
 ENTRIES = bj.catalogue()
@@ -28,19 +30,11 @@ NEWER = {
     "crossed_roller": 1.0,
 }
 """Types whose ratings all close, and C of an improved class over that of ISO 281."""
-BALL_TYPES = {e.type for e in ENTRIES if "n_balls" in e.table}
-
-
-def length(entry, key):
-    return to_si(entry.table[key], "length")
-
-
-def angle(entry, key):
-    return to_si(entry.table[key], "angle") if key in entry.table else 0.0
+BALL_TYPES = {e.type for e in ENTRIES if "n_balls" in e.design}
 
 
 def test_all_types_and_sixty_bearings_of_their_own():
-    assert len({(e.type, *sorted(map(str, e.table.items()))) for e in ENTRIES}) >= 60
+    assert len({(e.type, *sorted(map(str, e.design.items()))) for e in ENTRIES}) >= 60
     assert {e.type for e in ENTRIES} == {
         "deep_groove_ball",
         "angular_contact_ball",
@@ -64,7 +58,7 @@ def test_catalogue_files_hold_known_keys_only():
     sizes = {"bore", "outside_diameter", "width", "inner_width", "outer_width"}
     ratings = {"dynamic_capacity", "static_capacity", "fatigue_load_limit"}
     known |= sizes | ratings | {"reference_speed", "limiting_speed", "mass"}
-    for path in (files("bearingjax.scene") / "catalogue").iterdir():
+    for path in (files("bearingjax.design") / "catalogue").iterdir():
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         used = set()
         for key, values in data["bearings"].items():
@@ -74,12 +68,25 @@ def test_catalogue_files_hold_known_keys_only():
         assert used == set(data["sources"]), path.name
 
 
+def test_catalogue_units_are_those_of_the_fields():
+    """Keys without a unit of their own are lengths in mm."""
+    alike = {"mm": "m", "um": "m", "deg": "rad", "": ""}
+    shown = ("_diameter", "_bore", "_height", "_centre", "_travel")
+    for entry in {e.type: e for e in ENTRIES}.values():
+        kind = {**BALLS, **ROLLERS}[entry.type]
+        for key, value in entry.design.items():
+            if isinstance(value, float) and key != "axial_internal_clearance":
+                assert alike[UNITS.get(key, "mm")] == unit_of(kind, key), key
+    for key in {key for entry in ENTRIES for key in entry.printed}:
+        assert key in UNITS or key.endswith(shown), key
+
+
 @pytest.mark.parametrize("entry", ENTRIES, ids=NAMES)
 def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
     balls = entry.type in BALL_TYPES
     kind = "ball" if balls else "roller"
-    count, size = entry.table[f"n_{kind}s"], length(entry, f"{kind}_diameter")
-    pitch = length(entry, "pitch_diameter")
+    count, size = entry.design[f"n_{kind}s"], entry.design[f"{kind}_diameter"]
+    pitch = entry.design["pitch_diameter"]
     section = 0.5 * (entry.outside_diameter - entry.bore)
     if entry.type == "thrust_ball":
         # Two washers, with at least a tenth of the height under each groove.
@@ -90,7 +97,7 @@ def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
         # Of a taper at its middle; a contact angle brings the raceways nearer.
         across = size
         if entry.type == "cylindrical_thrust_roller":
-            across = length(entry, "roller_length")
+            across = entry.design["roller_length"]
         inner = 0.5 * (pitch - across - entry.bore)
         outer = 0.5 * (entry.outside_diameter - pitch - across)
         least = 0.09 if entry.type in ("tapered_roller", "four_point_ball") else 0.1
@@ -101,16 +108,14 @@ def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
         # Put in with the rings eccentric, they fill little more than half.
         assert 2 * (count - 1) * np.arcsin(size / pitch) < np.deg2rad(200.0)
     if not balls:
-        along = length(entry, "roller_length") * np.cos(
-            angle(entry, "roller_axis_angle")
+        along = entry.design["roller_length"] * np.cos(
+            entry.design.get("roller_axis_angle", 0.0)
         )
         assert along < 0.85 * (entry.outer_width or entry.width)
     if entry.type == "tapered_roller":
         # The rollers stand above the cone as far as the cup is open: e = 1.5 tan α.
-        axis, half = (
-            angle(entry, "roller_axis_angle"),
-            angle(entry, "roller_half_angle"),
-        )
+        names = "roller_axis_angle", "roller_half_angle"
+        axis, half = (entry.design[name] for name in names)
         assert 0.0 < half < axis
         assert np.tan(half) == pytest.approx(size / pitch * np.sin(axis), rel=1e-4)
 
@@ -143,7 +148,7 @@ def test_axial_factors_are_those_of_the_contact_angle():
         first, second, _ = entry.printed["axial_factors"]
         assert first == pytest.approx(0.67 / limit, rel=0.031)
         assert second == pytest.approx(1.0 / limit, rel=0.024)
-        alpha = angle(entry, "contact_angle")
+        alpha = entry.design["contact_angle"]
         assert np.tan(alpha) == pytest.approx(limit / 1.5, abs=1e-4)
 
 
@@ -160,8 +165,8 @@ def test_tilt_factors_of_toroidal_bearings():
     """Radii fitted to k2 give k1, the shift of the inner arc as the ring tilts."""
 
     def arm_of(entry):
-        arc = length(entry, "inner_raceway_radius")
-        sizes = length(entry, "pitch_diameter"), length(entry, "roller_diameter")
+        arc = entry.design["inner_raceway_radius"]
+        sizes = entry.design["pitch_diameter"], entry.design["roller_diameter"]
         return 0.5 * (sizes[0] - sizes[1]) + arc
 
     for entry in (e for e in ENTRIES if e.type == "toroidal_roller"):
@@ -177,7 +182,7 @@ def test_tilt_factors_of_toroidal_bearings():
     assert float(travel) == pytest.approx(12.7e-3, abs=0.05e-3)
     tilt = np.deg2rad(0.3)
     k1_b = entry.printed["tilt_factor"] * entry.width * 180.0 / np.pi
-    edge = to_si(entry.printed["axial_travel"], "length")
+    edge = entry.printed["axial_travel"]
     assert edge - k1_b * tilt == pytest.approx(15.5e-3, abs=0.05e-3)
     assert edge - arm_of(entry) * tilt == pytest.approx(15.5e-3, rel=0.01)
 
@@ -204,7 +209,7 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
 def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
     for entry in ENTRIES:
         # The arrangements of ribs differ in one word.
-        if entry.type != kind or entry.table.get("arrangement", "NU") != "NU":
+        if entry.type != kind or entry.design.get("arrangement", "NU") != "NU":
             continue
         path = tmp_path / "new.toml"
         path.write_text(new_scene(entry), encoding="utf-8")
@@ -231,9 +236,7 @@ def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
 @pytest.mark.slow
 def test_new_scene_with_optional_tables_reads(name, tmp_path):
     """All that may be added to it, with its # taken off, is a scene with a life."""
-    scene, _, further = new_scene(bj.scene.catalogue_entry(name)).partition(
-        "# What may"
-    )
+    scene, _, further = new_scene(bj.catalogue_entry(name)).partition("# What may")
     lines = [line[2:] for line in further.splitlines()[1:]]
     path = tmp_path / "new.toml"
     path.write_text("\n".join([scene, *lines]), encoding="utf-8")
@@ -352,7 +355,7 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     assert entry.class_limits is not None
     limits = entry.class_limits(entry.clearance_class, entry.bore)
     np.testing.assert_allclose(np.array(limits) * 1e6, [low, high])
-    assert bj.catalogue_entry(entry.designation).table == entry.table
+    assert bj.catalogue_entry(entry.designation).design == entry.design
     seat = 'drive_up = "0 mm"' if entry.taper else 'shaft = "k5"'
     text = f'[bearing]\ndesignation = "{written}"\n[fit]\n{seat}\n'
     text += f'housing = "H7"\nhousing_diameter = "{1.5 * entry.outside_diameter} m"\n'
@@ -368,8 +371,9 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
 
 def test_designation_letters_change_geometry():
     b, ac = (bj.catalogue_entry(f"7218 {letter}") for letter in ("B", "AC"))
-    assert (b.table["contact_angle"], ac.table["contact_angle"]) == ("40 deg", "25 deg")
-    assert b.table["n_balls"] == ac.table["n_balls"]
+    assert b.design["contact_angle"] == np.deg2rad(40)
+    assert ac.design["contact_angle"] == np.deg2rad(25)
+    assert b.design["n_balls"] == ac.design["n_balls"]
     assert b.dynamic_capacity == pytest.approx(116000.0)
     assert ac.dynamic_capacity is None
     assert ac.sources["geometry"].startswith("balls and pitch circle of 7218 BE (of")
@@ -385,7 +389,7 @@ def test_capacities_from_the_balls_of_another_angle_are_as_far_off_as_told():
     over = []
     for name in ("7205 C", "7205 AC"):
         entry = bj.catalogue_entry(name)
-        other = dataclasses.replace(ball, contact_angle=angle(entry, "contact_angle"))
+        other = dataclasses.replace(ball, contact_angle=entry.design["contact_angle"])
         assert entry.dynamic_capacity and entry.static_capacity
         over.append(float(bj.dynamic_capacity(other)) / entry.dynamic_capacity - 1)
         over.append(float(bj.static_capacity(other)) / entry.static_capacity - 1)

@@ -33,6 +33,7 @@ from bearingjax.scene import (
     rotor_report,
     scene_of_design,
 )
+from bearingjax.scene.catalogue_keys import as_keys
 from bearingjax.scene.fit_report import fit_as_dict, fit_report
 from bearingjax.scene.optimise_report import _variables
 from bearingjax.scene.report import design_sections
@@ -214,7 +215,7 @@ def test_classes_of_a_tapered_bore_without_a_designation(scene):
     entry = bj.catalogue_entry("22220 E")
     keys = "\n".join(
         f'{k} = "{v}"' if isinstance(v, str) else f"{k} = {v}"
-        for k, v in entry.table.items()
+        for k, v in as_keys(entry.design).items()
         if k != "radial_internal_clearance"
     )
     sizes = 'bore = "100 mm"\noutside_diameter = "180 mm"\nclearance = "C3"\n'

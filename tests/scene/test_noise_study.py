@@ -27,7 +27,7 @@ from bearingjax.noise import (
     record_warnings,
     ring_modes,
 )
-from bearingjax.noise.reference_levels import NORM
+from bearingjax.noise.level import NORM
 from bearingjax.noise.warning import _short_waves
 from bearingjax.numerics import Result
 from bearingjax.scene import (

@@ -10,7 +10,7 @@ from studies import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
 from bearingjax.scene import SceneError, read_shafts, run_shafts
-from bearingjax.scene.shaft_run import shaft_columns
+from bearingjax.scene.shaft_output import shaft_columns
 
 GEARS = Path(__file__).with_name("refused") / "gears.toml"
 SCENE = GEARS.read_text(encoding="utf-8")

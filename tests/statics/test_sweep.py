@@ -365,6 +365,32 @@ def test_table_has_units_and_a_result_for_each_case(swept, tmp_path, ending):
     )
 
 
+def test_columns_of_round_off_are_zero():
+    """A true small number stays: one that is large in a single case, or of its unit."""
+    moved = np.full((3, 12), np.nan)
+    moved[:2] = 1e-5
+    moved[0, :6] = [3e-22, 2e-22, 2e-15, 1e-22, 3e-14, 1e-22]
+    moved[1, :6] = [-1e-21, 2e-8, 1e-15, -1e-22, 2e-14, 0.0]
+    outputs = {
+        "result": np.array([0, 0, 2]),
+        "displacement": moved,
+        "residual": moved[:, 0],
+    }
+    found = bj.statics.Sweep(bj.Cases(np.zeros((3, 6))), outputs, "inner")
+    plain, exact = sweep_table.columns(found), sweep_table.columns(found, exact=True)
+    names = [f"displacement_outer_{n} [m]" for n in ("ux", "uy", "uz")]
+    names += [f"displacement_outer_{n} [rad]" for n in ("gx", "gy", "gz")]
+    zero = {header for header in plain if not np.any(np.nan_to_num(plain[header]))}
+    assert zero == {names[0], names[3], names[5]}
+    for k, name in enumerate(names):
+        np.testing.assert_array_equal(exact[name], moved[:, k])
+        if name in zero:
+            np.testing.assert_array_equal(plain[name], [0.0, 0.0, np.nan])
+        else:
+            np.testing.assert_array_equal(plain[name], moved[:, k])
+    np.testing.assert_array_equal(plain["residual"], moved[:, 0])
+
+
 LOADS = np.zeros((3, 6))
 WRONG = {
     "outputs name": (dict(outputs=["presure"]), "names 'presure'; there are rib_load"),

@@ -44,7 +44,6 @@ from .continuation import ChangeOfParameter as ChangeOfParameter
 from .continuation import Steps as Steps
 from .continuation import trace as trace
 from .harmonic_balance import HarmonicBalance as HarmonicBalance
-from .harmonic_balance import hill_multipliers as hill_multipliers
 from .law_support import LawSupport as LawSupport
 from .method import AbstractMethod as AbstractMethod
 from .orbit import PeriodicOrbit as PeriodicOrbit

@@ -6,8 +6,7 @@ what its steps do not resolve: a vibration of three steps per period is met to 1
 each of them, and one that is faster, as the stiff modes of a shaft are, follows the
 forces on it as a spring would and needs no short steps. Where balls lift off, the
 force has a kink in its second derivative (Hertz contact, (3/2) power): the order is
-then 2.5 from those steps on, and more steps are needed for the same error; `flow_error`
-estimates it.
+then 2.5 from those steps on, and more steps are needed for the same error.
 
 Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5.
 """

@@ -15,13 +15,12 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Complex, Float
 
-from ...numerics.lapack import eigvals, solve_any
-from ...numerics.types import Scalar, as_count
+from ...numerics.lapack import solve_any
+from ...numerics.types import as_count
 from .flow import transition, transition_phases
 from .method import AbstractMethod
-from .system import AbstractVibratingSystem, inertia, out_of_balance
+from .system import inertia, out_of_balance
 
 
 class Basis(NamedTuple):
@@ -178,41 +177,3 @@ class HarmonicBalance(AbstractMethod):
         moved = jnp.concatenate([jnp.zeros_like(unit), unit], axis=-1)
         moved = jnp.broadcast_to(moved, pushed.shape)
         return transition(jnp.concatenate([moved, pushed], axis=-2))
-
-
-def hill_multipliers(
-    method: HarmonicBalance,
-    system: AbstractVibratingSystem,
-    z: Float[Array, " m"],
-    ratio: Scalar,
-) -> Complex[Array, " state"]:
-    """Return Floquet multipliers by Hill's method, independent of the integration.
-
-    A small change e^(λφ) p(φ) of the orbit, p periodic: with p a Fourier series like
-    the orbit, λ is an eigenvalue of a quadratic problem of the harmonic balance. Of its
-    2n(2H + 1) values only 2n are exponents, the others repeat them shifted by ik: those
-    of least imaginary part are least spoilt by the harmonics left out.
-
-    Args:
-        method: Method of the orbit.
-        system: The system.
-        z: Unknowns of the orbit (m,) [1].
-        ratio: ν [1].
-
-    Returns:
-        Multipliers e^(2πλ) (2n,) [1].
-
-    Source: Hill (1886); Lazarus & Thomas, C. R. Mecanique 338 (2010) 510.
-    """
-    at = method._basis(z.dtype)
-    _, (*parts, _) = method.slopes(system, z, ratio)
-    _, damping, inertia = parts
-    still = method.projected(parts, (at.value, at.rate, at.second))
-    first = method.projected((damping, inertia), (at.value, 2.0 * at.rate))
-    square = method.projected((inertia,), (at.value,))
-    unit = jnp.eye(z.size, dtype=z.dtype)
-    below = -solve_any(square, jnp.concatenate([still, first], 1))
-    above = jnp.concatenate([jnp.zeros_like(unit), unit], 1)
-    exponents = eigvals(jnp.concatenate([above, below], 0))
-    order = jnp.argsort(jnp.abs(exponents.imag))[: 2 * system.scale.shape[0]]
-    return jnp.exp(2.0 * jnp.pi * exponents[order])

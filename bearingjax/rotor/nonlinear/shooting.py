@@ -45,9 +45,3 @@ class Shooting(AbstractMethod):
 
     def monodromy(self, system, ratio, jacobian, slopes):
         return jacobian[:, :-1] + jnp.eye(jacobian.shape[0], dtype=jacobian.dtype)
-
-    def flow_error(self, system, z, ratio):
-        """Return the error of the state after a period, from twice the steps [1]."""
-        fine = Shooting(2 * self.steps)
-        change = fine.residual(system, z, ratio) - self.residual(system, z, ratio)
-        return jnp.max(jnp.abs(change))

@@ -5,8 +5,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ..design.fit_limits import CLEARANCE_CLASSES
-from .quantity import SceneError
+from .fit_limits import CLEARANCE_CLASSES
 
 MAKERS = (
     "SKF",
@@ -68,11 +67,11 @@ def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
         names: Known names, compact.
 
     Raises:
-        SceneError: If it does not begin with a known name, or has suffixes whose
+        ValueError: If it does not begin with a known name, or has suffixes whose
             meaning is not known.
     """
     if not compact(text):
-        raise SceneError(f'{text!r} is not a designation, such as "6205-2RS1/C3"')
+        raise ValueError(f'{text!r} is not a designation, such as "6205-2RS1/C3"')
     names = tuple(names)
     words = text.upper().split()
     if len(words) > 1 and words[0] in MAKERS:
@@ -83,7 +82,7 @@ def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
     for name in sorted(names, key=len, reverse=True):
         if squeezed.startswith(name) and not _goes_on(squeezed[len(name) :]):
             return name, _suffixes(_after(whole, name), name, text)
-    raise SceneError(_unknown(text, squeezed, names))
+    raise ValueError(_unknown(text, squeezed, names))
 
 
 def _goes_on(rest: str) -> bool:
@@ -111,7 +110,7 @@ def _suffixes(rest: str, name: str, text: str) -> Suffixes:
             if found:
                 if clearance not in (None, found[0]):
                     problem = f"names two classes of clearance, {clearance} and"
-                    raise SceneError(f"{text!r} {problem} {found[0]}")
+                    raise ValueError(f"{text!r} {problem} {found[0]}")
                 clearance = found[0]
                 word = word[found.end() :]
                 continue
@@ -121,7 +120,7 @@ def _suffixes(rest: str, name: str, text: str) -> Suffixes:
                     f"{', '.join(CLEARANCE_CLASSES)}, seals, shields, cages, accuracy"
                 )
                 problem = f"has letters after {name} that are not known: {word!r}"
-                raise SceneError(f"{text!r} {problem} (known are {known})")
+                raise ValueError(f"{text!r} {problem} (known are {known})")
             if meaning == "tapered bore":
                 taper = taken
             else:

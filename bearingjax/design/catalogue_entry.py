@@ -1,22 +1,23 @@
 """The catalogue: bearings by their designation, with the source of each value.
 
 The folder `catalogue/` has one file per type: `type`, the `[sources]` with their short
-names, and a table for each bearing under its designation. The `bearing` of such a table
-holds keys of a scene's `[bearing]`.
+names, and a table for each bearing under its designation, in the units of catalogues
+(`UNITS`). The `bearing` of such a table holds the keywords of its design.
 """
 
 import dataclasses
 import functools
 import math
-import re
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from decimal import Decimal
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..design.fit_limits import (
+from .designation import Suffixes, compact, split_designation
+from .fit_limits import (
     CLEARANCE_CLASSES,
     ball_clearance,
     roller_clearance,
@@ -24,12 +25,8 @@ from ..design.fit_limits import (
     spherical_roller_clearance,
     toroidal_roller_clearance,
 )
-from ..design.iso286 import Limits
-from ..statics import heat_area, reference_factors, reference_speed
-from .design_keys import read_design
-from .designation import Suffixes, compact, split_designation
-from .quantity import SceneError, to_si
-from .table import Table
+from .iso286 import Limits
+from .keywords import bearing_of
 
 CLEARANCES = {
     "deep_groove_ball": ball_clearance,
@@ -50,38 +47,12 @@ _TAPERED = {
 
 CLEARANCE = "radial_internal_clearance"
 
-_SERIES = {
-    "deep_groove_ball": r"^6([23])\d\d$",
-    "angular_contact_ball": r"^7(2)\d\d ",
-    "cylindrical_roller": r"^[A-Z]+ (2[23]|2)\d\d ",
-    "spherical_roller": r"^2([2-4][0-3])\d\d ",
-    "tapered_roller": r"^3([0-3][0-3]|[02])\d\d ",
-    "cylindrical_thrust_roller": r"^8(1[12])\d\d ",
-    "spherical_thrust_roller": r"^2(9[2-4])\d\d ",
-}
-"""Dimension series within a designation."""
-
 _OTHER_BALLS = (
     "bearings of other contact angles often have other balls; C, C0 worked out from"
     " these may be some 20 % too high (so those of 7205 C and AC, from the balls of the"
     " 7205 BE, are 5 to 22 % above the printed ones)"
 )
 """Note on a bearing with the balls of another contact angle."""
-
-_QUANTITIES = {
-    "bore": "length",
-    "outside_diameter": "length",
-    "width": "length",
-    "inner_width": "length",
-    "outer_width": "length",
-    "dynamic_capacity": "force",
-    "static_capacity": "force",
-    "fatigue_load_limit": "force",
-    "reference_speed": "speed",
-    "limiting_speed": "speed",
-    "mass": "mass",
-}
-
 
 _RATINGS = (
     "dynamic_capacity",
@@ -90,6 +61,69 @@ _RATINGS = (
     "reference_speed",
     "limiting_speed",
 )
+_SIZES = ("bore", "outside_diameter", "width", "inner_width", "outer_width")
+
+UNITS = {
+    **dict.fromkeys(_RATINGS[:3], "kN"),
+    **dict.fromkeys(_RATINGS[3:], "rpm"),
+    "mass": "kg",
+    CLEARANCE: "um",
+    "axial_internal_clearance": "um",
+    "contact_angle": "deg",
+    "shim_angle": "deg",
+    "roller_axis_angle": "deg",
+    "roller_half_angle": "deg",
+    "n_balls": "",
+    "n_rollers": "",
+    "outer_osculation": "",
+    "inner_osculation": "",
+    "axial_factor": "",
+    "axial_factors": "",
+    "axial_load_limit": "",
+    "tilt_factor": "",
+    "clearance_factor": "",
+}
+"""Units of numbers in the files of the catalogue; others are lengths in mm."""
+
+_POWERS = {"mm": -3, "um": -6, "kN": 3, "kg": 0}
+_FACTORS = {"deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+
+
+def from_catalogue_unit(key: str, number: Any) -> Any:
+    """Return a value of the catalogue in SI; words stay as they are.
+
+    Powers of ten shift the decimal point, so that 10 µm are exactly 1e-05 m.
+
+    Args:
+        key: Its key, which tells the unit (`UNITS`).
+        number: As in the files: a number, a list or a table of such; a word.
+    """
+    if isinstance(number, Mapping):
+        return {k: from_catalogue_unit(k, one) for k, one in number.items()}
+    if isinstance(number, list):
+        return [from_catalogue_unit(key, one) for one in number]
+    if isinstance(number, str):
+        return number
+    unit = UNITS.get(key, "mm")
+    if unit in _POWERS:
+        return float(Decimal(number).scaleb(_POWERS[unit]))
+    if unit in _FACTORS:
+        return float(number) * _FACTORS[unit]
+    return number if isinstance(number, int) else float(number)
+
+
+def in_catalogue_unit(key: str, value: float) -> str:
+    """Return a number of the catalogue with its unit, "7.94 mm".
+
+    Args:
+        key: Its key, which tells the unit; not that of a pure number.
+        value: Number in SI.
+    """
+    unit = UNITS.get(key, "mm")
+    if unit in _FACTORS:
+        return f"{value / _FACTORS[unit]:.12g} {unit}"
+    number = Decimal(repr(value)).scaleb(-_POWERS[unit]).normalize()
+    return f"{number:f} {unit}"
 
 
 class OtherRating(NamedTuple):
@@ -130,13 +164,14 @@ class CatalogueEntry:
             one.
         geometry: "published" or "estimated": number and size of the rolling elements
             and their pitch diameter.
-        assumed: Keys of `table` with typical values, neither published nor estimated.
+        assumed: Keywords of `design` with typical values, neither published nor
+            estimated.
         sources: Source of "capacity" and "geometry".
         notes: Interpretation of the designation, in words.
-        table: Keys of [bearing] as written in a scene.
+        design: Keywords of the design in SI, as `bearing_of` takes them.
         taper: "K" or "K30" for a tapered bore, else "".
-        printed: What else the publisher prints, as in the file: lengths as texts, pure
-            numbers such as the limit e and factors Y1, Y2, Y0 of axial loads.
+        printed: What else the publisher prints, in SI: lengths, and pure numbers such
+            as the limit e and factors Y1, Y2, Y0 of axial loads.
     """
 
     designation: str
@@ -157,7 +192,7 @@ class CatalogueEntry:
     assumed: tuple[str, ...]
     sources: dict[str, str]
     notes: tuple[str, ...]
-    table: dict[str, Any]
+    design: dict[str, Any]
     taper: str = ""
     printed: dict[str, Any] = dataclasses.field(default_factory=dict)
 
@@ -170,26 +205,6 @@ class CatalogueEntry:
         return after if after[:2] in CLEARANCE_CLASSES else "CN"
 
     @property
-    def thermal_speed(self) -> float | None:
-        """Thermal reference speed by ISO 15312 [rad/s]; `None` without factors."""
-        found = re.search(_SERIES.get(self.type, "$^"), self.designation)
-        factors = found and reference_factors(self.type, found[1].zfill(2))
-        if not factors or self.static_capacity is None:
-            return None
-        d, outside = self.bore, self.outside_diameter
-        thrust = self.type.endswith("thrust_roller")
-        flat = self.type == "cylindrical_thrust_roller"
-        area = heat_area(d, outside, self.width, flat=flat)
-        if thrust and not flat:
-            shaft, housing = (
-                to_si(self.printed[key], "length")
-                for key in ("shaft_washer_diameter", "housing_washer_bore")
-            )
-            area = 0.25 * math.pi * (outside**2 + shaft**2 - housing**2 - d**2)
-        mean, load = 0.5 * (d + outside), self.static_capacity
-        return float(reference_speed(mean, area, load, factors, thrust=thrust))
-
-    @property
     def class_limits(self) -> Callable[..., Limits] | None:
         """Clearance limits by class and bore; `None` for a type without classes."""
         return class_limits(self.type, self.taper)
@@ -197,7 +212,7 @@ class CatalogueEntry:
     @property
     def bearing(self) -> Any:
         """The design: a bearing, or the set of both rows of a self-aligning bearing."""
-        return read_design(Table(self.table, self.designation))
+        return bearing_of(self.design)
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:
@@ -211,7 +226,7 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
             bearings with a tapered bore (K) have separate classes.
 
     Raises:
-        SceneError: If there is no such bearing; the message names similar ones.
+        ValueError: If there is no such bearing; the message names similar ones.
         TypeError: If it is not a string.
     """
     if not isinstance(designation, str):
@@ -221,17 +236,17 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
         )
     listed = _names()
     name, suffixes = split_designation(designation, listed)
-    kind, key, changes, odd = listed[name]
-    return _entry(kind, key, changes, odd, suffixes)
+    kind, key, changes, remarks = listed[name]
+    return _entry(kind, key, changes, remarks, suffixes)
 
 
 def catalogue() -> tuple[CatalogueEntry, ...]:
     """Return all bearings of the catalogue, by type and in the order of the files."""
     plain = Suffixes(None, ())
     seen: dict[str, CatalogueEntry] = {}
-    for kind, key, changes, odd in _names().values():
-        if not odd:
-            entry = _entry(kind, key, changes, odd, plain)
+    for kind, key, changes, remarks in _names().values():
+        if not remarks:
+            entry = _entry(kind, key, changes, remarks, plain)
             seen.setdefault(entry.designation, entry)
     return tuple(seen.values())
 
@@ -239,9 +254,9 @@ def catalogue() -> tuple[CatalogueEntry, ...]:
 @functools.cache
 def _files() -> dict[str, dict[str, Any]]:
     """Read the files of the catalogue, by type."""
-    folder = Path(str(files("bearingjax.scene") / "catalogue"))
+    folder = Path(str(files("bearingjax.design") / "catalogue"))
     read = (
-        tomllib.loads(path.read_text(encoding="utf-8"))
+        tomllib.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
         for path in sorted(folder.glob("*.toml"))
     )
     return {data["type"]: data for data in read}
@@ -264,34 +279,34 @@ def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
                 found[compact(shown)] = (kind, key, changes, ())
                 for other in values.get("also", ()):
                     other = other if ribs is None else f"{ribs} {other}"
-                    odd = (f"{other} is listed as {shown}",)
-                    found.setdefault(compact(other), (kind, key, changes, odd))
+                    remarks = (f"{other} is listed as {shown}",)
+                    found.setdefault(compact(other), (kind, key, changes, remarks))
     for kind, data in _files().items():
         for key, values in data["bearings"].items():
             for letter, angle in data.get("letters", {}).items():
                 name = f"{key.split()[0]} {letter}"
                 changes = {"contact_angle": angle}
-                odd = (f"{name}: {_OTHER_BALLS}",)
+                remarks = (f"{name}: {_OTHER_BALLS}",)
                 if values["letter"] == "B":
-                    found.setdefault(compact(name), (kind, key, changes, odd))
+                    found.setdefault(compact(name), (kind, key, changes, remarks))
     return found
 
 
-def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
+def _entry(kind, key, changes, remarks, suffixes) -> CatalogueEntry:
     data = _files()[kind]
     values = data["bearings"][key]
     si: dict[str, Any] = {
-        name: to_si(values[name], unit) if name in values else None
-        for name, unit in _QUANTITIES.items()
+        name: from_catalogue_unit(name, values[name]) if name in values else None
+        for name in (*_SIZES, *_RATINGS, "mass")
     }
     shown = key
-    table = {"type": kind, **values["bearing"], **changes}
+    design = from_catalogue_unit("", {"type": kind, **values["bearing"], **changes})
     sources = {
         part: data["sources"][values[f"{part}_source"]]
         for part in ("capacity", "geometry")
     }
     if "contact_angle" in changes:
-        shown = odd[0].partition(":")[0]
+        shown = remarks[0].partition(":")[0]
         sources["capacity"] = "not known for this contact angle"
         sources["geometry"] = (
             f"balls and pitch circle of {key} (of that one: {sources['geometry']})"
@@ -299,10 +314,10 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         for name in (*_RATINGS, "mass"):
             si[name] = None
         for name in ("outer_shoulder", "inner_shoulder"):
-            table.pop(name)
+            design.pop(name)
     if "arrangement" in changes:
         shown = f"{changes['arrangement']} {key.partition(' ')[2]}"
-    notes = [*odd, *(f"{word}: no effect" for word in suffixes.without_effect)]
+    notes = [*remarks, *(f"{word}: no effect" for word in suffixes.without_effect)]
     assumed = list(values.get("assumed", data.get("assumed", ())))
     taper = suffixes.taper
     if kind in CLEARANCES:
@@ -313,18 +328,18 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
                 f"classes of clearance of tapered bores ({taper}) are known here of"
             )
             cure = f"{', '.join(_TAPERED)} alone; leave it out, and give `{CLEARANCE}`"
-            raise SceneError(f"{shown}: {problem} {cure}")
+            raise ValueError(f"{shown}: {problem} {cure}")
         try:
-            table[CLEARANCE], note = class_clearance(kind, name, si["bore"], taper)
+            design[CLEARANCE], note = class_clearance(kind, name, si["bore"], taper)
         except ValueError as error:
-            raise SceneError(f"{shown}/{name}: {error}") from error
+            raise ValueError(f"{shown}/{name}: {error}") from error
         notes.append(note)
     elif taper:
         notes.append(f"{taper} (tapered bore): no effect")
         taper = ""
     elif suffixes.clearance is not None:
         problem = f"{kind} has no classes of clearance here; leave the class out"
-        raise SceneError(f"{shown}/{suffixes.clearance}: {problem}")
+        raise ValueError(f"{shown}/{suffixes.clearance}: {problem}")
     if suffixes.clearance not in (None, "CN"):
         shown = f"{shown}/{suffixes.clearance}"
     return CatalogueEntry(
@@ -333,12 +348,14 @@ def _entry(kind, key, changes, odd, suffixes) -> CatalogueEntry:
         **si,
         other=_other(values, data["sources"]) if si["dynamic_capacity"] else None,
         geometry=values["geometry"],
-        assumed=tuple(name for name in assumed if name in table),
+        assumed=tuple(name for name in assumed if name in design),
         sources=sources,
         notes=tuple(notes),
-        table=table,
+        design=design,
         taper=taper,
-        printed={} if "contact_angle" in changes else dict(values.get("printed", {})),
+        printed={}
+        if "contact_angle" in changes
+        else from_catalogue_unit("", values.get("printed", {})),
     )
 
 
@@ -346,12 +363,9 @@ def _other(values, sources) -> OtherRating | None:
     given = values.get("other")
     if given is None:
         return None
+    given = from_catalogue_unit("", given)
     static = given.get("static_capacity")
-    return OtherRating(
-        to_si(given["dynamic_capacity"], "force"),
-        None if static is None else to_si(static, "force"),
-        sources[given["source"]],
-    )
+    return OtherRating(given["dynamic_capacity"], static, sources[given["source"]])
 
 
 def class_limits(kind: str, taper: str = "") -> Callable[..., Limits] | None:
@@ -366,8 +380,8 @@ def class_limits(kind: str, taper: str = "") -> Callable[..., Limits] | None:
 
 def class_clearance(
     kind: str, name: str, bore: float, taper: str = ""
-) -> tuple[str, str]:
-    """Return the middle clearance of a class, as in a scene, and its source.
+) -> tuple[float, str]:
+    """Return the middle clearance of a class [m], to four digits, and its source.
 
     Args:
         kind: Type with clearance classes, one of `CLEARANCES`.
@@ -381,109 +395,6 @@ def class_clearance(
     find = class_limits(kind, taper)
     assert find is not None
     low, high = find(name, bore)
-    middle = f"{0.5e6 * (low + high):.4g} um"
+    middle = from_catalogue_unit(CLEARANCE, Decimal(f"{0.5e6 * (low + high):.4g}"))
     words = f"middle of class {name}, ISO 5753-1: {1e6 * low:.3g} to"
     return middle, f"clearance: {words} {1e6 * high:.3g} µm, not mounted"
-
-
-@dataclasses.dataclass(frozen=True)
-class FromCatalogue:
-    """Catalogue entry of a scene's `designation`.
-
-    Attributes:
-        entry: The bearing of the catalogue.
-        overridden: Keys to which the scene gives other values.
-    """
-
-    entry: CatalogueEntry
-    overridden: tuple[str, ...]
-
-    def varied(self, keys: Iterable[str]) -> "FromCatalogue":
-        """Mark further scene keys, such as "bearing.n_balls", as overridden."""
-        given = [key.split(".")[1] for key in keys if key.startswith("bearing.")]
-        names = dict.fromkeys((*self.overridden, *given))
-        return dataclasses.replace(self, overridden=tuple(names))
-
-    def __str__(self):
-        words = [
-            f"{self.entry.designation} (catalogue)",
-            f"inner geometry {self.entry.geometry}",
-        ]
-        if self.overridden:
-            words.append(f"overridden: {', '.join(self.overridden)}")
-        return ", ".join(words)
-
-
-CLEARED_ROLLERS = ("spherical_roller", "toroidal_roller")
-"""Types with clearance classes whose clearance does not follow from an angle."""
-
-_INSTEAD = {
-    "contact_angle": (CLEARANCE,),
-    "ribs": ("arrangement", "rib", "axial_internal_clearance"),
-}
-"""Keys replaced by a given key: one follows from the other."""
-
-
-def taken_from(
-    entry: CatalogueEntry, given: Mapping[str, Any]
-) -> tuple[dict[str, Any], FromCatalogue]:
-    """Complete the keys of [bearing] from the catalogue.
-
-    Args:
-        entry: Catalogue entry of the designation.
-        given: Keys given in addition to the designation; nested tables are merged
-            key by key, unless they name a `type`.
-
-    Returns:
-        All keys, and the record of the catalogue entry.
-    """
-    dropped = {name for key in given for name in _INSTEAD.get(key, ())}
-    if entry.type in CLEARED_ROLLERS:
-        dropped.discard(CLEARANCE)
-    merged = {k: v for k, v in entry.table.items() if k not in dropped}
-    changed = []
-    for key, value in given.items():
-        own = entry.table.get(key)
-        if isinstance(own, Mapping) and isinstance(value, Mapping):
-            value = value if "type" in value else {**own, **value}
-        merged[key] = value
-        if not same_key(entry, key, value):
-            changed.append(key)
-    return merged, FromCatalogue(entry, tuple(changed))
-
-
-def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
-    """Whether a key of a scene's [bearing] equals its catalogue value.
-
-    Args:
-        entry: Catalogue entry.
-        key: Key of [bearing].
-        value: Value as written in the scene.
-    """
-    return _same(value, entry.table.get(key)) or _same(value, _filled(entry).get(key))
-
-
-_FILLED: dict[str, dict[str, Any]] = {}
-
-
-def _filled(entry: CatalogueEntry) -> dict[str, Any]:
-    """Return the keys of a bearing with all defaults, as echoed in the JSON."""
-    if entry.designation not in _FILLED:
-        table = Table(entry.table, entry.designation)
-        read_design(table)
-        _FILLED[entry.designation] = table.echo()
-    return _FILLED[entry.designation]
-
-
-def _same(value: Any, own: Any) -> bool:
-    """Whether two scene values are equal, such as "7.94 mm" and "0.00794 m"."""
-    if isinstance(value, Mapping) and isinstance(own, Mapping):
-        return set(value) == set(own) and all(_same(value[k], own[k]) for k in value)
-    if value == own or not (isinstance(value, str) and isinstance(own, str)):
-        return value == own
-    for kind in ("length", "angle"):
-        try:
-            return math.isclose(to_si(value, kind), to_si(own, kind), rel_tol=1e-9)
-        except SceneError:
-            continue
-    return False

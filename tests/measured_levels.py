@@ -1,17 +1,11 @@
-"""Reference levels of a four-point ball bearing: norm and measurements.
+"""Measured levels of a four-point ball bearing with large balls.
 
 Bearing 85-176211D1 (55 x 100 x 21 mm, 14 balls of 14.288 mm) at 1500 rev/min on the rig
 KVP-104, with no ball, one ball or two balls 24 µm larger than the others. Levels are
 counted from 0.31e-4 m/s².
 
-Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), tables 1 and 2.
+Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), table 2.
 """
-
-OCTAVES = (4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1e3, 2e3, 4e3, 8e3)
-"""Nominal centres of the octave bands [Hz]."""
-
-NORM = (23.0, 24.0, 25.0, 46.0, 36.0, 44.0, 49.0, 54.0, 64.0, 68.0, 77.0, 75.0)
-"""Largest allowed level in each octave band [dB]."""
 
 MEASURED = {
     "one large ball": (
