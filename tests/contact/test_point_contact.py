@@ -309,6 +309,7 @@ def test_orthogonal_shear_by_hand():
     np.testing.assert_allclose(shear.orthogonal_depth, [0.5, 0.3509], atol=5e-5)
 
 
+@pytest.mark.slow
 def test_shear_derivatives():
     """Derivatives of the shear stresses with the ratio, by central differences."""
 

@@ -101,6 +101,7 @@ def test_the_true_bearing_comes_near_as_the_waves_get_small(answer):
     assert left[0] / left[1] == pytest.approx(2.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_transfer_at_low_frequency_matches_static_compliance():
     """Without sensor, far below the modes: receptance = condensed stiffness⁻¹."""
     alone = dataclasses.replace(model(), sensor=None, retardation=0.0)

@@ -218,6 +218,7 @@ def test_bounds_hold_where_the_optimum_lies_beyond(straight, one_case, wanted):
     assert found.history.gradient[-1] == 0.0
 
 
+@pytest.mark.slow
 def test_start_may_be_given(straight, one_case, wanted):
     found = search(straight, one_case, wanted, variables=[play(start=18e-6)])
     assert np.isclose(found.before.values[0], 18e-6, rtol=ROUNDING)

@@ -399,6 +399,7 @@ def _same_sound(path, acceleration, told):
     assert full == pytest.approx(np.abs(along - along.mean()).max(), rel=0.15)
 
 
+@pytest.mark.slow
 def test_a_model_by_hand_vibrates_alike(scene):
     task = read_noise(scene)
     found = run_noise(task)

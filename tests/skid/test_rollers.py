@@ -236,6 +236,7 @@ def test_steady_roller_loads_match_orbit_speed(found, name):
     np.testing.assert_allclose(at[:, 1] @ np.sin(angle), 0.0, atol=1e-8 * load)
 
 
+@pytest.mark.slow
 def test_steady_rollers_power_and_force_balance(found):
     """Power of the drive is heat; forces of the cage add up to nothing; tractions on
     a roller add up to those of cage and oil."""
@@ -253,6 +254,7 @@ def test_steady_rollers_power_and_force_balance(found):
         np.testing.assert_allclose(balance, end.cage_force, atol=SOLVER * size)
 
 
+@pytest.mark.slow
 def test_loaded_rollers_drive_the_cage(found):
     """And the cage the others, against the drag of the oil."""
     end = found[0][300.0]
@@ -267,12 +269,14 @@ def test_loaded_rollers_drive_the_cage(found):
     assert ratio.min() < 0.995 * ratio.max()
 
 
+@pytest.mark.slow
 def test_steady_rollers_roll_without_drag(found):
     end = found[0]["none"]
     np.testing.assert_allclose(end.slip, 0.0, atol=SOLVER)
     np.testing.assert_allclose(end.spin, end.rolling_spin, rtol=SOLVER)
 
 
+@pytest.mark.slow
 def test_standstill_and_sense_of_rotation(found):
     ends, _ = found
     rest, back, forward = ends["rest"], ends["back"], ends[300.0]

@@ -341,6 +341,7 @@ def test_derivative_of_the_torque_at_such_stress():
     np.testing.assert_allclose(got, (8.0 * narrow - wide) / 6.0, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_friction_torque_is_taken_at_driven_ring(stiff):
     outer = stiff(80.0, Speed(outer=SPEED.inner))
     torque = outer.friction_torque
@@ -351,6 +352,7 @@ def test_friction_torque_is_taken_at_driven_ring(stiff):
 
 
 @pytest.mark.parametrize("axial, speed", [(40.0, SPEED), (400.0, STIFF)])
+@pytest.mark.slow
 def test_steady_ball_loads_match_orbit_speed(stiff, axial, speed):
     """As where load solve and end state are repeated in turn until they agree."""
     load = np.array([0.0, 0.0, axial, 0.0, 0.0, 0.0])

@@ -120,6 +120,7 @@ def test_mean_friction_torque_over_whole_orbits():
     assert short.mean_friction_torque[1] == 0
 
 
+@pytest.mark.slow
 def test_simulate_from_rest():
     found = run(speed=FROM_REST)
     np.testing.assert_array_equal(found.orbit_speed[0], 0.0)
@@ -233,6 +234,7 @@ def test_simulate_power_balance_under_varying_load(varying):
     assert np.max(np.abs(found.imbalance)) < 1e-6 * float(found.work.drive[-1])
 
 
+@pytest.mark.slow
 def test_simulate_reaches_steady_state_after_load_change():
     """Behind one across the axis; balls free in wide pockets, in no even spacing."""
     axial = np.array([0.0, 0.0, 120.0, 0.0, 0.0, 0.0])

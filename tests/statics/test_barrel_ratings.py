@@ -375,6 +375,7 @@ def test_refined_contact_has_the_bearings_geometry(solved):
     )
 
 
+@pytest.mark.slow
 def test_films_of_flat_thrust_rollers_roll_at_the_pitch_circle(solved):
     from bearingjax.lubrication import OILS
 
@@ -473,6 +474,7 @@ def test_skfs_model_beside_skfs_constant_coefficients():
         assert 0.5 < ratio < 2.5, (name, ratio)
 
 
+@pytest.mark.slow
 def test_friction_of_a_solution(solved):
     skf = bj.statics.skf_friction_torque
     found = skf(solved["spherical"], 2e-5, series="222E", diameters=(0.1, 0.18))
@@ -485,6 +487,7 @@ def test_friction_of_a_solution(solved):
     assert bj.statics.skf_series(EXAMPLES["crossed"][0]) == ()
 
 
+@pytest.mark.slow
 def test_warnings_of_the_types(solved):
     """Spherical thrust bearings need axial load; spheres tilt as they like."""
     solution = solved["spherical thrust"]

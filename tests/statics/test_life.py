@@ -317,6 +317,7 @@ def plain_a_iso(kappa, ratio):
     return 50.0 if rest <= 0 else min(50.0, 0.1 * rest**-9.185)
 
 
+@pytest.mark.slow
 def test_modified_lives_of_rollers_are_those_of_plain_numpy(rollers):
     """Each lamina has the factor of its own load; constants agree as rounded."""
     x = jnp.asarray([70e-6, 15e3, 0.0, 0.5e-3, 0.00035])
@@ -755,6 +756,7 @@ def test_a_moment_alone_is_told_of_a_life():
     assert "moment of 20 N m" in only and "reference life of ISO/TS 16281" in only
 
 
+@pytest.mark.slow
 def test_optimise_life_warnings_match_rating_life():
     """Of all cases at once, in its outcomes if a life is among its measures."""
     element = ball_element([0.0])
