@@ -14,6 +14,10 @@ def configure(options) -> None:
     # Matrices are small: LAPACK threads would only wait for each other, thirty times as
     # long on a busy machine. Read when SciPy is first imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if options.command == "noise":
+        # Its steps of some microseconds take 1.4 times as long if a thread hands them
+        # to another. Read when JAX first runs something.
+        os.environ.setdefault("PJRT_NPROC", "1")
 
     import jax
 
