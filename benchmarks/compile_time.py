@@ -12,49 +12,55 @@ imports JAX and adds two arrays tells how quiet the machine is.
 Of the program of every scene also the equations that are traced and the instructions
 that XLA makes of them. `--beside TREE` runs another checkout in turn.
 
-README: first force and stiffness 3.9 s; `solve` 4.3 to 9.7 s, with its program kept
-1.8 to 2.5; from Python 9 and 1.5, with gradient 15 (processor) | 4 s; 8 s; 2 s | yes;
-**missed**: sets of ball bearings, 9.7 and 2.5 s
+README: first force and stiffness 3.7 s; `solve` 4.2 to 9.9 s, with its program kept 1.7
+to 2.9; from Python 7.4 and 1.6, with gradient 12 | 4 s; 8 s; 2 s | yes; **missed**:
+pairs of ball rows, spherical rollers, 8.3 to 9.9 and 2.3 to 2.9 s
 
 `--commands` runs the other commands in place of `solve`.
 
-Last run, `--repeats 1`, nothing else running, while importing JAX and adding two
-arrays took 0.74 s (`tapered`, `sprung_pair` and `self_aligning`: processor time, beside
-one other job):
+Last run, `--repeats 1`, nothing else running (`sprung_pair`, `thrust_ball` and
+`thrust_roller`: beside one other job), while importing JAX and adding two arrays took
+0.64 s:
 
 seconds                    solve, first  solve, second  equations  instr.
 tapered                            5.0            1.9        6144   11287
-needle                             5.8            2.0        6988   11827
-nj_axial                           5.3            2.0        6618   11615
-hybrid_spindle                     5.1            1.9        6297   11314
-deep_groove                        4.3            1.8        5280   10559
-angular_contact                    6.0            2.1        8389   18083
-ball_pair                          6.7            2.1        9944   19882
-noise_pair                         9.7            2.5        9944   19882
-crossed_roller                     5.6            2.0        7543   12730
-sprung_pair                       10.6            2.7       15377   31921
-self_aligning                     10.7            2.4       14410   26536
+needle                             5.8            2.0        6989   11827
+nj_axial                           5.0            1.9        6618   11615
+hybrid_spindle                     5.3            2.0        6297   11314
+deep_groove                        4.6            1.9        5280   10559
+angular_contact                    6.2            2.1        8389   18083
+ball_pair                          6.4            2.1        9944   19882
+noise_pair                         9.0            2.4        9944   19882
+crossed_roller                     5.7            2.1        7543   12730
+thrust_ball                        5.9            2.4        7362   15781
+spherical_roller                   8.3            2.3       12646   19897
+sprung_pair                        9.9            2.9       15377   31921
+self_aligning                      9.1            2.4       14410   26536
 
-`import bearingjax` takes 0.34 to 0.40 s beside 0.36 to 0.53 s of JAX, the first force
-and stiffness of the library 3.6 to 4.6 s.
+`import bearingjax` takes 0.35 s beside 0.38 s of JAX, the first force and stiffness of
+the library 3.7 s. Pairs with seats or springs solve twice: as mounted, and loaded.
 
 Last run, `--commands --repeats 1`, nothing else running, importing JAX and adding two
-arrays 0.79 s; processor time [s]:
+arrays 0.79 s; wall and processor time [s]:
 
-solve_load                 as it is 9.1, to be kept 5.6, kept 1.5; and gradient 14.6
-                                   first  second
-life life_spectrum                  21.9     2.8
-sweep load_map                      18.5     2.4
-rotor rotor_spindle                 23.3     4.9
-rotor rotor_flexible                32.6     7.8
-shaft shaft_spindle                 41.3     7.9
-skid skid_axial --steady            22.9     3.4
-skid skid_roller --steady           17.8     5.0
-noise noise_deep_groove             37.7    18.6
+solve_load                   as it is 7.4, to be kept 4.5, kept 1.6; and gradient 11.9
+    processor time                   10.4             5.3       1.7               14.6
+                                     first       second
+life life_spectrum                16.3 22.8     2.7  2.8
+sweep load_map                    11.9 17.2     2.3  2.4
+rotor rotor_spindle               20.3 22.9     4.8  5.3
+rotor rotor_flexible              24.8 29.4     6.7  7.8
+shaft shaft_spindle               36.4 39.1     7.0  7.5
+skid skid_axial --steady          19.5 21.6     3.2  3.3
+skid skid_roller --steady         15.0 17.3     3.9  4.8
+noise noise_deep_groove           23.3 25.6     8.5  8.7
+    --monte-carlo 16, 4 turns     90.3 95.8    67.2 67.5
 
-`shaft_spindle` is a spindle that warms up; of the second run of noise 12.5 s is the
-integration, on both cores; of that of `rotor_flexible` 2.4 s are the branch and 1.2 s
-the loading of programs.
+`shaft_spindle` is a spindle that warms up. The integration takes 6 s of the second run
+of noise, and 60 s of that with 16 random bearings, each of which runs once as it is and
+once without each of four sources (these two were run by hand). Of the second run of
+`rotor_flexible` 2.4 s are the branch and 1.2 s the loading of programs; of the first
+17 s are XLA.
 AMD EPYC, 2 cores; jax 0.10.1
 """
 
