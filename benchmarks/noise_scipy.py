@@ -16,14 +16,15 @@ times ours.
 
 All that was asked for once: --turns 8 --batch 64 --bearings 1000.
 
-README: 14 balls, two turns: 0.19 s at an error of 5e-4; SciPy 23 times the time, 26
+README: 14 balls, two turns: 0.17 s at an error of 2e-3; SciPy 23 times the time, 33
 times in a call of 16 | 20 times | yes
 
-Last run, 14 balls, two turns, one core: 0.19 s at an error of 5e-4 of the acceleration,
-0.34 s at 2.6e-4; SciPy's RK45 4.4 s at 1e-3, DOP853 5.7 s at 5e-5, LSODA 24.9 s: 23
-times the time of one bearing, 26 times that of one of 16 random bearings in a call,
-spectra and bands included (goal: 20 times). Before accelerations were cut where samples
-cannot tell them, 1000 random bearings of 8 turns took 0.41 s each, RK45 11.4 s.
+Last run, `--turns 2 --batch 16 --bearings 32`, other work beside it: 14 balls, two
+turns: 0.17 s at an error of 2.3e-3 of the acceleration, 0.31 s at 3.5e-4; SciPy's RK45
+3.9 s at 9e-4 and 10.2 s at 9e-5, DOP853 6.1 s at 1.6e-4, LSODA 21.8 s: 23 times the
+time of one bearing, 33 times that of one of 16 random bearings in a call, 0.12 s each,
+spectra and bands included.
+AMD EPYC, 2 cores; jax 0.10.1
 """
 
 import time
