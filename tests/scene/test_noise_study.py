@@ -380,9 +380,9 @@ def test_every_file_holds_the_same_record(written):
     _same_sound(paths["--wav"], acceleration, done.out)
     for words in (
         "the outer ring moves, 0.1 kg, and does not tilt\nloaded by Fz 100 N; inner",
-        "record of 1 turns, 0.02 s, after 0 to settle; 64 samples",
+        "record of 1 turn, 0.02 s, after 0 to settle; 64 samples",
         "natural modes of the ring: ",
-        "2: 100 %; 0 open or close per turn of the shaft",
+        "2 for 100 % of the time; 0 open or close per turn of the shaft",
         "warning: the record of 0.02 s is too short for the bands up to 63 Hz; raise",
         "warning: the record of 0.02 s has too few samples for the bands from 1000 Hz",
         "are left out for that: 125, 500 Hz; raise `vibration.turns`, to 2 ",
