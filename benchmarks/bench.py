@@ -76,6 +76,8 @@ def _run(main, notes, show, plot, wrong):
     given = vars(parser.parse_args())
     as_json, target = not show or given.pop("json"), plot and given.pop("plot")
     result = main(**given)
+    if isinstance(result, np.bool_):
+        result = bool(result)
     told = result if isinstance(result, tuple) else (result,)
     if told[0] is None or isinstance(told[0], bool):
         print(machine())

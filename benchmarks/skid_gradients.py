@@ -147,7 +147,7 @@ def compared(name, function, load, steps, order=2):
         worst = ", ".join(f"{names[k]} {row[k]:.0e}" for k in order)
         print(f"  {what}: largest errors {worst}", flush=True)
         within = within and row[order[0]] < BOUNDS[name]
-    return bool(within)
+    return within
 
 
 @benchmark("the end state, two steps")

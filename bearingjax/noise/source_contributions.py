@@ -292,7 +292,8 @@ def _directions(direction: Any) -> np.ndarray:
 
 
 def _is_many(key: Array) -> bool:
-    return jnp.issubdtype(key.dtype, jax.dtypes.prng_key) and key.ndim == 1
+    """Whether these are several keys; a plain one has an axis of its own."""
+    return key.ndim > (not jnp.issubdtype(key.dtype, jax.dtypes.prng_key))
 
 
 def _mean_square(acceleration, along):

@@ -23,9 +23,10 @@ def harmonic_response(
 
     Args:
         rotor: Linear, such as `StaticEquilibrium.rotor`; a bearing is taken by its
-        slopes. loads: Unbalances and acceleration of the base count. frequencies: Of
-        the excitation (speed,) [rad/s]. speed: Of the rotor [rad/s]; `None`: that of
-        the excitation.
+            slopes.
+        loads: Unbalances and acceleration of the base count.
+        frequencies: Frequencies of the excitation (speed,) [rad/s].
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
 
     Returns:
         UnbalanceResponse, its `speed` that of the excitation; differentiable with

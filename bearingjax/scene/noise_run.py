@@ -40,6 +40,9 @@ from .noise_scene import AXES, NoiseScene
 
 LARGEST_LINES = 12
 """Number of largest spectral lines reported regardless of their neighbours."""
+_KEPT = 64
+"""Most random bearings whose records are kept for the sources of noise, not made anew:
+50 MB of 16 turns with 2048 samples."""
 _TOO_LONG = "its steps are too long for the contacts under their largest load"
 
 
@@ -197,11 +200,12 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     batch = min(16, task.bearings)
     # Each source is switched off once: this takes about as long as the levels.
     fewer = max(-(-task.bearings // len(tolerances.sources)), batch)
-    whole = task.bearings + fewer * len(tolerances.sources)
-    unchanged = []
+    unchanged = [] if fewer <= _KEPT else None
+    runs = len(tolerances.sources) + (unchanged is None)
+    whole = task.bearings + fewer * runs
 
     def keep(acceleration, result):
-        if batch * len(unchanged) < fewer:
+        if unchanged is not None and batch * len(unchanged) < fewer:
             unchanged.append((acceleration, result))
 
     def progress(before):
@@ -210,7 +214,7 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
 
         return tell
 
-    progress(0)(0, whole)
+    _tell(on_stage, "random bearings", 0.0)
     levels = monte_carlo(
         *given,
         task.bearings,

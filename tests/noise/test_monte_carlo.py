@@ -229,3 +229,6 @@ def test_monte_carlo_rejects_invalid_tolerances():
         RandomWaves(1e-6, 5, 4)
     with pytest.raises(ValueError, match="without a source"):
         source_contributions(MODEL, Tolerances(), 2, KEY, **HOW)
+    for keys in (jax.random.split(KEY, 3), jax.random.split(jax.random.PRNGKey(3), 3)):
+        with pytest.raises(ValueError, match="has 3 keys; it must have 2"):
+            source_contributions(MODEL, SMALL, 2, keys, **HOW)

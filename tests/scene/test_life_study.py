@@ -60,7 +60,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command."""
+    """Runs of the command."""
 
 
 @pytest.fixture(scope="module")

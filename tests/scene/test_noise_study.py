@@ -326,7 +326,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command."""
+    """Runs of the command."""
 
 
 @pytest.fixture

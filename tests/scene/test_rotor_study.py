@@ -344,7 +344,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command."""
+    """Runs of the command."""
 
 
 def read(path):

@@ -52,7 +52,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command."""
+    """Runs of the command."""
 
 
 def of_seats(numbers, name):

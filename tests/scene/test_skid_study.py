@@ -293,7 +293,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command."""
+    """Runs of the command."""
 
 
 @pytest.fixture(autouse=True)

@@ -61,7 +61,7 @@ STUDIES = {
 
 
 class TestRuns(Runs):
-    """Of the command; that its JSON is a scene again, `test_echo` tests."""
+    """Runs of the command; `test_echo` tests that its JSON is a scene again."""
 
     test_run_of_its_json_is_the_same = None  # pyright: ignore
 
