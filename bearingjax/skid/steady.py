@@ -233,11 +233,18 @@ def end_state(
         steps=found.steps,
         result=result,
     )
-    # Forces in balance whose powers are not: too few places, or lost in round-off.
-    lost = _missing(end, speed, orbit) > _IMBALANCE[str(ring.dtype)]
-    wrong = Result.STEP_LIMIT if count == 1 else Result.GRID_MISFIT
-    result = jnp.where(lost & (result == int(Result.CONVERGED)), int(wrong), result)
+    result = _checked_power(result, _missing(end, speed, orbit), count)
     return eqx.tree_at(lambda t: t.result, end, result.astype(jnp.int32))
+
+
+def _checked_power(result, missing, count):
+    """Return the code of a search with the missing share of the power (`_missing`).
+
+    Forces in balance whose powers are not: too few places, or lost in round-off.
+    """
+    lost = missing > _IMBALANCE[str(missing.dtype)]
+    wrong = Result.STEP_LIMIT if count == 1 else Result.GRID_MISFIT
+    return jnp.where(lost & (result == int(Result.CONVERGED)), int(wrong), result)
 
 
 def _missing(found, speed, orbit):

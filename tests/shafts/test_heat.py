@@ -1,11 +1,13 @@
 """Temperatures in equilibrium with friction, and their way there."""
 
+from types import SimpleNamespace
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from systems import ELEMENT
+from systems import ELEMENT, ball, stage
 
 import bearingjax as bj
 from bearingjax.shafts import (
@@ -18,6 +20,8 @@ from bearingjax.shafts import (
     ShaftSystem,
     ThermalPaths,
     bearing_solutions,
+    heat,
+    power_flow,
     solve_heat,
     warm_up,
 )
@@ -122,6 +126,28 @@ def spindle(offset=0.0, speed=400.0, mounting=SEAT):
 def network(**more):
     path = ThermalPaths(1.2, 1.6, OIL, through=0.2, **more)
     return HeatNetwork(293.15, [path, path], housing=6.0)
+
+
+def test_heat_made_by_bearings_and_meshes(monkeypatch, untyped):
+    """Half of a bearing's loss at each ring, with the oil as warm as the mean of both;
+    the losses of the meshes in the housing."""
+
+    class Oil(BearingOil):
+        def power(self, solution, temperature=None):
+            return temperature
+
+    system = stage(ball, efficiency=0.99)
+    flow = SimpleNamespace(motion=jnp.zeros((4, 5)), power=power_flow(system))
+    monkeypatch.setattr(heat, "system_state", lambda system: (flow, None))
+    monkeypatch.setattr(heat, "in_place", lambda *given: None)
+    path = ThermalPaths(1.2, 1.6, Oil(OIL.lubricant))
+    rises = jnp.asarray([10.0, 30.0, 20.0, 80.0, 0.0, 0.0, -5.0, 15.0, 7.0])
+    given = system, HeatNetwork(293.15, [path] * 4, housing=6.0)
+    made = heat.heat_made(rises, given)
+    oil = 293.15 + np.array([20.0, 50.0, 0.0, 5.0])
+    np.testing.assert_allclose(made[:-1], np.repeat(0.5 * oil, 2), rtol=1e-12)
+    loss = 22e3 * (1.0 - 0.99**2)
+    np.testing.assert_allclose(made[-1], loss, rtol=1e-12)
 
 
 @pytest.mark.slow

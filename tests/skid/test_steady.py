@@ -1,5 +1,8 @@
 """Where skidding ends, against the figures of method 001 and against itself."""
 
+import importlib
+from types import SimpleNamespace
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -22,6 +25,9 @@ from bearingjax.skid import (
 )
 from bearingjax.skid.loaded import ring_forces
 from bearingjax.skid.orbit_search import derivatives
+from bearingjax.skid.steady_results import Power
+
+steady_module = importlib.import_module("bearingjax.skid.steady")  # a function's name
 
 # Axial load [N]: slip of the orbit [%], pitch angle of the spin axis [deg], as an
 # independent integration of one ball in time ended, to the digits that are printed.
@@ -386,6 +392,46 @@ def test_steady_single_place_rejects_unequal_loads(one_place):
     assert int(one_place.result[-1]) == Result.GRID_MISFIT
     with pytest.raises(ValueError, match="unlike loads"):
         under(600.0, radial=200.0)
+
+
+@pytest.mark.parametrize(
+    "result, missing, count, wanted",
+    [
+        (Result.CONVERGED, 0.9e-6, 96, Result.CONVERGED),
+        (Result.CONVERGED, 1.1e-6, 96, Result.GRID_MISFIT),
+        (Result.CONVERGED, 1.1e-6, 1, Result.STEP_LIMIT),
+        (Result.NO_LOAD_PATH, 1.0, 96, Result.NO_LOAD_PATH),
+        (Result.CONVERGED, np.float32(0.009), 96, Result.CONVERGED),
+        (Result.CONVERGED, np.float32(0.011), 96, Result.GRID_MISFIT),
+    ],
+)
+def test_steady_takes_places_as_too_few_by_power(result, missing, count, wanted):
+    """A millionth of the power may be missing; with one place that is no misfit."""
+    missing = jnp.asarray(missing)
+    assert int(steady_module._checked_power(int(result), missing, count)) == wanted
+
+
+def test_steady_missing_power_by_hand():
+    """Relative to the losses, and where next to nothing drives to a least traction of
+    all loads at the pitch circle."""
+    speed = Speed(inner=100.0, outer=-300.0)
+    orbit = SimpleNamespace(least=jnp.asarray(2e3), model=MODEL)
+    least = orbit_search.NO_TRACTION * 2e3 * 300.0 * 0.5 * float(BEARING.pitch_diameter)
+    for drive, contacts, base in ((9.0, 7.0, 10.0), (0.0, 0.0, 3.0), (least, -3.0, 0)):
+        power = Power(*map(jnp.asarray, (drive, contacts, 2.0, 1.0)))
+        got = steady_module._missing(SimpleNamespace(power=power), speed, orbit)
+        wanted = abs(drive - contacts - 3.0) / (base or least)
+        np.testing.assert_allclose(got, wanted, rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_steady_rejects_few_places():
+    """With one place for each ball a loaded zone is not resolved."""
+    load = np.array([300.0, 0.0, 600.0, 0.0, 0.0, 0.0])
+    given = dict(speed=SPEED, free=FREE, places=12, throw=False)
+    found = skid.steady(MODEL, load, **given)
+    assert int(found.result) == Result.GRID_MISFIT
+    assert abs(float(found.imbalance)) > 1e-6
 
 
 def test_steady_without_load_path():

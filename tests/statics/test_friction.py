@@ -1,13 +1,16 @@
 """Friction torques and films by hand, of single rows and of a solved pair."""
 
+from types import SimpleNamespace
+
 import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import bearingjax as bj
 from bearingjax.lubrication import OILS
 from bearingjax.statics import SUPPLIES, friction_skf
-from bearingjax.statics.friction import _of_row
+from bearingjax.statics.friction import _of_row, _row_loads, unit_loads
 
 BALLS = {
     "n_balls": 9,
@@ -20,6 +23,7 @@ DEEP = bj.DeepGrooveBallBearing(**BALLS)
 ANGULAR = bj.AngularContactBallBearing(**BALLS, contact_angle=np.deg2rad(25))
 ROLLERS = (13, 0.0385, 0.0075, 0.009)
 CYLINDER = bj.CylindricalRollerBearing(*ROLLERS)
+NEEDLE = bj.NeedleRollerBearing(13, 0.0385, 0.003, 0.009)
 TAPER = bj.TaperedRollerBearing(*ROLLERS, roller_axis_angle=0.22, roller_half_angle=0.0)
 PITCH = 38.5  # mm
 VISCOSITY, SPEED = 30e-6, 3000 * np.pi / 30
@@ -39,6 +43,7 @@ row = eqx.filter_jit(_of_row)
         (TAPER, 500, 900, "grease", 0.0004 * 720 * COT_TAPER, 6.0, 0),
         (CYLINDER, 2000, 300, "oil_bath", 0.0003 * 2000, 3.0, 0.006 * 300),
         (CYLINDER, 2000, 300, "grease", 0.0003 * 2000, 0.8, 0.009 * 300),
+        (NEEDLE, 2000, 300, "oil_jet", 0.002 * 2000, 24.0, 0.006 * 300),
     ],
 )
 def test_a_row_by_hand(bearing, radial, axial, supply, load, viscous, flange):
@@ -153,6 +158,46 @@ def test_rows_of_a_pair(pair):
     total = torque.sum() + 2 * viscous
     assert float(friction.torque) == pytest.approx(total, rel=1e-6)
     assert float(friction.power) == pytest.approx(total * SPEED, rel=1e-6)
+
+
+def test_row_loads_of_a_pair(pair):
+    """Radial and axial resultant of each row, of loads that differ in every ball."""
+    _, solution, *_ = pair
+    load = 10.0 + np.arange(36.0).reshape(18, 2) ** 1.5
+    angle = np.asarray(solution.contact_angle)[:, 0]
+    azimuth = np.asarray(solution.azimuth)
+    uneven = eqx.tree_at(lambda s: s.contact_load, solution, jnp.asarray(load))
+    across = load[:, 0] * np.cos(angle)
+    parts = [across * np.cos(azimuth), across * np.sin(azimuth)]
+    parts.append(load[:, 0] * np.sin(angle))
+    wanted = np.reshape(parts, (3, 2, 9)).sum(axis=2).T
+    for (radial, axial, found), want in zip(unit_loads(uneven), wanted, strict=True):
+        np.testing.assert_allclose(found, [*want, 0.0, 0.0, 0.0], rtol=1e-12)
+        np.testing.assert_allclose(radial, np.hypot(*want[:2]), rtol=1e-12)
+        np.testing.assert_allclose(axial, abs(want[2]), rtol=1e-12)
+
+
+def test_row_loads_of_tapers():
+    """At the angle of the outer raceway, half a cone above the axis of the roller."""
+    half = np.arctan(0.0075 / 0.0385 * np.sin(0.22))
+    cone = bj.TaperedRollerBearing(
+        *ROLLERS, roller_axis_angle=0.22, roller_half_angle=half
+    )
+    pair = bj.BearingSet.back_to_back(cone, 0.015)
+    load = np.linspace(1.0, 2.0, 52).reshape(26, 2)
+    azimuth = np.arange(26) * 2 * np.pi / 13
+    solution = SimpleNamespace(
+        row_sizes=(13, 13),
+        element=SimpleNamespace(bearing=pair),
+        roller_load=jnp.asarray(load),
+        azimuth=jnp.asarray(azimuth),
+    )
+    outer = load[:, 0].reshape(2, 13)
+    across, azimuth = outer * np.cos(0.22 + half), azimuth.reshape(2, 13)
+    x, y = across * np.cos(azimuth), across * np.sin(azimuth)
+    wanted = np.stack([x, y, outer * np.sin(0.22 + half)]).sum(axis=2).T
+    found = np.asarray(_row_loads(solution))
+    np.testing.assert_allclose(found[:, :3], wanted, rtol=1e-12)
 
 
 def test_rows_of_a_pair_by_skf(pair):
