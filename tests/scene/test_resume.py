@@ -10,6 +10,7 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax import FREEDOMS, Cases
+from bearingjax.numerics.result import Result
 from bearingjax.scene import design_columns, read_cases, resume
 from bearingjax.statics import Sweep, sweep_program, sweep_table
 from bearingjax.statics.sweep_table import (
@@ -108,6 +109,33 @@ def test_interrupted_twice_and_taken_up(run, scene, tmp_path, struck, ending):
     # Nothing left: the table as it is.
     done = run(*words, "--resume")
     assert done.status == 0 and "6 converged" in done.out
+
+
+def test_resume_puts_new_cases_in_their_places(scene, tmp_path, monkeypatch):
+    """Cases that are missing between those that were solved, and a failed one."""
+    ran = []
+
+    def run_cases(table, *_):
+        load = -np.asarray(table.cases.load)[:, 1]
+        ran.append(load.tolist())
+        outputs = {"result": np.where(load == 3e3, 1, 0), "largest_load": 2 * load}
+        return Sweep(table.cases, outputs, "inner")
+
+    monkeypatch.setattr(resume, "run_cases", run_cases)
+    monkeypatch.setattr(resume, "CHECKED", 2)
+    table, place = read_cases(scene()), tmp_path / "t.csv"
+    whole = run_cases(table)
+    left = np.isin(np.arange(6), [1, 3, 5])
+    outputs = {
+        "result": np.where(left, int(Result.NOT_RUN), whole.outputs["result"]),
+        "largest_load": np.where(left, np.nan, whole.outputs["largest_load"]),
+    }
+    write(Sweep(table.cases, outputs, "inner"), place, design_columns(table))
+    again = resume.resume_cases(table, place)
+    for name, values in whole.outputs.items():
+        np.testing.assert_array_equal(again.outputs[name], values)
+    # The last of those that were solved, to check them, then what is missing.
+    assert ran[1:] == [[1e3, 2e3], [1.5e3, 2.5e3, 4e3]]
 
 
 def test_resume_rejects_table_of_other_scene(run, scene, tmp_path, struck):

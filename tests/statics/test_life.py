@@ -707,6 +707,20 @@ def held(bearing, axial):
     )
 
 
+def test_left_out_moment_about_pressure_centre():
+    """A load through the pressure centre leaves no moment, whichever way it faces."""
+    single = angular(40)
+    reach = 0.5 * 77.5e-3 * np.tan(np.deg2rad(40))
+    turned = bj.BearingSet((bj.design.SetRow(single, 0.01, mirrored=True),))
+    for bearing, centre in ((single, -reach), (turned, 0.01 + reach)):
+        through = np.array([2e3, 1e3, 3e3, -1e3 * centre, 2e3 * centre, 0.0])
+        lost = left_out(bearing, jnp.asarray(through))
+        np.testing.assert_allclose(lost.moment, 0.0, atol=1e-9)
+        more = through + np.array([0.0, 0.0, 0.0, 3.0, 4.0, 0.0])
+        moment = left_out(bearing, jnp.asarray(more)).moment
+        np.testing.assert_allclose(moment, 5.0, rtol=1e-9)
+
+
 @pytest.mark.slow
 def test_moments_are_counted_about_the_pressure_centre():
     """There the forces of the contacts meet: of an angular contact bearing whose rings

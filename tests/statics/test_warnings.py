@@ -170,6 +170,27 @@ def test_tilts_are_those_of_ring_against_ring(deep):
         assert float(found["prescribed_tilt"]) == pytest.approx(held / usual)
 
 
+@pytest.mark.parametrize("kind", ["deep", "rollers"])
+def test_negative_clearance_by_its_size(kind, request):
+    """Of a bearing that turns; what the solution has besides is kept."""
+    usual = solved(request.getfixturevalue(kind), [0, -2000.0, 0, 0, 0, 0])
+
+    def changed_solution(clearance, speed):
+        return eqx.tree_at(
+            lambda s: (s.element.bearing.radial_internal_clearance, s.speed.inner),
+            usual,
+            (jnp.asarray(clearance), jnp.asarray(speed)),
+        )
+
+    for clearance, speed, size in ((-5e-6, 100.0, 5e-6), (-5e-6, 0.0, 0.0)):
+        pressed = changed_solution(clearance, speed)
+        assert float(sizes(pressed)["negative_clearance"]) == pytest.approx(size)
+        told = [t for t in bj.warnings(pressed) if "clearance" in t]
+        words = "runs with a radial clearance of -5 µm"
+        assert len(told) == (size > 0) and all(words in text for text in told)
+    assert float(sizes(changed_solution(5e-6, 100.0))["negative_clearance"]) < 0
+
+
 @pytest.mark.slow
 def test_warnings_negative_clearance_of_single_bearing(deep, rollers):
     """Not one at rest, nor a set, whose rows press each other on purpose."""
