@@ -6,6 +6,7 @@ roller bearings NSK.
 """
 
 from functools import partial
+from itertools import zip_longest
 from string import ascii_letters
 
 import numpy as np
@@ -16,6 +17,7 @@ from bearingjax.design import (
     LIMIT_CLASSES,
     ball_clearance,
     bore_limits,
+    fit_limits,
     limits,
     outside_limits,
     roller_clearance,
@@ -25,6 +27,17 @@ from bearingjax.design import (
 )
 
 MICRON = 1e-6
+# First range of the bore [mm], and its ends between 10 and 24 mm.
+CLEARANCES = {
+    "_BALLS": (6, (18,)),
+    "_CYLINDERS": (24, ()),
+    "_SELF_ALIGNING": (6, (14, 18)),
+    "_SELF_ALIGNING_TAPERED": (24, ()),
+    "_SPHERICAL": (24, ()),
+    "_SPHERICAL_TAPERED": (30, ()),
+    "_TOROIDAL": (24, ()),
+    "_TOROIDAL_TAPERED": (24, ()),
+}
 _SPHERICAL_K = partial(spherical_roller_clearance, tapered=True)
 
 # Diameter in mm, lower and upper deviation in µm.
@@ -83,6 +96,18 @@ def test_limits_width_equals_standard_tolerance():
             found = limits(name, diameter)
             width = standard_tolerance(grade, diameter)
             assert np.isclose(found.upper - found.lower, width, rtol=1e-12)
+
+
+def test_limits_follow_the_diameter():
+    """Both limits of a class go one way; steps back are of rounding and of the smallest
+    diameters."""
+    ends = np.array([1, 3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500])
+    middles = 0.5e-3 * (ends[1:] + ends[:-1])
+    for name in LIMIT_CLASSES:
+        found = np.array([limits(name, d) for d in middles]) / MICRON
+        steps = np.diff(found, axis=0)
+        steps *= np.where(found[-1] < found[0], -1.0, 1.0)
+        assert (steps > -2.1).all(), name
 
 
 def test_limits_diameter_range_includes_upper_end():
@@ -190,6 +215,19 @@ def test_classes_follow_each_other(find, least):
     for bore in np.linspace(least, 0.5, 90):
         rows = np.array([find(name, bore) for name in CLEARANCE_CLASSES])
         assert (np.diff(rows, axis=0) > 0).all() and (np.diff(rows) > 0).all()
+
+
+@pytest.mark.parametrize("name", CLEARANCES)
+def test_clearances_stand_at_the_bores_of_iso_5753_1(name):
+    """Ranges of the bore [mm]; the limits of each class grow with it."""
+    first, more = CLEARANCES[name]
+    ends = (24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315)
+    ends = (6, 10, *more, *ends, 355, 400, 450, 500)
+    table = vars(fit_limits)[name]
+    assert tuple(table) == ends[ends.index(first) :][: len(table)]
+    for limit in zip_longest(*table.values()):
+        known = [x for x in limit if x is not None]
+        assert known == sorted(known)
 
 
 def test_clearance_classes_reject_unknown_names_and_bores():

@@ -150,6 +150,24 @@ def test_heat_made_by_bearings_and_meshes(monkeypatch, untyped):
     np.testing.assert_allclose(made[-1], loss, rtol=1e-12)
 
 
+def test_heat_network_matrices_by_hand():
+    """Two bearings and springs, with a housing and without."""
+    one = ThermalPaths(1.0, 2.0, OIL, through=0.5, inner_capacity=10, outer_capacity=20)
+    two = ThermalPaths(3.0, 4.0, OIL, inner_capacity=30, outer_capacity=40)
+    part = np.zeros((6, 6))
+    part[:2, :2] = [[1.5, -0.5], [-0.5, 2.5]]
+    part[range(2, 6), range(2, 6)] = [1.0, 1.0, 3.0, 4.0]
+    alone = HeatNetwork(293.15, [one, None, two])
+    np.testing.assert_allclose(alone.conductance(), part)
+    capacity = [10.0, 20.0, 1.0, 1.0, 30.0, 40.0]
+    np.testing.assert_allclose(alone.capacity(), capacity)
+    housed = HeatNetwork(293.15, [one, None, two], housing=6.0, housing_capacity=50.0)
+    aside = np.array([0.0, -2.0, 0.0, 0.0, 0.0, -4.0])
+    whole = np.block([[part, aside[:, None]], [aside[None], np.array([[12.0]])]])
+    np.testing.assert_allclose(housed.conductance(), whole)
+    np.testing.assert_allclose(housed.capacity(), [*capacity, 50.0])
+
+
 @pytest.mark.slow
 def test_balance_of_heat():
     """The heat that friction makes at the warm bearings flows off by the network."""

@@ -424,16 +424,6 @@ def test_steady_missing_power_by_hand():
         np.testing.assert_allclose(got, wanted, rtol=1e-9)
 
 
-@pytest.mark.slow
-def test_steady_rejects_few_places():
-    """With one place for each ball a loaded zone is not resolved."""
-    load = np.array([300.0, 0.0, 600.0, 0.0, 0.0, 0.0])
-    given = dict(speed=SPEED, free=FREE, places=12, throw=False)
-    found = skid.steady(MODEL, load, **given)
-    assert int(found.result) == Result.GRID_MISFIT
-    assert abs(float(found.imbalance)) > 1e-6
-
-
 def test_steady_without_load_path():
     load = jnp.array([0.0, 0.0, -120.0, 0.0, 0.0, 0.0])  # pulled apart
     with pytest.raises(SolveError):

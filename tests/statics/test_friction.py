@@ -115,6 +115,29 @@ def test_skfs_model_beside_skfs_constant_coefficients(name):
     assert 0.9 < ratio < 2.5, ratio
 
 
+@pytest.mark.parametrize("kind", friction_skf._TYPES)
+def test_skf_constants_of_a_type_are_alike(kind):
+    """No sign or power of ten of a series is off: each constant is within a few times
+    the median of its type, but for the strong effect of thin rings on S2."""
+    rows = np.array(list(friction_skf._TYPES[kind].series.values()))
+    assert (rows > 0).all()
+    apart = np.abs(np.log(rows / np.median(rows, axis=0)))
+    assert (apart[:, [0]] < np.log(2.0)).all() and (apart < np.log(40.0)).all()
+
+
+def test_skf_diameters_from_the_rolling_elements():
+    """Mean diameter and D - d [mm]: those given, else of the pitch circle and of the
+    size of an element."""
+    kind = friction_skf._TYPES[type(DEEP)]
+    assert kind.span is not None
+    mean, apart = friction_skf._diameters(DEEP, kind, None)
+    assert (mean, apart) == pytest.approx((38.5, kind.span * 7.94))
+    # Of a 6205, whose balls these are: 25 by 52 mm.
+    assert (mean, apart) == pytest.approx((38.5, 27.0), rel=0.1)
+    given = friction_skf._diameters(DEEP, kind, (0.025, 0.052))
+    assert tuple(map(float, given)) == pytest.approx((38.5, 27.0))
+
+
 @pytest.fixture(scope="module")
 def pair():
     """A preloaded pair under an axial load, with its friction and films."""

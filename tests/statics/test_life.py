@@ -524,6 +524,21 @@ def test_a_iso_matches_iso_281(balls_roll):
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
+@pytest.mark.parametrize("kappa", [1.2, 1.9])
+def test_a_iso_between_kappa_one_and_two(kappa):
+    """Formulas (33) and (39) of ISO 281 by hand: their exponents differ from those
+    below κ = 1, where the films are the same."""
+    balls, rollers = (
+        float(life_factor(kappa, jnp.asarray(0.3), kind, False))
+        for kind in (True, False)
+    )
+    film = kappa**-0.071739
+    rest = 1 - (2.5671 - 1.9987 * film) ** 0.83 * 0.3 ** (1 / 3)
+    assert balls == pytest.approx(0.1 * rest**-9.3, rel=1e-9)
+    rest = 1 - (1.5859 - 1.2348 * film) * 0.3**0.4
+    assert rollers == pytest.approx(0.1 * rest**-9.185, rel=1e-9)
+
+
 def test_viscosity_and_reliability_are_those_of_iso_281():
     def needed(turns):
         speed, pitch = jnp.asarray(turns * np.pi / 30), jnp.asarray(65e-3)
@@ -625,6 +640,22 @@ def test_equivalent_loads_are_those_of_the_tables():
         found = equivalent_load(bearing, load)
         np.testing.assert_allclose(found.dynamic, dynamic, rtol=1e-3)
         np.testing.assert_allclose(found.static, static, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "degrees, x1, y1, x2",
+    [(50, 1.37, 0.57, 0.73), (60, 1.9, 0.55, 0.92), (80, 5.86, 0.52, 2.43)],
+)
+def test_factors_of_thrust_ball_bearings(degrees, x1, y1, x2):
+    """ISO 281, table of thrust ball bearings in both directions; of one direction
+    those of the second pair hold for any load."""
+    single, axial = angular(degrees), jnp.asarray(1e3)
+    both = load_factors(bj.BearingSet.back_to_back(single, 0.03), axial)
+    np.testing.assert_allclose(both.dynamic, [[x1, y1], [x2, 1.0]], atol=0.006)
+    static = [2.3 * np.tan(np.deg2rad(degrees)), 1.0]
+    np.testing.assert_allclose(both.static, 2 * [static], rtol=1e-12)
+    one = load_factors(single, axial)
+    np.testing.assert_allclose(one.dynamic, 2 * [[x2, 1.0]], atol=0.006)
 
 
 def test_x_y_factors_match_catalogues_and_iso_tr_1281():
