@@ -143,6 +143,26 @@ def test_springs_by_hand():
         assert np.abs(state.moment[end]).max() < 1e-9
 
 
+def test_loads_of_meshing_shafts_balance():
+    """On each of two shafts the bearings bear the force of its wheel, without moment
+    about its place but for the torque."""
+    system = stage()
+    found = solve_system(system)
+    for mesh in found.power.meshes:
+        wheel = system.wheel(mesh.wheel)
+        shaft = wheel.shaft
+        on = [k for k, seat in enumerate(system.seats) if seat.shaft == shaft]
+        load, force = np.asarray(found.load)[on], np.asarray(mesh.force)
+        np.testing.assert_allclose(load[:, :3].sum(axis=0), force, rtol=1e-9)
+        axis = np.asarray(system.shaft(shaft).origin)
+        places = [axis + [0.0, 0.0, float(system.seats[k].position)] for k in on]
+        middle = axis + [0.0, 0.0, float(wheel.position)] + np.asarray(mesh.place)
+        arms = [place - middle for place in places]
+        moment = np.cross(arms, load[:, :3]).sum(axis=0)
+        moment += load[:, 3:].sum(axis=0)
+        np.testing.assert_allclose(moment[:2], 0.0, atol=1e-6)
+
+
 def test_weight_between_supports():
     """The line of a shaft of even weight: q L²/8 in the middle, 5 q L⁴/384 E I and the
     share of shear."""

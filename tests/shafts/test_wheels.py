@@ -1,5 +1,7 @@
 """Forces of gears and belts, speeds and torques of the shafts that they couple."""
 
+import dataclasses
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -143,6 +145,20 @@ def test_working_pitch_circles():
     with pytest.raises(ValueError, match="mm apart, their pitch circles touch at"):
         far = ShaftLine("out", [0.3], [0.06], origin=wider * 1.2)
         ShaftSystem([system.shafts[0], far], system.seats, system.drive, system.wheels)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"normal_module": 4.5e-3}, {"pressure_angle": 0.4}, {"helix_angle": 0.2}]
+    + [{"hand": "right"}],
+)
+def test_mesh_of_unlike_gears_is_rejected(change):
+    system = stage()
+    pinion, wheel = system.wheels
+    other = dataclasses.replace(wheel, **change)
+    (name,) = change
+    with pytest.raises(ValueError, match=f"`{name}` is .* of wheel and .* of pinion"):
+        ShaftSystem(system.shafts, system.seats, system.drive, [pinion, other])
 
 
 def test_losses():
