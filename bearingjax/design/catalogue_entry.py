@@ -8,6 +8,7 @@ names, and a table for each bearing under its designation, in the units of catal
 import dataclasses
 import functools
 import math
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from decimal import Decimal
@@ -19,6 +20,7 @@ from typing import Any, NamedTuple
 from .designation import Suffixes, compact, split_designation
 from .fit_limits import (
     CLEARANCE_CLASSES,
+    MOTOR_CLASS,
     ball_clearance,
     roller_clearance,
     self_aligning_clearance,
@@ -202,7 +204,21 @@ class CatalogueEntry:
         if self.type not in CLEARANCES:
             return None
         after = self.designation.rpartition("/")[2]
-        return after if after[:2] in CLEARANCE_CLASSES else "CN"
+        return after if after[:2] in (*CLEARANCE_CLASSES, MOTOR_CLASS) else "CN"
+
+    @property
+    def series(self) -> tuple[str, str]:
+        """Digits of the number before the bore code, and the letters after it.
+
+        ("62", "") of 6205/C3, ("222", "EK") of 22220 EK, ("2", "EC") of NU 205 EC;
+        of deep groove ball bearings up to 9 mm as of larger ones, ("618", "") of 688.
+        """
+        found = re.match(r"[A-Z]* ?(\d+) ?([A-Z]*)", self.designation)
+        assert found is not None
+        number, letters = found.groups()
+        small = self.type == "deep_groove_ball" and len(number) == 3
+        digits = number[:-1] if small else number[:-2]
+        return {"68": "618", "69": "619"}.get(digits, digits), letters
 
     @property
     def class_limits(self) -> Callable[..., Limits] | None:
@@ -222,8 +238,10 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
         designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Suffixes for
             seals, shields, cages and accuracy are accepted and listed in `notes` as
             having no effect; a clearance class (C2 to C5, with H, L, M or P for a
-            part of it) sets the clearance to the middle of its range; self-aligning
-            bearings with a tapered bore (K) have separate classes.
+            part of it; CM of motors; P63 is P6 and C3) sets the clearance to the
+            middle of its range; self-aligning bearings with a tapered bore (K) have
+            separate classes. HC5 sets the material of the balls; of stainless steel
+            (W 6205) no ratings are known.
 
     Raises:
         ValueError: If there is no such bearing; the message names similar ones.
@@ -242,7 +260,7 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
 
 def catalogue() -> tuple[CatalogueEntry, ...]:
     """Return all bearings of the catalogue, by type and in the order of the files."""
-    plain = Suffixes(None, ())
+    plain = Suffixes()
     seen: dict[str, CatalogueEntry] = {}
     for kind, key, changes, remarks in _names().values():
         if not remarks:
@@ -266,8 +284,9 @@ def _files() -> dict[str, dict[str, Any]]:
 def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
     """Return type, key, changed keys and notes of every compact name.
 
-    A bearing with `arrangements` has a name for each; the names in `also` are aliases.
-    Where letters denote contact angles, a size has all of them.
+    A bearing with `arrangements` has a name for each; the names in `also` are aliases,
+    and those of JIS of the series 618 and 619, 6805. Where letters denote contact
+    angles, a size has all of them.
     """
     found: dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]] = {}
     for kind, data in _files().items():
@@ -281,19 +300,38 @@ def _names() -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
                     other = other if ribs is None else f"{ribs} {other}"
                     remarks = (f"{other} is listed as {shown}",)
                     found.setdefault(compact(other), (kind, key, changes, remarks))
+                jis = re.fullmatch(r"61([89]\d\d)", key)
+                if jis and kind == "deep_groove_ball":
+                    remarks = (f"6{jis[1]} (JIS) is listed as {key}",)
+                    found.setdefault(f"6{jis[1]}", (kind, key, {}, remarks))
     for kind, data in _files().items():
-        for key, values in data["bearings"].items():
-            for letter, angle in data.get("letters", {}).items():
-                name = f"{key.split()[0]} {letter}"
-                changes = {"contact_angle": angle}
-                remarks = (f"{name}: {_OTHER_BALLS}",)
-                if values["letter"] == "B":
-                    found.setdefault(compact(name), (kind, key, changes, remarks))
+        if "letters" in data:
+            found = _angles(kind, data) | found
     return found
 
 
-def _entry(kind, key, changes, remarks, suffixes) -> CatalogueEntry:
-    data = _files()[kind]
+def _angles(kind, data) -> dict[str, tuple[str, str, dict[str, Any], tuple[str, ...]]]:
+    """Return names with every letter of a contact angle, as `_names`."""
+    found = {}
+    letters, bearings = data["letters"], data["bearings"]
+    listed = {(k.split()[0], letters[v["letter"]]): k for k, v in bearings.items()}
+    for size, _ in listed:
+        for letter, angle in letters.items():
+            name = f"{size} {letter}"
+            if letter.startswith("FAG "):
+                name = f"B{size} {letter[4:]}"
+            key, changes = listed.get((size, angle)), {}
+            note = f"{name} is listed as {key}, of the same contact angle"
+            if key is None:
+                key, changes = listed.get((size, 40)), {"contact_angle": angle}
+                note = f"{name}: {_OTHER_BALLS}"
+            if key is not None:
+                found[compact(name)] = kind, key, changes, (note,)
+    return found
+
+
+def _entry(kind, key, changes, remarks, suffixes: Suffixes) -> CatalogueEntry:
+    data, roles = _files()[kind], suffixes.roles
     values = data["bearings"][key]
     si: dict[str, Any] = {
         name: from_catalogue_unit(name, values[name]) if name in values else None
@@ -311,15 +349,29 @@ def _entry(kind, key, changes, remarks, suffixes) -> CatalogueEntry:
         sources["geometry"] = (
             f"balls and pitch circle of {key} (of that one: {sources['geometry']})"
         )
-        for name in (*_RATINGS, "mass"):
-            si[name] = None
         for name in ("outer_shoulder", "inner_shoulder"):
             design.pop(name)
     if "arrangement" in changes:
         shown = f"{changes['arrangement']} {key.partition(' ')[2]}"
     notes = [*remarks, *(f"{word}: no effect" for word in suffixes.without_effect)]
+    if "stainless" in roles:
+        shown = f"{roles['stainless']} {shown}"
+        sources["capacity"] = "not known for stainless steel; less than of other steel"
+        notes.append(f"{roles['stainless']}: of stainless steel, the inside of {key}")
+    if sources["capacity"].startswith("not known"):
+        si |= dict.fromkeys((*_RATINGS, "mass"))
+    if "ceramic" in roles:
+        shown = f"{shown}/HC5"
+        design |= {"material": "silicon_nitride", "ring_material": "steel"}
+        notes.append(f"{roles['ceramic']}: balls of silicon nitride, C as of steel")
     assumed = list(values.get("assumed", data.get("assumed", ())))
-    taper = suffixes.taper
+    taper, sleeve = roles.get("taper", ""), roles.get("sleeve")
+    if sleeve:
+        number = re.search(r"\d+", key)
+        if not taper or number is None or sleeve[-2:] != number[0][-2:]:
+            problem = "is no sleeve of it; one has its bore code and goes with K"
+            raise ValueError(f"{shown}: {sleeve} {problem}")
+        notes.append(f"{sleeve} (sleeve): no effect; give the shaft in [fit]")
     if kind in CLEARANCES:
         apart = " " if taper and shown[-1].isdigit() else ""
         shown, name = f"{shown}{apart}{taper}", suffixes.clearance or "CN"
@@ -334,9 +386,6 @@ def _entry(kind, key, changes, remarks, suffixes) -> CatalogueEntry:
         except ValueError as error:
             raise ValueError(f"{shown}/{name}: {error}") from error
         notes.append(note)
-    elif taper:
-        notes.append(f"{taper} (tapered bore): no effect")
-        taper = ""
     elif suffixes.clearance is not None:
         problem = f"{kind} has no classes of clearance here; leave the class out"
         raise ValueError(f"{shown}/{suffixes.clearance}: {problem}")
@@ -396,5 +445,6 @@ def class_clearance(
     assert find is not None
     low, high = find(name, bore)
     middle = from_catalogue_unit(CLEARANCE, Decimal(f"{0.5e6 * (low + high):.4g}"))
-    words = f"middle of class {name}, ISO 5753-1: {1e6 * low:.3g} to"
+    source = "makers of motors" if name == MOTOR_CLASS else "ISO 5753-1"
+    words = f"middle of class {name}, {source}: {1e6 * low:.3g} to"
     return middle, f"clearance: {words} {1e6 * high:.3g} µm, not mounted"

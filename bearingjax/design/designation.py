@@ -1,57 +1,76 @@
-"""Designations of bearings as printed in catalogues and on boxes: "6205-2RS1/C3"."""
+"""Designations of bearings as printed in catalogues and on boxes: "6205-2RS1/C3".
 
-import difflib
+The letters that makers add are data, in `suffixes.toml`.
+"""
+
+import functools
 import re
-from collections.abc import Iterable
-from typing import NamedTuple
+import tomllib
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any, NamedTuple
 
-from .fit_limits import CLEARANCE_CLASSES
+from .fit_limits import CLEARANCE_CLASSES, MOTOR_CLASS
 
 MAKERS = (
-    "SKF",
-    "FAG",
-    "INA",
-    "NSK",
-    "NTN",
-    "SNR",
-    "KOYO",
-    "TIMKEN",
-    "NACHI",
-    "URB",
-    "THK",
+    *("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "JTEKT", "TIMKEN", "NACHI"),
+    *("URB", "THK", "IKO", "RHP", "NKE", "NMB", "EZO", "ZKL", "ZWZ", "FBJ", "EPK"),
 )
-"""Manufacturer names that may precede a designation."""
+"""Manufacturer names that may stand before or after a designation."""
 
-# Suffixes of several makers that do not affect the calculation.
-_WITHOUT_EFFECT = {
-    "seals or shields": r"2?RS[RHL12]?\d?|2?RZ|2?ZZ?|LL[UBHX]|DDU?|VV|UU?",
-    "cage": r"TN[9HG]?|TNP|TVP2?B?|TVPB|TVH|TV|TB|T2X?|J[12]?|M[ABLPT]?[12]?|PH[AS]*|P"
-    r"|Y|L|W",
-    "accuracy or steel": r"P[654]X?|P0|PN|QE[456]|VA\d+|Q|QCL7C|A|XL",
-    "lubrication holes": r"W(?:20|26|33|64)|S",
-    "grease": r"HT\d*|LT\d*|WT|[MV]T\d+|LHT\d+|GJN",
-    "mounting": r"C[ABC]|G[ABC]?|U[ALO]|N[12]?|Z?NR",
-    "tapered bore": r"K(?:30)?",
-}
-# A class, and a part of its range unless the letter begins a grease suffix or, before
-# a digit, an accuracy suffix.
-_PART = r"(?:(?!L?HT|[LMV]T)[HLMP](?!\d))?"
-_CLEARANCE = rf"(?:{'|'.join(CLEARANCE_CLASSES)})(?!\d|X){_PART}"
+_LONGEST = 60
+"""Characters of the longest text that is taken for a designation."""
+
+# Latin letters typed on a Cyrillic keyboard, wide ones, dashes.
+_PLAIN = str.maketrans("АВСЕНКМОРТХУ‐‑–—−\xa0　", "ABCEHKMOPTXY-----  ")
+_PLAIN |= {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)}
+
+# A class, and a part of its range unless the letter begins something else, "C3LHT23".
+# The E of NSK after it tells the quality of motors.
+_CLASSES = "|".join((*CLEARANCE_CLASSES, MOTOR_CLASS))
+_CLEARANCE = re.compile(
+    rf"({_CLASSES})(?![\dX])([HLMP](?=-|$|[VW]T|GJ))?(E(?=-|$|NS|A[SV]))?"
+)
 
 
 class Suffixes(NamedTuple):
-    """Meaning of the suffixes of a designation.
+    """Meaning of the letters around the number of a designation.
 
     Attributes:
         clearance: Class of internal clearance, with the part of its range, "C3H", or
             `None` if none is named.
-        without_effect: Suffixes with their meaning, "2RS1 (seals or shields)".
-        taper: "K" or "K30" for a tapered bore, else "".
+        without_effect: Letters with their meaning, "2RS1 (seals or shields)".
+        roles: Letters that change the bearing, by what they change: "taper",
+            "sleeve", "ceramic", "stainless" (`suffixes.toml`).
     """
 
-    clearance: str | None
-    without_effect: tuple[str, ...]
-    taper: str = ""
+    clearance: str | None = None
+    without_effect: tuple[str, ...] = ()
+    roles: Mapping[str, str] = {}
+
+
+class _Letters(NamedTuple):
+    """Letters of one meaning, as `suffixes.toml` has them."""
+
+    pattern: re.Pattern[str]
+    meaning: str
+    role: str
+    types: tuple[str, ...]
+
+
+@functools.cache
+def _table(name: str) -> tuple[_Letters, ...]:
+    """Read the `suffixes` or the `prefixes`."""
+    text = (files("bearingjax.design") / "suffixes.toml").read_text(encoding="utf-8")
+    return tuple(
+        _Letters(
+            re.compile("|".join(one["forms"])),
+            one["meaning"],
+            one.get("role", ""),
+            tuple(one.get("types", ())),
+        )
+        for one in tomllib.loads(text)[name]
+    )
 
 
 def compact(text: str) -> str:
@@ -59,92 +78,167 @@ def compact(text: str) -> str:
     return re.sub(r"[\s./_-]+", "", text.upper())
 
 
-def split_designation(text: str, names: Iterable[str]) -> tuple[str, Suffixes]:
-    """Split a designation into its listed name and suffixes.
+def split_designation(
+    text: str, names: Mapping[str, tuple[Any, ...]]
+) -> tuple[str, Suffixes]:
+    """Split a designation into its listed name and the letters around it.
 
     Args:
         text: As written, such as "SKF 6205-2RS1/C3".
-        names: Known names, compact.
+        names: By known names, compact, what they name: type, key, changes, remarks.
 
     Raises:
-        ValueError: If it does not begin with a known name, or has suffixes whose
-            meaning is not known.
+        ValueError: If it has no known name, or letters whose meaning is not known, or
+            that contradict each other.
     """
-    if not compact(text):
+    plain = text.translate(_PLAIN)
+    # "ß" would become "SS", and other signs than these no separators.
+    known = re.fullmatch(r"[\w\s.,;:/+()\[\]*'\"-]*", plain) and plain.isascii()
+    plain = plain.upper() if known else ""
+    words = re.sub(r"[^A-Z0-9]+", "-", plain).strip("-")
+    if len(text) > _LONGEST or known and not words:
         raise ValueError(f'{text!r} is not a designation, such as "6205-2RS1/C3"')
-    names = tuple(names)
-    words = text.upper().split()
-    if len(words) > 1 and words[0] in MAKERS:
-        words = words[1:]
-    whole = " ".join(words)
-    squeezed = compact(whole)
-    # The longest first, "7205B" before "7205".
-    for name in sorted(names, key=len, reverse=True):
-        if squeezed.startswith(name) and not _goes_on(squeezed[len(name) :]):
-            return name, _suffixes(_after(whole, name), name, text)
-    raise ValueError(_unknown(text, squeezed, names))
+    makers = "|".join(MAKERS)
+    words = re.sub(rf"^({makers})-?(?=[A-Z0-9])|-({makers})$", "", words)
+    before: list[tuple[str, _Letters]] = []
+    while not (found := _listed(words, names)):
+        prefix = _prefix(words)
+        if prefix is None or prefix in before:
+            raise ValueError(_unknown(text, plain, names))
+        before.append(prefix)
+        words = words[len(prefix[0]) :].lstrip("-")
+    kind = names[found[0][0]][0]
+    if any(letters.types and kind not in letters.types for _, letters in before):
+        raise ValueError(_unknown(text, plain, names))
+    for name, rest in found:
+        if names[name][:3] != names[found[0][0]][:3]:
+            break  # letters of another bearing, such as an angle of A, AC
+        after = _split(rest, kind)
+        if after is not None:
+            return name, _meaning((*before, *after), text)
+    name, rest = found[0]
+    known = f"{_CLASSES.replace('|', ', ')}, seals, shields, cages, accuracy"
+    problem = f"has letters after {name} that are not known: {_culprit(rest, kind)!r}"
+    raise ValueError(f"{text!r} {problem} (known are {known})")
 
 
-def _goes_on(rest: str) -> bool:
-    """Whether the rest continues the number of a name: 62055 is not 6205."""
-    return bool(re.match(r"\d(?!RS|RZ|Z)", rest))
+def _listed(words: str, names: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return the names with which a text begins, the longest first, and the rests.
 
-
-def _after(whole: str, name: str) -> str:
-    """Return the text that follows a compact name in a non-compact designation."""
-    kept = iter(name)
-    wanted = next(kept)
-    for place, letter in enumerate(whole):
-        if letter == wanted:
-            wanted = next(kept, "")
-            if not wanted:
-                return whole[place + 1 :]
-    return ""
-
-
-def _suffixes(rest: str, name: str, text: str) -> Suffixes:
-    clearance, idle, taper = None, [], ""
-    for word in re.split(r"[\s./_-]+", rest):
-        while word:
-            found = re.match(_CLEARANCE, word)
-            if found:
-                if clearance not in (None, found[0]):
-                    problem = f"names two classes of clearance, {clearance} and"
-                    raise ValueError(f"{text!r} {problem} {found[0]}")
-                clearance = found[0]
-                word = word[found.end() :]
-                continue
-            taken, meaning = _idle(word)
-            if not taken:
-                known = (
-                    f"{', '.join(CLEARANCE_CLASSES)}, seals, shields, cages, accuracy"
-                )
-                problem = f"has letters after {name} that are not known: {word!r}"
-                raise ValueError(f"{text!r} {problem} (known are {known})")
-            if meaning == "tapered bore":
-                taper = taken
-            else:
-                idle.append(f"{taken} ({meaning})")
-            word = word[len(taken) :]
-    return Suffixes(clearance, tuple(idle), taper)
-
-
-def _idle(word: str) -> tuple[str, str]:
-    """Return the longest suffix without effect with which a word begins."""
-    best, meaning = "", ""
-    for kind, pattern in _WITHOUT_EFFECT.items():
-        found = re.match(pattern, word)
-        # A regular expression takes the first alternative, not the longest.
-        for length in range(len(word), len(best), -1):
-            if found and re.fullmatch(pattern, word[:length]):
-                best, meaning = word[:length], kind
+    Separators may stand between letters and digits: 62/22 is not 6222, nor 7205 A-C a
+    7205 AC.
+    """
+    found, name = [], ""
+    for place, sign in enumerate(words):
+        if sign == "-":
+            if words[place - 1].isdigit() == words[place + 1].isdigit():
                 break
-    return best, meaning
+            continue
+        name += sign
+        rest = words[place + 1 :]
+        # Another digit would belong to the number, but for that of 62052RS.
+        if name in names and not re.match(r"(?!2[A-Z])\d", rest):
+            found.append((name, rest))
+    return found[::-1]
 
 
-def _unknown(text: str, squeezed: str, names: tuple[str, ...]) -> str:
-    begun = [name for name in names if name.startswith(squeezed)]
-    near = begun or difflib.get_close_matches(squeezed, names, 4, 0.7)
-    hint = f"; near it: {', '.join(sorted(near)[:6])}" if near else ""
+def _prefix(words: str) -> tuple[str, _Letters] | None:
+    """Return the longest prefix of a text, and what it means."""
+    for length in (3, 2, 1):
+        for letters in _table("prefixes"):
+            if letters.pattern.fullmatch(words[:length]):
+                return words[:length], letters
+    return None
+
+
+@functools.lru_cache(maxsize=1024)
+def _split(rest: str, kind: str) -> tuple[tuple[str, _Letters | None], ...] | None:
+    """Split what follows a name into known letters, the longest first.
+
+    Returns:
+        Letters and what they mean, `None` of a class of clearance; `None` if letters
+        are left over.
+    """
+    if not rest:
+        return ()
+    if rest[0] == "-":
+        return _split(rest[1:], kind)
+    found = _CLEARANCE.match(rest)
+    if found and (tail := _split(rest[found.end() :], kind)) is not None:
+        return ((found[0], None), *tail)
+    for length in range(min(len(rest), 10), 0, -1):
+        for letters in _table("suffixes"):
+            if letters.types and kind not in letters.types:
+                continue
+            match = letters.pattern.match(rest)
+            if letters.pattern.fullmatch(rest, 0, length) or (
+                match and match.end() == length
+            ):
+                tail = _split(rest[length:], kind)
+                if tail is not None:
+                    return ((rest[:length], letters), *tail)
+    return None
+
+
+def _culprit(rest: str, kind: str) -> str:
+    """Return the first word of a text that is not known."""
+    words = rest.strip("-").split("-")
+    for place, word in enumerate(words):
+        pairs = words[max(place - 1, 0) : place + 1], words[place : place + 2]
+        if all(_split("-".join(w), kind) is None for w in ([word], *pairs)):
+            return word
+    return "-".join(words)
+
+
+def _meaning(parts: tuple[tuple[str, _Letters | None], ...], text: str) -> Suffixes:
+    clearance, idle, roles = None, {}, {}
+    for word, letters in parts:
+        word = word.replace("-", "")
+        role = letters.role if letters else ""
+        if letters is None or role == "accuracy and clearance":
+            found = _CLEARANCE.match(f"C{word[2]}" if letters else word)
+            assert found is not None
+            named = found[1] + (found[2] or "")
+            if clearance not in (None, named):
+                problem = f"names two classes of clearance, {clearance} and {named}"
+                raise ValueError(f"{text!r} {problem}")
+            clearance = named
+            if found[3]:
+                idle["E (quality of motors)"] = None
+        if role in ("", "accuracy and clearance") and letters:
+            idle[f"{word} ({letters.meaning})"] = None
+        elif role:
+            if roles.get(role, word) != word:
+                problem = f"names {roles[role]} and {word}, which exclude each other"
+                raise ValueError(f"{text!r} {problem}")
+            roles[role] = word
+    return Suffixes(clearance, tuple(idle), roles)
+
+
+def _unknown(text: str, plain: str, names: Mapping[str, Any]) -> str:
+    squeezed = re.sub(r"[^A-Z0-9]+", "", plain)
+    words = f"{text!r} is not a bearing of the catalogue"
+    bore = re.search(r"(?<!\d)\d\d\d?/(\d\d)(?!\d)", plain)
+    if bore:
+        words += f" (/{bore[1]} is a bore of {bore[1]} mm, part of the number)"
+        squeezed = ""
+    begun = [name for name in names if squeezed and name.startswith(squeezed)]
+    near = sorted(begun, key=len) or _mistyped(squeezed, names)
+    hint = f"; near it: {', '.join(near[:6])}" if near else ""
     cure = "; of an unlisted one `bearingjax new --type …` estimates the inside"
-    return f"{text!r} is not a bearing of the catalogue{hint}{cure}"
+    return f"{words}{hint}{cure}"
+
+
+def _mistyped(squeezed: str, names: Mapping[str, Any]) -> list[str]:
+    """Return names one mistake away: two signs swapped; one other, more or less."""
+    cuts = [(squeezed[:k], squeezed[k:]) for k in range(len(squeezed) + 1)]
+    swapped = {a + b[1] + b[0] + b[2:] for a, b in cuts if len(b) > 1}
+    close = {a + b[1:] for a, b in cuts if b}
+    for sign in "ABCEJKNPQRUX0123456789":
+        close |= {a + sign + b for a, b in cuts} | {a + sign + b[1:] for a, b in cuts}
+    found = sorted((close - swapped) & set(names))
+    digits = re.sub(r"\D", "", squeezed)
+    # First those of as many signs or the same digits.
+    length = len(squeezed)
+    found.sort(key=lambda n: (re.sub(r"\D", "", n) != digits) + (len(n) != length))
+    return [*sorted(swapped & set(names)), *found]

@@ -57,6 +57,9 @@ def _below(owner, what, diameter, ends, lower, least=0):
 CLEARANCE_CLASSES = ("C2", "CN", "C3", "C4", "C5")
 """Names of the classes of radial internal clearance, the smallest first."""
 
+MOTOR_CLASS = "CM"
+"""Class of deep groove ball bearings of motors, narrower than CN."""
+
 CLEARANCE_PARTS = ("", "H", "L", "M", "P")
 """Letters after a class: upper half of its range, lower half, middle half, and upper
 half with the lower half of the next class.
@@ -90,6 +93,7 @@ _BALLS = {
     450: (3, 80, 60, 170, 150, 270, 250, 380, 350, 510),
     500: (3, 90, 70, 190, 170, 300, 280, 420, 390, 570),
 }
+_MOTOR_BALLS = {18: (4, 11), 30: (5, 12), 50: (9, 17), 80: (12, 22)}
 _CYLINDERS = {
     24: (0, 25, 20, 45, 35, 60, 50, 75, 65, 90),
     30: (0, 25, 20, 45, 35, 60, 50, 75, 70, 95),
@@ -234,14 +238,19 @@ def ball_clearance(name: str, bore: Any) -> Limits:
 
     Args:
         name: One of `CLEARANCE_CLASSES`, here and below also with `CLEARANCE_PARTS`
-            after it; C4 and C5 only above a bore of 6 mm.
+            after it; C4 and C5 only above a bore of 6 mm. `MOTOR_CLASS` from 10 mm to
+            80 mm.
         bore: Nominal bore diameter, above 2.5 mm up to 0.5 m [m].
 
     Raises:
         ValueError: If there is no such class, or not of that bore.
 
-    Source: ISO 5753-1 (2009), as the catalogue of NTN prints it.
+    Source: ISO 5753-1 (2009), as the catalogue of NTN prints it. CM: as Mitsubishi
+        prints it for the bearings of its motors; of 10 mm NSK.
     """
+    if name == MOTOR_CLASS:
+        number = size_range("ball_clearance", "bore", bore, tuple(_MOTOR_BALLS), 9.9)
+        return Limits(*(_MICRON * x for x in list(_MOTOR_BALLS.values())[number]))
     return _clearance("ball_clearance", name, bore, _BALLS, 2.5)
 
 

@@ -26,6 +26,7 @@ from .bearing import (
 )
 from .bearing_set import BearingSet, shares_rings
 from .logarithmic import FujiwaraKawase, JohnsGohar, Logarithmic, Lundberg
+from .material import MATERIALS
 from .profile import CircularCrown, CrownedEnds, Straight
 from .rib import Rib, Ribs
 from .tabulated import Tabulated
@@ -85,7 +86,7 @@ def bearing_of(design: Mapping[str, Any]) -> AbstractBearing | BearingSet:
         design: `type`, a key of `ROLLERS` or `BALLS`, and the fields of that class in
             SI. Of rollers, `roller_profile` holds the `type` of a profile and its
             fields; ribs are the `ribs` by name, or the `rib` of an `arrangement` with
-            its `axial_internal_clearance`.
+            its `axial_internal_clearance`; materials may be names of `MATERIALS`.
 
     Returns:
         The bearing, or the set of both rows of one whose rows share rings.
@@ -96,6 +97,9 @@ def bearing_of(design: Mapping[str, Any]) -> AbstractBearing | BearingSet:
     """
     values = dict(design)
     kind = values.pop("type")
+    for key in {"material", "ring_material"} & set(values):
+        if isinstance(values[key], str):
+            values[key] = MATERIALS[values[key]]()
     if kind in BALLS:
         return both_rows(BALLS[kind](**values))
     profile = dict(values.pop("roller_profile", {"type": "straight"}))

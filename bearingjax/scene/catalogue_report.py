@@ -20,7 +20,27 @@ _SHARE = 0.1
 """Load of a new scene over the dynamic capacity."""
 
 _SPEED = 1500.0
-"""Speed of a new scene, or half of the reference speed if that is less [rpm]."""
+"""Speed of a new scene, or half of the reference or limiting speed if that is less
+[rpm]."""
+
+_SPEED_FACTORS = {
+    "deep_groove_ball": 480e3,
+    "angular_contact_ball": 285e3,
+    "four_point_ball": 265e3,
+    "self_aligning_ball": 425e3,
+    "thrust_ball": 72e3,
+    "cylindrical_roller": 240e3,
+    "needle_roller": 205e3,
+    "tapered_roller": 163e3,
+    "spherical_roller": 148e3,
+    "toroidal_roller": 192e3,
+    "spherical_thrust_roller": 127e3,
+    "cylindrical_thrust_roller": 46e3,
+    "crossed_roller": 37e3,
+}
+"""Speed times mean diameter of a bearing whose speeds are not known [rpm mm]: half of
+the least that the catalogue has of the type, of crossed rollers half of what THK allows
+with grease."""
 
 _DIRT = 'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like'
 
@@ -344,9 +364,10 @@ def _row(entry: CatalogueEntry) -> Any:
 
 
 def _speed(entry: CatalogueEntry) -> str:
-    known = entry.reference_speed
-    speed = _SPEED if known is None else min(_SPEED, 0.5 * _rpm(known))
-    return f"{_rounded(speed):g} rpm"
+    known = entry.reference_speed or entry.limiting_speed
+    mean = 0.5e3 * (entry.bore + entry.outside_diameter)
+    most = 0.5 * _rpm(known) if known else _SPEED_FACTORS[entry.type] / mean
+    return f"{_rounded(min(_SPEED, most)):g} rpm"
 
 
 def _rough_capacity(ball) -> float:
