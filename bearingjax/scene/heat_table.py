@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..shafts import BearingOil, HeatNetwork, ThermalPaths
-from ..statics.friction_skf import skf_series
+from ..statics.friction_skf import skf_series, skf_series_of
 from ..statics.reference_speed import heat_area
-from .oil_table import Oil, series_of
+from .oil_table import Oil
 from .read import Scene
 from .schema import Keys, read_keys, scene_key
 from .table import Table
@@ -110,7 +110,7 @@ def bearing_oil(scene: Scene, oil: Oil, temperature: Any = None) -> BearingOil:
     known, series, diameters = skf_series(scene.element.bearing), None, None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
-        series = series_of(entry.designation, known)
+        series = skf_series_of(entry)
         diameters = entry.bore, entry.outside_diameter
     return BearingOil(
         oil.lubricant, temperature, oil.supply, bool(known), series, diameters

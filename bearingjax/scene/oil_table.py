@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import re
 from typing import Any, NamedTuple
 
 import jax
@@ -14,7 +13,12 @@ from ..numerics.programs import program
 from ..numerics.types import as_array
 from ..statics.contact_films import Films, films
 from ..statics.friction import Friction, friction_torque
-from ..statics.friction_skf import SkfFriction, skf_friction_torque, skf_series
+from ..statics.friction_skf import (
+    SkfFriction,
+    skf_friction_torque,
+    skf_series,
+    skf_series_of,
+)
 from ..statics.solution import Solution
 from .catalogue_keys import FromCatalogue
 from .files import plain
@@ -88,35 +92,11 @@ def oil_facts(
     series, diameters = None, None
     if catalogue is not None:
         entry = catalogue.entry
-        series = series_of(entry.designation, skf_series(solution.element.bearing))
+        series = skf_series_of(entry)
         sizes = entry.bore, entry.outside_diameter
         diameters = tuple(as_array(size, float) for size in sizes)
     known = oil.supply, rough, series, diameters
     return jax.device_get(_facts(numbers, oil.lubricant, temperature, *known))
-
-
-def series_of(designation: str, known: tuple[str, ...]) -> str | None:
-    """Return the SKF series of a designation, such as 62 of 6205.
-
-    Args:
-        designation: Such as "6205-2RS1/C3", "NU 2205 EC" or "7208 BE".
-        known: Known series, from `skf_series`.
-
-    Returns:
-        One of the known series, or `None`.
-    """
-    text = designation.replace(" ", "").upper()
-    found = re.search(r"\d+", text)
-    if found is None:
-        return None
-    after = text[found.end() :]
-    # The last two digits are the bore code, in small sizes such as 608 the last one.
-    for bore in (2, 1):
-        for suffix in ("AC", "B", ""):
-            name = found[0][:-bore] + suffix
-            if after.startswith(suffix) and name in known:
-                return name
-    return None
 
 
 def _turning(solution):
@@ -172,7 +152,7 @@ def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
     if facts.skf is not None:
         skf = facts.skf
         lines.append(
-            f"friction torque (SKF, series {skf.series}) {1e3 * float(skf.torque):.4g}"
+            f"friction torque (SKF, {series_words(skf)}) {1e3 * float(skf.torque):.4g}"
             f" N mm (rolling {1e3 * skf.rolling_torque.sum():.4g}, sliding"
             f" {1e3 * skf.sliding_torque.sum():.4g}); {float(skf.power):.4g} W"
         )
@@ -190,6 +170,12 @@ def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
     return lines
 
 
+def series_words(skf: SkfFriction) -> str:
+    """Tell whose constants of SKF's table a friction torque has."""
+    assumed = ", assumed, as no designation tells it" if skf.assumed else ""
+    return f"series {skf.series}{assumed}"
+
+
 def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     """Return friction and films as plain numbers, in SI; empty at rest.
 
@@ -200,7 +186,8 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];
         both for types with known constants;
         friction_skf, for types covered by SKF's model: torque [N m], rolling, sliding
-        (row) [N m], power [W], series of the constants used;
+        (row) [N m], power [W], series of the constants used, assumed: whether that
+        is an assumption;
         film: central, minimum [m], entrainment [m/s] and with a roughness ratio, each
         (element, contact), null where no load is carried. Contacts as in
         `contact_load` for balls and in `roller_load` for rollers.
@@ -236,4 +223,5 @@ def _skf_as_dict(skf):
         "sliding": skf.sliding_torque,
         "power": skf.power,
         "series": skf.series,
+        "assumed": skf.assumed,
     }

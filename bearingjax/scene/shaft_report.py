@@ -6,7 +6,7 @@ import numpy as np
 
 from ..numerics.units import shown_count
 from .life_report import life_number, life_section
-from .oil_table import oil_report
+from .oil_table import oil_report, series_words
 from .report import fits_section
 from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .shaft_run import ShaftRun, bearing_loss
@@ -167,7 +167,13 @@ def _bearings(run: ShaftRun) -> Section:
     clearance = [bearing.clearance for bearing in run.bearings]
     if any(value is not None for value in clearance):
         columns.append(Column("clearance", clearance, "m", ".1f"))
-    return [Grid(columns, "load of the shaft on the inner ring; axial along its shaft")]
+    told = [
+        f"friction of {b.name}: {series_words(b.oil.skf)}"
+        for b in run.bearings
+        if b.oil is not None and b.oil.skf is not None and b.oil.skf.assumed
+    ]
+    words = "load of the shaft on the inner ring; axial along its shaft"
+    return [Grid(columns, words), *told]
 
 
 def _temperatures(run: ShaftRun) -> Section:

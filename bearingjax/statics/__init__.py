@@ -82,6 +82,7 @@ from .friction import friction_torque as friction_torque
 from .friction_skf import SkfFriction as SkfFriction
 from .friction_skf import skf_friction_torque as skf_friction_torque
 from .friction_skf import skf_series as skf_series
+from .friction_skf import skf_series_of as skf_series_of
 from .installed import Installed as Installed
 from .life import LIFE_OUTPUTS as LIFE_OUTPUTS
 from .life import Life as Life

@@ -27,7 +27,9 @@ from ..design import (
     ToroidalRollerBearing,
     rows_of,
 )
+from ..design.catalogue_entry import CatalogueEntry
 from ..design.checks import check
+from ..design.keywords import BALLS, ROLLERS
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .friction import check_call, unit_loads, units_of
@@ -50,17 +52,19 @@ class _Type(NamedTuple):
     """A type of bearing.
 
     Attributes:
-        series: Constants by series; the first applies to those not named.
+        series: Constants by series; the first applies where the series is not known.
         kz: K_z of the type.
         span: D - d over the diameter of a rolling element, where d and D are unknown;
             `None`: they must be known.
         film: Its own coefficient in a film, or `None`.
+        others: Row that the table has for all series without one of their own.
     """
 
     series: dict[str, tuple[float, ...]]
     kz: float
     span: float | None
     film: float | None = None
+    others: str | None = None
 
 
 def _by_name(**rows):
@@ -98,8 +102,8 @@ _SELF_ALIGNING = {
     "130": (2.39e-7, 5.81, 1.10e-12, 7.25e-3, 7.98, 1.10e-12),
     "139": (2.44e-7, 7.96, 5.63e-13, 4.51e-3, 12.11, 5.63e-13),
 }
-# R1, S1.
-_THRUST = {"511": (1.03e-6, 1.6e-2)}
+# R1, S1; of all series.
+_THRUST = {"51": (1.03e-6, 1.6e-2)}
 # R1, S1, S2.
 _CYLINDRICAL = _by_name(
     s2_3=(1.09e-6, 0.16, 0.0015),
@@ -127,7 +131,7 @@ _TAPERED = {
 }
 # R1 to R4, S1 to S4; E: with the rollers of the series E.
 _SPHERICAL = _by_name(
-    s213_222E=(1.6e-6, 5.84, 2.81e-6, 5.8, 3.62e-3, 508.0, 8.8e-3, 117.0),
+    s213E_222E=(1.6e-6, 5.84, 2.81e-6, 5.8, 3.62e-3, 508.0, 8.8e-3, 117.0),
     s222=(2.0e-6, 5.54, 2.92e-6, 5.5, 5.10e-3, 414.0, 9.7e-3, 100.0),
     s223=(1.7e-6, 4.1, 3.13e-6, 4.05, 6.92e-3, 124.0, 1.7e-2, 41.0),
     s223E=(1.6e-6, 4.1, 3.14e-6, 4.05, 6.23e-3, 124.0, 1.7e-2, 41.0),
@@ -156,8 +160,8 @@ _TOROIDAL = {
     "60": (1.83e-6, 5.22e-6, 1.17e-3, 2.8e-2),
     "69": (1.85e-6, 4.53e-6, 1.61e-3, 2.3e-2),
 }
-# R1, S1.
-_CYLINDRICAL_THRUST = {"811": (2.25e-6, 0.154)}
+# R1, S1; of all series.
+_CYLINDRICAL_THRUST = {"81": (2.25e-6, 0.154)}
 # R1 to R4, S1 to S5.
 _SPHERICAL_THRUST = {
     "292": (1.32e-6, 1.57, 1.97e-6, 3.21, 4.53e-3, 0.26, 0.02, 0.10, 0.60),
@@ -168,15 +172,15 @@ _SPHERICAL_THRUST = {
 }
 _TYPES: dict[type, _Type] = {
     DeepGrooveBallBearing: _Type(_DEEP_GROOVE, 3.1, 3.4),
-    AngularContactBallBearing: _Type(_ANGULAR, 4.4, 3.4),
-    FourPointBallBearing: _Type(_FOUR_POINT, 3.1, 3.2),
+    AngularContactBallBearing: _Type(_ANGULAR, 4.4, 3.4, others="other"),
+    FourPointBallBearing: _Type(_FOUR_POINT, 3.1, 3.2, others="QJ"),
     SelfAligningBallRow: _Type(_SELF_ALIGNING, 4.8, 3.8),
-    ThrustBallBearing: _Type(_THRUST, 3.8, 2.6),
+    ThrustBallBearing: _Type(_THRUST, 3.8, 2.6, others="51"),
     CylindricalRollerBearing: _Type(_CYLINDRICAL, 5.1, 3.9, 0.02),
-    TaperedRollerBearing: _Type(_TAPERED, 6.0, 4.8, 0.002),
+    TaperedRollerBearing: _Type(_TAPERED, 6.0, 4.8, 0.002, "other"),
     SphericalRollerRow: _Type(_SPHERICAL, 5.5, 3.8),
     ToroidalRollerBearing: _Type(_TOROIDAL, 5.3, None),
-    CylindricalThrustRollerBearing: _Type(_CYLINDRICAL_THRUST, 4.4, 3.9),
+    CylindricalThrustRollerBearing: _Type(_CYLINDRICAL_THRUST, 4.4, 3.9, others="81"),
     SphericalThrustRollerBearing: _Type(_SPHERICAL_THRUST, 5.6, None),
 }
 
@@ -190,12 +194,15 @@ class SkfFriction(eqx.Module):
         sliding_torque: M_sl of each row (row,) [N m].
         speed: Speed of the inner ring less that of the outer [rad/s].
         series: The row of SKF's table whose constants these are. Static.
+        assumed: Whether the row is an assumption, the first of several of the type, as
+            the series was not given. Static.
     """
 
     rolling_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))
     sliding_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))
     speed: Scalar = eqx.field(metadata=unit("rad/s"))
     series: str = eqx.field(static=True)
+    assumed: bool = eqx.field(static=True, default=False)
 
     @property
     def torque(self) -> Any:
@@ -219,6 +226,26 @@ def skf_series(bearing: Any) -> tuple[str, ...]:
     """
     kind = _TYPES.get(type(rows_of(bearing)[0].bearing))
     return () if kind is None else tuple(kind.series)
+
+
+def skf_series_of(entry: CatalogueEntry) -> str | None:
+    """Row of SKF's table for a bearing of the catalogue, for `skf_friction_torque`.
+
+    Args:
+        entry: The bearing.
+
+    Returns:
+        One of `skf_series`, such as "62" of 6205, "222E" of 22208 E, "other" of 7205 C;
+        `None` of a type that the model does not have, or a series without a row.
+    """
+    kind = _TYPES.get({**BALLS, **ROLLERS}[entry.type])
+    if kind is None:
+        return None
+    digits, letters = entry.series
+    for design in ("AC", "B", "E"):
+        if letters.startswith(design) and digits + design in kind.series:
+            return digits + design
+    return digits if digits in kind.series else kind.others
 
 
 def skf_friction_torque(
@@ -245,7 +272,8 @@ def skf_friction_torque(
             upright bath has no drag in it.
         static_capacity: C0 of one row [N], for the load angle of deep groove bearings;
             `None`: ISO 76 from geometry.
-        series: Whose constants, one of `skf_series`; `None`: the first of them.
+        series: Whose constants, one of `skf_series`, of a bearing of the catalogue that
+            of `skf_series_of`; `None`: the first of them, which is said (`assumed`).
         diameters: Bore and outside diameter [m]; `None`: the pitch diameter is taken as
             their mean, and their difference from the size of the rolling elements.
             Toroidal and spherical thrust roller bearings need them.
@@ -273,6 +301,7 @@ def skf_friction_torque(
             f" be one of {', '.join(one.__name__ for one in _TYPES)}."
         )
     names = tuple(kind.series)
+    assumed = series is None and len(kind.series) > 1
     series = names[0] if series is None else series
     _one_of("series", series, names)
     _one_of("oil", oil, OILS)
@@ -296,7 +325,7 @@ def skf_friction_torque(
         parts.append(_variables(first, *given))
     of_rolling, of_sliding = (jnp.stack(v) for v in zip(*parts, strict=True))
     torques = 1e-3 * rolling * of_rolling, 1e-3 * sliding * of_sliding
-    return SkfFriction(*torques, speed, series)
+    return SkfFriction(*torques, speed, series, assumed)
 
 
 def _variables(bearing, row, d, radial, axial, rpm, capacity, flow=0.0):

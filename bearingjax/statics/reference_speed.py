@@ -1,7 +1,6 @@
 """Thermal reference speed: where friction is the heat that a bearing gives off."""
 
 import math
-import re
 from typing import Any
 
 from ..design.catalogue_entry import CatalogueEntry
@@ -130,16 +129,15 @@ def reference_speed(
     return x**3 * math.pi / 30.0
 
 
-_SERIES = {
-    "deep_groove_ball": r"^6([23])\d\d$",
-    "angular_contact_ball": r"^7(2)\d\d ",
-    "cylindrical_roller": r"^[A-Z]+ (2[23]|2)\d\d ",
-    "spherical_roller": r"^2([2-4][0-3])\d\d ",
-    "tapered_roller": r"^3([0-3][0-3]|[02])\d\d ",
-    "cylindrical_thrust_roller": r"^8(1[12])\d\d ",
-    "spherical_thrust_roller": r"^2(9[2-4])\d\d ",
-}
-"""Dimension series within a designation."""
+def _factors_of(entry: CatalogueEntry) -> tuple[float, float] | None:
+    """Factors f0r and f1r of a bearing of the catalogue, as `reference_factors`."""
+    if entry.type == "angular_contact_ball" and entry.design["contact_angle"] < 0.38:
+        return None  # those of the standard are from 22° to 45°
+    # The digit of the type is not of the dimension series: 222, 62; 2 of NU 205.
+    series, _ = entry.series
+    if entry.type != "cylindrical_roller":
+        series = series[1:]
+    return reference_factors(entry.type, series.zfill(2))
 
 
 def thermal_speed(entry: CatalogueEntry) -> float | None:
@@ -151,9 +149,8 @@ def thermal_speed(entry: CatalogueEntry) -> float | None:
     Returns:
         Speed (`reference_speed`); `None` without factors for its series or without C0.
     """
-    found = re.search(_SERIES.get(entry.type, "(?!)"), entry.designation)
-    factors = found and reference_factors(entry.type, found[1].zfill(2))
-    if not factors or entry.static_capacity is None:
+    factors = _factors_of(entry)
+    if factors is None or entry.static_capacity is None:
         return None
     d, outside = entry.bore, entry.outside_diameter
     thrust = entry.type.endswith("thrust_roller")

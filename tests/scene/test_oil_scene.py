@@ -69,8 +69,10 @@ def test_command_tells_friction_and_films(run, scene, tmp_path):
     sliding = (0.12 * dry + 0.02 * (1 - dry)) * 0.0015 * pitch * 2000
     assert skf["rolling"] == pytest.approx([1e-3 * rolling], rel=1e-6)
     assert skf["sliding"] == pytest.approx([1e-3 * sliding], rel=1e-6)
-    assert skf["series"] == "2"
-    assert f"(SKF, series 2) {rolling + sliding:.4g} N mm (rolling" in done.out
+    # No designation tells the series: the first row, and that is said.
+    assert skf["series"] == "2" and skf["assumed"] is True
+    words = "series 2, assumed, as no designation tells it"
+    assert f"(SKF, {words}) {rolling + sliding:.4g} N mm (rolling" in done.out
     assert "barus, grease, at 50 °C: 20 mPa s, 18 1/GPa, 880 kg/m³" in done.out
     # The film of the roller that bears most, on the inner raceway.
     film = numbers["film"]
@@ -90,30 +92,6 @@ def test_command_tells_friction_and_films(run, scene, tmp_path):
     # Without load there is no contact to have a film.
     free = int(np.argmin(load[:, 1]))
     assert load[free, 1] == 0 and film["minimum"][free][1] is None
-
-
-def test_series_of_designations():
-    from bearingjax.scene.oil_table import series_of
-
-    deep = ("62", "622", "60", "160", "618")
-    for name, series in {
-        "6205-2RS1/C3": "62",
-        "608": "60",
-        "16005": "160",
-        "61805": "618",
-        "62204": "622",
-        "6405": None,
-    }.items():
-        assert series_of(name, deep) == series
-    rolls = ("2", "22", "10")
-    assert [series_of(n, rolls) for n in ("NU 204 EC", "NJ 2205 EC", "NU 1008")] == [
-        "2",
-        "22",
-        "10",
-    ]
-    angular = ("other", "72B", "73AC")
-    names = {"7208 BE": "72B", "7308 ACCBM": "73AC", "7208 C": None, "QJ": None}
-    assert {name: series_of(name, angular) for name in names} == names
 
 
 def test_read_skid_with_supply_and_roughness():

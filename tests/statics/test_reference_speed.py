@@ -12,6 +12,7 @@ from bearingjax.statics import (
     reference_speed,
     thermal_speed,
 )
+from bearingjax.statics.reference_speed import _FACTORS, _factors_of
 
 RPM = 30.0 / np.pi
 
@@ -90,6 +91,21 @@ def test_speeds_of_the_catalogue():
     for name in ("NU 215", "NU 2205", "6205", "7205B", "30205", "81102"):
         assert thermal_speed(bj.catalogue_entry(name)) is not None
     for name in ("NU 305", "6005", "32010 X", "C 3052", "RB 25025", "QJ 211"):
+        assert thermal_speed(bj.catalogue_entry(name)) is None
+
+
+def test_every_series_with_factors_is_reached_by_an_entry():
+    """Also with a class of clearance, and where the number has no letters (33010)."""
+    reached = {
+        (e.type, *factors)
+        for e in bj.catalogue()
+        if (factors := _factors_of(e)) is not None
+    }
+    table = {(kind, *f) for kind, rows in _FACTORS.items() for f in rows.values()}
+    assert reached == table
+    for name in ("6205/C3", "625", "33010", "33110", "33205", "NU 2205 EC/C4"):
+        assert thermal_speed(bj.catalogue_entry(name)) is not None
+    for name in ("7205 C", "608", "16005", "NU 305 EC"):
         assert thermal_speed(bj.catalogue_entry(name)) is None
 
 
