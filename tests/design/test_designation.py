@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.design.catalogue_entry import CLEARANCES
+from bearingjax.design import fit_limits
+from bearingjax.design.catalogue_entry import CLEARANCES, class_limits
 
 LINES = Path(__file__).with_name("designations.txt").read_text("utf-8").splitlines()
 PRINTED = [[x.strip() for x in line.split("|")] for line in LINES if line[0] != "#"]
@@ -205,3 +206,33 @@ def test_series_of_jis_are_those_listed():
             text = f"6{entry.designation[2:]}"
             assert designated(text) == designated(f"NSK {text}") == entry.designation
     assert designated("6811") == designated("6921") == "-"  # 61811 is not listed
+
+
+@pytest.mark.parametrize("kind", CLEARANCES)
+@pytest.mark.parametrize("taper", ["", "K"])
+def test_clearances_of_every_listed_bore_are_those_of_its_range(kind, taper):
+    """Every row of a table is reached but those of bores larger or less than listed."""
+    find = class_limits(kind, taper)
+    bores = sorted({e.bore for e in ENTRIES if e.type == kind})
+    if find is None:
+        assert kind in ("deep_groove_ball", "cylindrical_roller", "needle_roller")
+        return
+    name, low, high = TABLES[kind]
+    rows = getattr(fit_limits, f"{name}_TAPERED" if taper else name)
+    reached = {next(end for end in rows if 1e3 * b <= end + 1e-9) for b in bores}
+    assert set(rows) - reached == {e for e in rows if not low <= e <= high}
+    for bore in (b for b in bores if not taper or b > 0.03):
+        limits = np.ravel([find(c, bore) for c in ("CN", "C3")])
+        end = next(end for end in rows if 1e3 * bore <= end + 1e-9)
+        np.testing.assert_allclose(1e6 * limits, rows[end][2:6], rtol=1e-9)
+
+
+TABLES = {
+    "deep_groove_ball": ("_BALLS", 6, 120),
+    "cylindrical_roller": ("_CYLINDERS", 24, 120),
+    "needle_roller": ("_CYLINDERS", 24, 120),
+    "self_aligning_ball": ("_SELF_ALIGNING", 10, 100),
+    "spherical_roller": ("_SPHERICAL", 30, 280),
+    "toroidal_roller": ("_TOROIDAL", 30, 280),
+}
+"""Clearances by type, and the ends of the ranges of the least and largest bore [mm]."""

@@ -2,6 +2,7 @@
 
 import json
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -92,6 +93,16 @@ def test_command_tells_friction_and_films(run, scene, tmp_path):
     # Without load there is no contact to have a film.
     free = int(np.argmin(load[:, 1]))
     assert load[free, 1] == 0 and film["minimum"][free][1] is None
+
+
+def test_series_words_tell_an_assumed_series():
+    from bearingjax.scene.oil_table import series_words
+    from bearingjax.statics import SkfFriction
+
+    one = jnp.ones(1)
+    made = [SkfFriction(one, one, one[0], "62", known) for known in (False, True)]
+    words = [series_words(friction) for friction in made]
+    assert words == ["series 62", "series 62, assumed, as no designation tells it"]
 
 
 def test_read_skid_with_supply_and_roughness():
