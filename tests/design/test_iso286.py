@@ -162,7 +162,15 @@ def test_bearing_limits_reject_sizes_out_of_range():
     "find, bore, published",
     [
         (ball_clearance, 18, (0, 9, 3, 18, 11, 25, 18, 33, 25, 45)),
+        (ball_clearance, 6, (0, 7, 2, 13, 8, 23)),
+        (ball_clearance, 10, (0, 7, 2, 13, 8, 23, 14, 29, 20, 37)),
         (ball_clearance, 24, (0, 10, 5, 20, 13, 28, 20, 36, 28, 48)),
+        (ball_clearance, 100, (1, 18, 12, 36, 30, 58, 53, 84, 75, 120)),
+        (ball_clearance, 120, (2, 20, 15, 41, 36, 66, 61, 97, 90, 140)),
+        (ball_clearance, 140, (2, 23, 18, 48, 41, 81, 71, 114, 105, 160)),
+        (ball_clearance, 160, (2, 23, 18, 53, 46, 91, 81, 130, 120, 180)),
+        (ball_clearance, 180, (2, 25, 20, 61, 53, 102, 91, 147, 135, 200)),
+        (ball_clearance, 200, (2, 30, 25, 71, 63, 117, 107, 163, 150, 230)),
         (ball_clearance, 25, (1, 11, 5, 20, 13, 28, 23, 41, 30, 53)),
         (ball_clearance, 40, (1, 11, 6, 20, 15, 33, 28, 46, 40, 64)),
         (ball_clearance, 50, (1, 11, 6, 23, 18, 36, 30, 51, 45, 73)),
@@ -228,6 +236,10 @@ def test_clearances_stand_at_the_bores_of_iso_5753_1(name):
     for limit in zip_longest(*table.values()):
         known = [x for x in limit if x is not None]
         assert known == sorted(known)
+    if "SPHERICAL" in name or "TOROIDAL" in name:
+        # Where a class ends the next one begins.
+        for limits in table.values():
+            assert limits[1:-1:2] == limits[2::2]
 
 
 def test_clearance_classes_reject_unknown_names_and_bores():

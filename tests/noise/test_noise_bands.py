@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from tolerances import DIFFERENCE, ROUNDING
@@ -19,7 +20,7 @@ from bearingjax.noise import (
     third_octave_bands,
     total_root_mean_square,
 )
-from bearingjax.noise.bands import LEAST_SHIFT, leakage
+from bearingjax.noise.bands import LEAST_SHIFT, _root, leakage
 from bearingjax.noise.warning import _total
 
 OCTAVES = (4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1e3, 2e3, 4e3, 8e3)
@@ -183,6 +184,13 @@ def test_warning_of_total_level_changed_by_window(turns, told, untyped):
     texts = list(_total(SimpleNamespace(mass=1.0), record, found))
     assert len(texts) == (told is not None)
     assert all(f"the total level is {told} that of the record" in t for t in texts)
+
+
+def test_root_of_a_silent_band():
+    """Nothing, with the derivative 0, not of infinity."""
+    value = jax.value_and_grad(_root)
+    assert tuple(map(float, value(jnp.asarray(0.0)))) == (0.0, 0.0)
+    assert tuple(map(float, value(jnp.asarray(4.0)))) == (2.0, 0.25)
 
 
 def test_derivatives_of_bands():

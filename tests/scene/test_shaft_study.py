@@ -324,3 +324,13 @@ def test_seat_on_a_shaft_of_another_size():
     settings = ["shaft.in.segments.0.outer_diameter=47 mm"]
     warnings = read_shafts(GEARS, settings).warnings
     assert any("6308 has a bore of 40 mm; at station" in text for text in warnings)
+
+
+def test_gravity_of_a_shaft_scene():
+    for setting, wanted in (
+        ("none", [0.0, 0.0, 0.0]),
+        ("y", [0.0, 9.80665, 0.0]),
+        ("-z", [0.0, 0.0, -9.80665]),
+    ):
+        system = read_shafts(GEARS, [f"system.gravity={setting}"]).system
+        np.testing.assert_allclose(system.gravity, wanted)

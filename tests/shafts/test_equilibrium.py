@@ -145,8 +145,12 @@ def test_springs_by_hand():
 
 def test_loads_of_meshing_shafts_balance():
     """On each of two shafts the bearings bear the force of its wheel, without moment
-    about its place but for the torque."""
-    system = stage()
+    about its place but for the torque; a floating one nothing along the shaft."""
+
+    def seats(name, shaft, position):
+        return springs(name, shaft, position, floating=name in "BD")
+
+    system = stage(seats)
     found = solve_system(system)
     for mesh in found.power.meshes:
         wheel = system.wheel(mesh.wheel)
@@ -161,6 +165,7 @@ def test_loads_of_meshing_shafts_balance():
         moment = np.cross(arms, load[:, :3]).sum(axis=0)
         moment += load[:, 3:].sum(axis=0)
         np.testing.assert_allclose(moment[:2], 0.0, atol=1e-6)
+    np.testing.assert_allclose(np.asarray(found.load)[[1, 3], 2], 0.0, atol=1e-6)
 
 
 def test_weight_between_supports():

@@ -168,6 +168,28 @@ def test_heat_network_matrices_by_hand():
     np.testing.assert_allclose(housed.capacity(), [*capacity, 50.0])
 
 
+def test_solve_heat_of_constant_losses(monkeypatch, untyped):
+    """What does not depend on temperature leaves by the network alone."""
+    made = jnp.asarray([5.0, 6.0, 7.0, 8.0, 3.0])
+    state = SimpleNamespace(result=jnp.asarray(0))
+
+    def evaluated(system, network, rise):
+        return made, jnp.zeros((5, 5)), state
+
+    monkeypatch.setattr(heat, "_evaluated", evaluated)
+    found = solve_heat(spindle(mounting=None), network())
+    rises = np.linalg.solve(np.asarray(network().conductance()), made)
+    for got, wanted in (
+        (found.inner_ring, 293.15 + rises[[0, 2]]),
+        (found.outer_ring, 293.15 + rises[[1, 3]]),
+        (found.housing, 293.15 + rises[4]),
+        (found.friction, [11.0, 15.0]),
+    ):
+        assert np.shape(got) == np.shape(wanted)
+        np.testing.assert_allclose(got, wanted, rtol=1e-8)
+    assert int(found.result) == 0 and found.solution is state
+
+
 @pytest.mark.slow
 def test_balance_of_heat():
     """The heat that friction makes at the warm bearings flows off by the network."""

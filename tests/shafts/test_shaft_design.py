@@ -90,6 +90,23 @@ def test_gradients(problem):
         np.testing.assert_array_less(np.abs(own[:, k] - wanted), DIFFERENCE * size)
 
 
+def test_lives_of_a_duty_by_hand():
+    """Miner's sum over the time in each case; the bearings' lives by Weibull, of slope
+    10/9, springs and unloaded bearings aside."""
+    damage = np.array([[1e-9, 0.0], [3e-9, 0.0]])  # 1/rev
+    speed = np.array([[100.0, 100.0], [-200.0, 200.0]])
+    turns = 3600 / (2 * np.pi)
+    found = bearing_hours(damage, speed, np.array([1.0, 3.0]))
+    used = turns * (0.25 * 1e-9 * 100 + 0.75 * 3e-9 * 200)
+    np.testing.assert_allclose(found, [1 / used, np.inf], rtol=1e-12)
+    used = turns * (0.5 * 1e-9 * 100 + 0.5 * 3e-9 * 200)
+    np.testing.assert_allclose(bearing_hours(damage, speed)[0], 1 / used, rtol=1e-12)
+    hours = np.array([2e4, 5e4, np.inf, 9e4])
+    wanted = np.sum(hours ** (-10 / 9)) ** -0.9
+    np.testing.assert_allclose(system_life(stage(ball), hours), wanted, rtol=1e-9)
+    assert system_life(stage(ball), np.full(4, np.inf)) == np.inf
+
+
 @pytest.mark.slow
 def test_measures(problem):
     """Are those of `solve_duty`, with the powers given one by one."""

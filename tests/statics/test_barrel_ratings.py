@@ -447,6 +447,11 @@ def test_friction_by_skf():
     assert r == pytest.approx(2.15e-6 * 140**2.39 * (4e5 + 2.86 * 12e5) ** 0.31)
     rib = 0.2 * 140**0.76 * (4e5 + 0.54 * 12e5) * np.exp(-1e-6 * 2e4**1.4 * 140)
     assert s == pytest.approx(0.04 * 140**0.89 * 16e5 + rib)
+    r, s = found("spherical thrust", "294E", 40.0, 120.0)
+    assert r == pytest.approx(1.25e-6 * 140**1.96 * (40 + 1.67 * 120) ** 0.54)
+    rib = 0.2 * 140**0.76 * (40 + 0.54 * 120) * np.exp(-1e-6 * 2e4**1.4 * 140)
+    both = 40 ** (5 / 3) + 0.21 * 120 ** (5 / 3)
+    assert s == pytest.approx(6.42e-3 * 140**-0.35 * both + rib)
 
 
 def test_skfs_model_beside_skfs_constant_coefficients():

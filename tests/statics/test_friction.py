@@ -127,6 +127,84 @@ def test_skf_constants_of_a_type_are_alike(kind):
     assert (apart[:, [0]] < np.log(2.0)).all() and (apart < np.log(40.0)).all()
 
 
+def test_skf_rolling_and_sliding_variables_by_hand():
+    """G_rr and G_sl of SKF's tables for the constants 2, 3, 5 ..., in mm and N."""
+    d, fr, fa, rpm, c0 = 40.0, 300.0, 200.0, 1500.0, 9e3
+    turning = rpm**2 * d**4
+    sine = np.sin(np.deg2rad(24.6 * (fa / c0) ** 0.24))
+    whole = np.sin(np.deg2rad(24.6))
+    cot = 0.4 * COT_TAPER * fa
+    aligning = bj.design.SelfAligningBallRow(
+        9, 0.0385, 0.00794, inner_osculation=0.53, row_offset=0.0045
+    )
+    thrust, third = bj.ThrustBallBearing(**BALLS), 1 / 3
+    tiny = (5.0, 3.0, 2e-12, 7.0, 11.0, 3e-12)
+    for bearing, row, axial, rolling, sliding in (
+        (
+            DEEP,
+            (2.0, 3.0, 5.0, 7.0),
+            fa,
+            2 * d**1.96 * (fr + 3 / sine * fa) ** 0.54,
+            5 * d**-0.145 * (fr**5 + 7 * d**1.5 / sine * fa**4) ** third,
+        ),
+        (
+            DEEP,
+            (2.0, 3.0, 5.0, 7.0),
+            0.0,
+            2 * d**1.96 * (fr + 3 / whole * 0.0) ** 0.54,
+            5 * d**-0.26 * fr ** (5 / 3),
+        ),
+        (
+            ANGULAR,
+            tiny,
+            fa,
+            5 * d**1.97 * (fr + 2e-12 * turning + 3 * fa) ** 0.54,
+            7 * d**0.26 * ((fr + 3e-12 * turning) ** (4 / 3) + 11 * fa ** (4 / 3)),
+        ),
+        (
+            aligning,
+            tiny,
+            fa,
+            5 * d**2 * (fr + 2e-12 * turning / d**0.5 + 3 * fa) ** 0.54,
+            7
+            * d**-0.12
+            * ((fr + 3e-12 * turning / d**0.5) ** (4 / 3) + 11 * fa ** (4 / 3)),
+        ),
+        (
+            thrust,
+            (2.0, 3.0),
+            fa,
+            2 * d**1.83 * fa**0.54,
+            3 * d**0.05 * fa ** (4 / 3),
+        ),
+        (
+            CYLINDER,
+            (2.0, 3.0, 5.0),
+            fa,
+            2 * d**2.41 * fr**0.31,
+            3 * d**0.9 * fa + 5 * d * fr,
+        ),
+        (
+            TAPER,
+            (2.0, 3.0, 5.0, 7.0),
+            fa,
+            2 * d**2.38 * (fr + 3 * cot) ** 0.31,
+            5 * d**0.82 * (fr + 7 * cot),
+        ),
+    ):
+        found = friction_skf._variables(bearing, row, d, fr, axial, rpm, c0)
+        np.testing.assert_allclose(found, [rolling, sliding], rtol=1e-9)
+
+
+def test_skf_series_of_a_bearing():
+    assert bj.statics.skf_series(ANGULAR) == ("other", "72B", "73B", "72AC", "73AC")
+    assert bj.statics.skf_series(bj.BearingSet.tandem(TAPER, 0.02))[:2] == (
+        "other",
+        "302",
+    )
+    assert bj.statics.skf_series(NEEDLE) == ()
+
+
 def test_skf_diameters_from_the_rolling_elements():
     """Mean diameter and D - d [mm]: those given, else of the pitch circle and of the
     size of an element."""

@@ -16,7 +16,12 @@ from bearingjax.statics import seat_warnings, speed_warnings, sweep_table
 from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
-from bearingjax.statics.warning_sizes import listed
+from bearingjax.statics.warning_sizes import (
+    idle_numbers,
+    idle_rows,
+    listed,
+    travel_error,
+)
 
 STILL = bj.Speed(inner=0.0)
 
@@ -168,6 +173,56 @@ def test_tilts_are_those_of_ring_against_ring(deep):
     for free, held in ((("gx", "gy"), 0.0), (("gx",), 4e-3), ((), 5e-3)):
         found = sizes(dataclasses.replace(s, free=("ux", "uy", "uz", *free)))
         assert float(found["prescribed_tilt"]) == pytest.approx(held / usual)
+
+
+def test_unloaded_rows_are_counted_and_named(untyped):
+    """Those in which no ball bears on both raceways, if any row bears."""
+    single = balls(7, bj.AngularContactBallBearing, contact_angle=0.4)
+    rows = bj.BearingSet.tandem(single, 0.03, 3)
+
+    def state(load):
+        element = SimpleNamespace(bearing=rows)
+        given = dict(row_sizes=(7, 7, 7), element=element, result=jnp.asarray(0))
+        return SimpleNamespace(roller_load=jnp.asarray(load), **given)
+
+    load = np.zeros((21, 2))
+    load[2], load[[7, 15], 0], load[20] = (5.0, 4.0), 3.0, (2.0, 1.0)
+    assert float(idle_rows(state(load))) == 1
+    assert idle_numbers(state(load)) == "row 1"
+    load[20, 1] = 1e-10
+    assert float(idle_rows(state(load))) == 2
+    assert idle_numbers(state(load)) == "row 1, 2"
+    assert float(idle_rows(state(0.0 * load))) == 0
+
+
+@pytest.mark.parametrize("ring, side", [(0, -1.0), (1, 1.0)])
+def test_travel_across_toroidal_rollers_by_hand(ring, side, untyped):
+    """A ring that turns about the middle of the bearing moves its arcs sideways: by
+    w²/2A over the approach 2.5 b²/ρ, A the distance of the centres of the arcs, and by
+    w/A over no contact angle, so that 1 is taken for its tangent."""
+    row = bj.ToroidalRollerBearing(
+        4, 0.1, 0.02, 0.03, roller_profile_radius=0.09,
+        outer_raceway_radius=0.1, inner_raceway_radius=0.1,
+        radial_internal_clearance=0.0,
+    )  # fmt: skip
+    q = np.zeros(12)
+    q[6 * ring : 6 * ring + 6] = [1e-5, 2e-5, 30e-5, 4e-4, 5e-4, 0.0]
+    solution = SimpleNamespace(
+        displacement=jnp.asarray(q),
+        roller_pressure=jnp.full((4, 2), 1e9),
+        row_sizes=(4,),
+        element=SimpleNamespace(bearing=row),
+        result=jnp.asarray(0),
+        force=jnp.zeros(12),
+    )
+    lever = abs(0.05 + side * (0.1 - 0.01))
+    across = 30e-5 + lever * np.hypot(4e-4, 5e-4)
+    modulus = 206e9 / 2 / (1 - 0.3**2)
+    turned = across / (0.1 + 0.1 - 0.02)
+    approach = 2 * 5.0 * 0.02 * (1e9 / modulus) ** 2
+    wanted = 0.5 * across * turned / approach + turned
+    found = float(travel_error(solution))
+    assert found == pytest.approx(wanted, rel=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["deep", "rollers"])
