@@ -1,33 +1,22 @@
-"""Quantities as written in scene files: a number and a unit, read by pint."""
+"""Quantities as written in scene files: a number and a unit."""
 
 import decimal
 import functools
+import itertools
 import math
 import re
+from fractions import Fraction
 
-# Characters allowed in a unit; it may not begin with another number, except 1/s.
-_UNIT = re.compile(r"(?:1\s*/|[A-Za-zµμ°])[A-Za-zµμ°·²³\d\s*/^().+-]*")
-_TURNS = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
-_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+from .unit_text import Unit, parse_unit, plain_unit, spellings
 
-_REVOLUTIONS = dict.fromkeys(
-    "1/min min^-1 min^(-1) min**-1 min⁻¹ r/min rev/min U/min RPM".split(), "rpm"
+_NUMBER = re.compile(
+    r"\s*([-+−]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+−]?[0-9]+)?)(.*)"
 )
-_WRITTEN = {
-    "speed": _REVOLUTIONS,
-    "frequency": _REVOLUTIONS,
-    "moment": {
-        "Nm": "N m",
-        "Nmm": "N mm",
-        "mNm": "mN m",
-        "kNm": "kN m",
-        "kNmm": "kN mm",
-        "MNm": "MN m",
-    },
-    "viscosity": {"Pas": "Pa s", "mPas": "mPa s"},
-}
-"""Alternative spellings of units, by kind. As a speed 1/min counts revolutions, as in
-machine standards; pint would take radians, a factor of 2 pi less."""
+_HIDDEN = dict.fromkeys(map(ord, "\u200b\u2060\ufeff"))
+_ZEROS = {"°C": "273.15", "degC": "273.15", "°F": "459.67", "degF": "459.67"}
+"""Zero of a temperature, above the absolute one and in its own degrees."""
+_PER_MINUTE = "1/min", "min-1", "min^-1"
+"""As a speed 1/min counts revolutions, as in machine standards."""
 
 KINDS = {
     "length": ("m", "mm"),
@@ -87,15 +76,37 @@ class SceneError(ValueError):
     """A scene that cannot be read; the message names file, key, fault and remedy."""
 
 
-@functools.cache
-def _units():
-    import pint
+_UNITS = {
+    "length": "nm µm mm cm dm m km mil in ft",
+    "angle": "µrad mrad rad ° deg ′ arcmin ″ arcsec gon turn",
+    "force": "µN mN N kN MN kp kgf lbf",
+    "moment": "µNm mNm Nmm Ncm Nm kNmm kNm MNm",
+    "speed": "rpm",
+    "duration": "s min h d a",
+    "pressure": "Pa hPa kPa MPa GPa mbar bar psi kpsi Mpsi",
+    "time": "ns µs ms s min h d a",
+    "temperature": "K °C °F",
+    "viscosity": "Pas mPas P cP",
+    "kinematic viscosity": "St cSt",
+    "mass": "µg mg g kg t oz lb",
+    "unbalance": "gmm kgmm",
+    "frequency": "Hz kHz rpm",
+    "rate": "Hz kHz",
+    "power": "µW mW W kW MW PS hp",
+}
+"""Single names of units by kind; any product or quotient of the right dimension may be
+written as well."""
+_SLIPS = {
+    "temperature": dict.fromkeys(("C", "c", "Celsius", "celsius", "Grad"), "°C")
+    | {"F": "°F", "Fahrenheit": "°F", "grad": "°C", "deg": "°C", "°": "°C"},
+    "angle": dict.fromkeys(("Grad", "grad", "grade"), "deg for degrees, or gon"),
+    "power": dict.fromkeys(("HP", "ps", "CV", "cv"), "hp, 745.7 W, or PS, 735.5 W"),
+    "acceleration": {"g": "m/s^2; 1 g is 9.80665 m/s^2"},
+}
+"""What to write in place of names that mean another thing, or one of two, by kind.
+Degrees are Grad in German, where they are written by hand as grad are of 400."""
 
-    try:
-        # pint caches its parsed definitions: this saves 0.15 s per start.
-        return pint.UnitRegistry(cache_folder=":auto:")
-    except OSError:
-        return pint.UnitRegistry()
+_WEIGHTS = {"lb": "lbf", "lbs": "lbf", "kg": "kgf"}
 
 
 def to_si(text: object, kind: str) -> float:
@@ -112,68 +123,104 @@ def to_si(text: object, kind: str) -> float:
         SceneError: If it is not a number with a unit of this kind; the message does
             not name the key, which the caller adds.
     """
-    unit, example = KINDS[kind]
     article = _article(kind)
-    wanted = f'{article} {kind} with its unit is wanted, such as "5 {example}"'
+    wanted = f'{article} {kind} with its unit is wanted, such as "5 {KINDS[kind][1]}"'
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise SceneError(f"{text!r} is not a quantity; {wanted}")
     if not isinstance(text, str):
         raise SceneError(f"{text!r} has no unit; {wanted}")
-    match = _NUMBER.fullmatch(text)
+    match = _NUMBER.fullmatch(text.translate(_HIDDEN))
     if match is None:
         raise SceneError(f"{text!r} does not begin with a finite number; {wanted}")
-    number, name = match.groups()
+    number, written = match[1].replace("−", "-"), match[2].strip()
+    name = plain_unit(written)
     if not name:
         raise SceneError(f"{text!r} has no unit; {wanted}")
     if re.match(r",\d", name):
         raise SceneError(f"{text!r} has a comma; write a decimal point, 5.2, no comma")
-    name = _WRITTEN.get(kind, {}).get(name.replace(" ", ""), name)
-    if not _UNIT.fullmatch(name):
-        raise SceneError(f"{text!r} has the unknown unit {name!r}; {wanted}")
-    value = _converted(number, text, name, unit, kind, wanted)
-    if not math.isfinite(value):
+    if re.match(r"['’_\d]\s*\d|\d(?!\s*/)", name):
+        raise SceneError(f"{text!r} has parted digits; write them together, 1000.5")
+    unit = _unit_of_kind(name, kind)
+    if unit is None:
+        known = parse_unit(name)
+        if kind == "speed" and known and known.dimension == (0, 0, -1, 0, 0):
+            raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
+        problem = f"is not {article} {kind}"
+        if known is None or known.dimension == _si(kind).dimension:
+            problem = f"has the unknown unit {written!r}"
+            if kind in _UNITS:
+                wanted += f"; its units: {', '.join(_UNITS[kind].split())}"
+        raise SceneError(f"{text!r} {problem}{_cure(name, kind)}; {wanted}")
+    value = float(number)
+    if math.isfinite(value) and (value != 0.0 or kind == "temperature"):
+        value = _scaled(decimal.Decimal(number), unit, kind)
+    if not math.isfinite(value) or (value == 0.0 and re.match(r"[^eE]*[1-9]", number)):
         raise SceneError(f"{text!r} is out of range; {wanted}")
     return value
 
 
-def _converted(number, text, name, unit, kind, wanted):
-    """Convert the number to another unit, if the unit is of this kind."""
-    article = _article(kind)
-    registry = _units()
-    try:
-        given = registry.parse_units(name)
-    except Exception as error:
-        # pint's parser also raises tokenizer errors for arbitrary text.
-        unknown = f"{text!r} has the unknown unit {name!r}; {wanted}"
-        raise SceneError(unknown) from error
-    target = registry.parse_units(unit)
-    one = registry.Quantity(1.0, given)
-    if not one.check(target.dimensionality):
-        raise SceneError(f"{text!r} is not {article} {kind}; {wanted}")
-    # pint converts 1 Hz to 1 rad/s and 5 percent to 0.05 rad; neither is intended.
-    if kind == "speed" and not _turns(str(given)):
-        raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
-    if kind == "angle" and not _turns(str(given)):
-        raise SceneError(f"{text!r} is not an angle; {wanted}")
+def _unit_of_kind(name: str, kind: str) -> Unit | None:
+    """Return a unit, or `None` if it is unknown or not of this kind."""
+    if name.startswith("/"):  # 5e-6/K
+        name = f"1{name}"
+    if kind in ("speed", "frequency") and name.replace(" ", "") in _PER_MINUTE:
+        name = "rpm"
+    if kind in ("moment", "tilting stiffness"):  # foot-pounds are those of force
+        name = re.sub(r"\blbs?\b", "lbf", name)
+    unit, (si, wanted, _) = parse_unit(name), _si(kind)
+    if unit is None or (kind == "temperature" and not unit.name):
+        return None
+    if kind in ("frequency", "tilting stiffness", "tilting damping"):
+        # Radians may be left out; as a frequency, cycles are counted then.
+        if unit.dimension == (*wanted[:-1], 0.0):
+            turn = 2.0 * math.pi if kind == "frequency" else 1.0
+            return Unit(turn * unit.size, wanted)
+    near = zip(unit.dimension, wanted, strict=True)
+    if not all(math.isclose(a, b, abs_tol=1e-9) for a, b in near):
+        return None
+    if unit.name and kind in _UNITS and unit.size not in _sizes(kind):
+        return None
+    return unit._replace(size=unit.size / si)
+
+
+@functools.cache
+def _si(kind: str) -> Unit:
+    """Return the unit in which a kind is counted."""
+    unit = parse_unit(plain_unit(KINDS[kind][0]))
+    assert unit is not None
+    return unit
+
+
+@functools.cache
+def _sizes(kind: str) -> set[float]:
+    """Return the sizes of the units of a kind that have a name."""
+    units = map(parse_unit, map(plain_unit, _UNITS[kind].split()))
+    return {unit.size for unit in units if unit is not None}
+
+
+def _cure(name: str, kind: str) -> str:
+    """Return what to write in place of a wrong unit, in brackets; empty if unknown."""
+    slip = _SLIPS.get(kind, {}).get(name)
+    if slip is None:
+        words = re.split(r"([A-Za-zµ°]+)", name)
+        spelt = [[*spellings(w), _WEIGHTS.get(w, w)] for w in words]
+        tried = map("".join, itertools.islice(itertools.product(*spelt), 99))
+        found = dict.fromkeys(one for one in tried if _unit_of_kind(one, kind))
+        slip = " or ".join(found)
+    return f" (write {slip})" if slip else ""
+
+
+def _scaled(number: decimal.Decimal, unit: Unit, kind: str) -> float:
+    """Convert a number to SI; a power of ten shifts its decimal exponent, so that 10 µm
+    are exactly 1e-05 m."""
+    tens = round(math.log10(unit.size))
     if kind == "temperature":
-        return float(registry.Quantity(float(number), given).to(target).magnitude)
-    # A frequency in Hz counts vibrations, one in rpm or rad/s is a shaft speed.
-    per_turn = 2.0 * math.pi if kind == "frequency" and not _turns(str(given)) else 1.0
-    return _scaled(number, per_turn * float(one.to(target).magnitude))
-
-
-def _scaled(number: str, factor: float) -> float:
-    """Multiply a number by the factor of its unit; a power of ten shifts the decimal
-    exponent, so that 10 µm are exactly 1e-05 m."""
-    tens = round(math.log10(factor))
-    if math.isclose(factor, 10.0**tens, rel_tol=1e-14):
-        return float(decimal.Decimal(number).scaleb(tens))
-    return float(number) * factor
+        degree = Fraction(unit.size).limit_denominator(9)
+        return float((Fraction(number) + Fraction(_ZEROS.get(unit.name, "0"))) * degree)
+    if math.isclose(unit.size, 10.0**tens, rel_tol=1e-14):
+        return float(number.scaleb(tens))
+    return float(number) * unit.size
 
 
 def _article(kind: str) -> str:
     return "an" if kind[0] in "aeiou" else "a"
-
-
-def _turns(unit: str) -> bool:
-    return "steradian" not in unit and any(name in unit for name in _TURNS)

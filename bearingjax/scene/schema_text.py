@@ -1,18 +1,17 @@
 """Export of the schema of scene files: JSON Schema, and tables of keys."""
 
 import dataclasses
-import inspect
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..numerics.units import unit_of
+from ..numerics.units import docstring, unit_of
 from .quantity import KINDS, kind_of
 from .schema import Field, Keys, element_of, fields_of, is_keys
 from .table import LARGEST, axes_of
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_QUANTITY = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d].*$"
+_QUANTITY = r"^\s*[-+−]?(\d+\.?\d*|\.\d+)([eE][-+−]?\d+)?\s*(1\s*/|[^\s\d]).*$"
 _ENDS = {
     "above": "exclusiveMinimum",
     "least": "minimum",
