@@ -6,6 +6,8 @@ import importlib
 import itertools
 import pkgutil
 import re
+import sys
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import equinox as eqx
@@ -14,6 +16,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import design
+from bearingjax.numerics import units
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import shown_count, stated_units, unit, unit_of
 from bearingjax.scene.quantity import KINDS, kind_of
@@ -60,6 +63,15 @@ def test_units_of_fields_are_those_of_the_docstring(kind):
         assert set(np.ravel(fields[name].metadata["unit"])) == set(
             stated_units(kind, name)
         ), name
+
+
+def test_docstrings_are_read_from_the_source_without_them(monkeypatch):
+    """As `python -OO` needs it."""
+    kinds = [*with_units()]
+    wanted = [units.docstring(kind) for kind in kinds]
+    flags = SimpleNamespace(flags=SimpleNamespace(optimize=2), modules=sys.modules)
+    monkeypatch.setattr(units, "sys", flags)
+    assert [units.docstring.__wrapped__(kind) for kind in kinds] == wanted
 
 
 def test_unit_of_array_entry():

@@ -1,7 +1,11 @@
 """Units of fields: stated once, with the field, for checks, tables and messages."""
 
+import ast
 import dataclasses
+import functools
+import inspect
 import re
+import sys
 from typing import Any
 
 import numpy as np
@@ -75,7 +79,7 @@ def stated_units(kind: type, name: str) -> tuple[str, ...]:
     entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
     said = False
     for base in kind.__mro__:
-        text = base.__doc__ or ""
+        text = docstring(base)
         found = re.search(entry, text, re.M | re.S)
         if found:
             said = True
@@ -86,6 +90,27 @@ def stated_units(kind: type, name: str) -> tuple[str, ...]:
     if not said:
         raise KeyError(f"{kind.__name__}: the docstring does not state {name}")
     return ()
+
+
+@functools.cache
+def docstring(kind: type) -> str:
+    """Docstring of a class, without its parents' and without indentation.
+
+    Args:
+        kind: Class; of one of this package the source is read if Python runs without
+            docstrings, `python -OO`.
+    """
+    if sys.flags.optimize >= 2 and kind.__module__.startswith("bearingjax"):
+        return _docstrings(kind.__module__).get(kind.__name__, "")
+    return inspect.cleandoc(kind.__dict__.get("__doc__") or "")
+
+
+@functools.cache
+def _docstrings(module: str) -> dict[str, str]:
+    """Docstrings of the classes of a module, by their names."""
+    tree = ast.parse(inspect.getsource(sys.modules[module]))
+    kinds = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    return {kind.name: ast.get_docstring(kind) or "" for kind in kinds}
 
 
 _SHOWN = {

@@ -49,6 +49,7 @@ from .schema_text import (
     attribute_texts,
     class_schema,
     classes_schema,
+    first_line,
     key_tables,
     number_schema,
     object_schema,
@@ -92,7 +93,8 @@ def key_guide(name: str = "") -> str:
     """Return the tables of scene keys, in Markdown.
 
     Args:
-        name: Dotted name of one table, such as "operating.load"; empty for all.
+        name: Dotted name of one table, such as "operating.load", or of those that hold
+            tables of any name, such as "bearings"; empty for all.
 
     Raises:
         SceneError: If there is no such table.
@@ -103,7 +105,8 @@ def key_guide(name: str = "") -> str:
     parts = [t for word, one in schema["$defs"].items() for t in key_tables(one, word)]
     found.append(("Parts of several scenes", parts))
     for title, tables in found:
-        chosen = [text for path, text in tables if not name or path == name]
+        named = name, f"{name}.NAME"
+        chosen = [text for path, text in tables if not name or path in named]
         pages += chosen if name else [f"## {title}\n", *chosen]
     if not pages:
         names = dict.fromkeys(path for _, tables in found for path, _ in tables)
@@ -204,7 +207,7 @@ def _shaft_scene() -> dict[str, Any]:
         if kind is ShaftLoad:
             units = ["force"] * 3 + ["moment"] * 3
             loads = dict(zip(LOADS, map(number_schema, units), strict=True))
-            tables[key] = _by_name(object_schema(here | loads, [], _first(kind)))
+            tables[key] = _by_name(object_schema(here | loads, [], first_line(kind)))
             continue
         found = class_schema(kind, **{**here, **more})
         must = [k for k in found["required"] if k not in place]
@@ -243,11 +246,6 @@ def _shaft_scene() -> dict[str, Any]:
         "cases": _ref("cases"),
     }
     return object_schema(tables, ["shaft", "bearings"], "a system of shafts")
-
-
-def _first(kind: type) -> str:
-    """First line of the docstring of a class, without a full stop."""
-    return (kind.__doc__ or "").splitlines()[0].rstrip(".")
 
 
 def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:

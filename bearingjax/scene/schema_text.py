@@ -33,7 +33,7 @@ def table_schema(kind: type[Keys]) -> dict[str, Any]:
             text = f"{one['description']}; with {key}" if key else one["description"]
             properties.setdefault(name, {**one, "description": text})
     required = [one.name for one in known if one.required]
-    return object_schema(properties, required, _first_line(kind))
+    return object_schema(properties, required, first_line(kind))
 
 
 def object_schema(
@@ -66,8 +66,8 @@ def field_schema(field: Field) -> dict[str, Any]:
     if isinstance(field.default, bool | int | str):
         found["default"] = field.default
     elif isinstance(field.default, float):
-        number = f"{field.default:g} {key.unit}" if key.kind else field.default
-        found["default"] = number
+        number = f"{key.in_shown_unit(field.default):g} {key.unit}"
+        found["default"] = number if key.kind else field.default
     if key.otherwise:
         found["x-otherwise"] = key.otherwise
     return found
@@ -151,7 +151,7 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
     """
     texts, properties, required = attribute_texts(kind), {}, []
     if word:
-        properties["type"] = {"const": word, "description": _first_line(kind)}
+        properties["type"] = {"const": word, "description": first_line(kind)}
     for field in dataclasses.fields(kind):
         if "unit" not in field.metadata or len(axes_of(field.type)) > 1:
             continue
@@ -169,7 +169,7 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
             properties[field.name]["default"] = shown
         if field.default is dataclasses.MISSING:
             required.append(field.name)
-    found = object_schema(properties | more, required, _first_line(kind))
+    found = object_schema(properties | more, required, first_line(kind))
     return {**found, "required": required}
 
 
@@ -182,7 +182,7 @@ def attribute_texts(kind: type) -> dict[str, str]:
     found: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         names: list[str] = []
-        for line in inspect.cleandoc(base.__dict__.get("__doc__") or "").splitlines():
+        for line in docstring(base).splitlines():
             match = re.match(r" {4}([A-Za-z_]\w*(?:, \w+)*): (.*)", line)
             if match:
                 names = match[1].split(", ")
@@ -195,8 +195,14 @@ def attribute_texts(kind: type) -> dict[str, str]:
     return {name: text.rstrip(".") for name, text in found.items()}
 
 
-def _first_line(kind: type) -> str:
-    return (inspect.getdoc(kind) or "").partition("\n")[0].rstrip(".")
+def first_line(kind: type) -> str:
+    """Return the first line of the docstring of a class, without its full stop.
+
+    Args:
+        kind: Class with a docstring of its own or of a parent.
+    """
+    texts = (docstring(base) for base in kind.__mro__)
+    return next(filter(None, texts)).partition("\n")[0].rstrip(".")
 
 
 def key_tables(

@@ -2,6 +2,8 @@
 
 import dataclasses
 import json
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -78,6 +80,12 @@ def test_schema_refuses(change, validator):
     assert faults(validator, data)
 
 
+@pytest.mark.parametrize("speed", ["1500 1/min", "1500/min", "−1.5e3 min⁻¹"])
+def test_schema_allows_alternative_spellings(speed, validator):
+    data = {"bearing": {"designation": "6205"}, "operating": {"inner_speed": speed}}
+    assert not faults(validator, data)
+
+
 def test_guide_of_keys_is_current():
     guide = Path(scene.__file__).with_name("KEYS.md").read_text("utf-8")
     assert guide.endswith("\n\n" + key_guide()), (
@@ -91,6 +99,24 @@ def test_schema_command_prints_json_and_tables_of_keys(run):
     assert done.status == 0 and done.out.count("| force |") == 3
     done = run("schema", "--keys", "operating.lod")
     assert done.status == 2 and "did you mean `operating.load`?" in done.err
+    done = run("schema", "--keys", "bearings")
+    assert done.status == 0 and done.out.startswith("### `[bearings.NAME]`")
+    done = run("schema", "--keys", "temperature")
+    assert "| `reference` | temperature | 20 °C |" in done.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "command",
+    ["schema", "solve deep_groove", "catalogue 6205"],
+    ids=lambda text: text.split()[0],
+)
+def test_commands_without_docstrings(command):
+    """Units of named tuples and lines about keys stand in docstrings."""
+    call = [sys.executable, "-OO", "-m", "bearingjax", *command.split()]
+    done = subprocess.run(call, capture_output=True, check=True, timeout=600)
+    if command == "schema":
+        assert json.loads(done.stdout) == json.loads(json.dumps(scene_schema()))
 
 
 def bad_values(field):
