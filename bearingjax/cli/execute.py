@@ -295,12 +295,13 @@ def _origin(options):
 
     from ..scene import Origin
     from ..scene.scene_file import find_scene
+    from ..scene.text_file import read_text
 
     now = datetime.datetime.now().astimezone()
     texts = []
     for source in _sources(options):
         path = find_scene(source)
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
         if path.suffix.lower() == ".json":  # of an earlier run: without its results
             inputs = json.loads(text).get("inputs")
             text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)

@@ -207,4 +207,6 @@ def _show(value) -> str:
     array = np.asarray(value)
     if array.shape == ():
         return f"{float(array):.6g}"
+    if array.ndim > 1 and array.size > 12:
+        return f"an array of shape {array.shape}"
     return np.array2string(array, precision=6, threshold=6)

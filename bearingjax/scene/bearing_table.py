@@ -15,7 +15,7 @@ from ..statics.preload import check_preload
 from .catalogue_keys import FromCatalogue, taken_from
 from .design_keys import BALLS, ROLLERS, read_row, two_row_name, with_both_rows
 from .schema import Keys, read_keys, scene_key
-from .table import Table
+from .table import Table, text_of
 
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 
@@ -73,7 +73,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     given = {k: v for k, v in table.keys_given().items() if k not in EXTRA_KEYS}
     if "designation" not in table:
         return None
-    name = given.pop("designation")
+    name = text_of(given.pop("designation"))
     if not isinstance(name, str):
         problem = 'is not a designation, a text such as "6205-2RS1/C3"'
         if isinstance(name, int):

@@ -1,6 +1,5 @@
 """A list of cases: a CSV file with keys and units in its header."""
 
-import csv
 import math
 import re
 from collections.abc import Mapping
@@ -10,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from .quantity import KINDS, SceneError, to_si
-from .table import Table
+from .table import Table, typed
+from .text_file import read_columns
 
 LARGEST = 10**7
 """Most cases of a scene: 1 kB of memory each, with the default outputs."""
@@ -34,9 +34,9 @@ def read_list(
     Raises:
         SceneError: One line that names file, line, column and fault.
     """
-    name = table.raw("file")
-    if not isinstance(name, str):
-        raise table.error("file", f"{name!r} is not the name of a file")
+    name, given = table.text("file"), table.raw("file")
+    if name is None:
+        raise table.error("file", f"{given!r} is not the name of a file")
     rows = _rows(table, name, folder / name, what)
     (_, header), *cells = rows
     lines = [line for line, _ in cells]
@@ -57,27 +57,15 @@ def _head(table, name, title) -> tuple[str, str | None]:
     if match is not None:
         return match[1], match[2]
     problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
-    if ";" in title:
-        problem = f"{name}: has semicolons; commas part columns, points digits"
     raise table.error("file", problem)
 
 
 def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
     """Read the non-empty lines of a list, each with its line number."""
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            rows = [
-                (reader.line_num, row) for row in reader if any(map(str.strip, row))
-            ]
-    except OSError as error:
-        problem = f"{name}: cannot be read: {error.strerror or error}"
-        raise table.error("file", problem) from error
-    except UnicodeDecodeError as error:
-        problem = f"{name}: cannot be read: {error}; save it as UTF-8"
-        raise table.error("file", problem) from error
-    except (ValueError, csv.Error) as error:
-        raise table.error("file", f"{name}: cannot be read: {error}") from error
+        rows = read_columns(path)
+    except ValueError as error:
+        raise table.error("file", f"{name}: {error}") from error
     if len(rows) < 2:
         raise table.error(
             "file", f"{name}: has no {what}; a header and rows are wanted"
@@ -117,7 +105,7 @@ def _numbers(table, name, key, values, lines) -> list[float]:
     numbers = []
     for line, value in zip(lines, values, strict=True):
         try:
-            number = float(value)
+            number = float(value.replace("−", "-"))
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
@@ -132,7 +120,7 @@ def _numbers(table, name, key, values, lines) -> list[float]:
 def _bare(text):
     for kind in (int, float):
         try:
-            return kind(text)
+            return typed(kind(text), text)
         except ValueError:
             pass
     return text

@@ -30,7 +30,7 @@ from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of
 from .scene_file import assign, find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
-from .table import Table, axes_of
+from .table import Table, axes_of, text_of
 
 OPERATING = {
     **{
@@ -295,7 +295,7 @@ def _inputs(scene, columns, cases) -> dict[str, Any]:
 
 def _placed(cases, path) -> dict[str, Any]:
     """Return the cases as written, with an absolute path of their file."""
-    name = cases.get("file")
+    name = text_of(cases.get("file"))
     return {**cases, "file": str((path.parent / name).resolve())} if name else cases
 
 

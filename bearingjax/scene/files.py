@@ -7,7 +7,7 @@ import contextlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +16,8 @@ import numpy as np
 from .._version import __version__
 from .quantity import SceneError
 from .scene_file import bearing_files, find_scene, parse_scene, profile_files
+from .table import text_of
+from .text_file import Line, check_regular, read_rows
 
 Writer = Callable[[Path], None]
 """Writes a file at a path."""
@@ -165,42 +167,65 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     path = find_scene(source)
     data = parse_scene(path, settings)
     cases = data.get("cases")
-    name = cases.get("file") if isinstance(cases, dict) else None
+    name = text_of(cases.get("file")) if isinstance(cases, dict) else None
     listed = [path.parent / name] if isinstance(name, str) else []
-    return [path, *listed, *profile_files(data, path), *bearing_files(data, path)]
+    named = *listed, *profile_files(data, path), *bearing_files(data, path)
+    return [path, *(one for one in named if "\0" not in str(one))]  # refused later
 
 
 def read_matrix(path: Path) -> np.ndarray:
     """Read a matrix of numbers.
 
     Args:
-        path: A NumPy file (.npy), a MatrixMarket file (.mtx), or text with commas or
-            blanks between the numbers of a row.
+        path: A NumPy file (.npy), a MatrixMarket file (.mtx), or text with semicolons,
+            commas or blanks between the numbers of a row.
 
     Raises:
-        ValueError: If it cannot be read, or is no square matrix.
+        ValueError: If it cannot be read, or is no square matrix of real numbers; the
+            message names the file.
     """
+    ending = path.suffix.lower()
     try:
-        if path.suffix == ".npy":
+        check_regular(path)
+        if ending == ".npy":
             found = np.load(path, allow_pickle=False)
-        elif path.suffix == ".mtx":
+        elif ending == ".mtx":
             from scipy.io import mmread
 
             read: Any = mmread(path)
             found = read.toarray() if hasattr(read, "toarray") else read
         else:
-            text = path.read_text(encoding="utf-8-sig").replace(",", " ")
-            found = np.loadtxt(text.splitlines(), ndmin=2)
+            found = _numbers(read_rows(path))
+        if np.iscomplexobj(found):
+            raise ValueError("has complex numbers; real ones are wanted")
         found = np.asarray(found, float)
+        if found.ndim != 2 or found.shape[0] != found.shape[1]:
+            raise ValueError(f"has the shape {found.shape}; a square is wanted")
+        if not np.isfinite(found).all():
+            row, column = np.argwhere(~np.isfinite(found))[0] + 1
+            problem = f"row {row}, column {column} is {found[row - 1, column - 1]}"
+            raise ValueError(f"{problem}; finite numbers are wanted")
     except OSError as error:
         raise ValueError(f"{path.name}: cannot be read: {error.strerror}") from error
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"{path.name}: cannot be read: {error}") from error
-    if found.ndim != 2 or found.shape[0] != found.shape[1]:
-        raise ValueError(
-            f"{path.name}: has the shape {found.shape}; a square is wanted"
-        )
+    except (ValueError, TypeError, EOFError) as error:
+        raise ValueError(f"{path.name}: {error}") from error
     return found
+
+
+def _numbers(rows: Sequence[Line]) -> np.ndarray:
+    """Return lines of numbers as an array."""
+    found: list[list[float]] = []
+    for line, cells in rows:
+        try:
+            found.append([float(cell.replace("−", "-")) for cell in cells])
+        except ValueError as error:
+            raise ValueError(f"line {line}: {error}") from error
+        if len(found[-1]) != len(found[0]):
+            problem = f"has {len(found[-1])} numbers, not {len(found[0])}"
+            raise ValueError(f"line {line} {problem}")
+    if not found:
+        raise ValueError("has no numbers")
+    return np.array(found)
 
 
 def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:

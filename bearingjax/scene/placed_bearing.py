@@ -18,7 +18,7 @@ from .design_keys import BALLS
 from .fits import Fits
 from .quantity import SceneError
 from .read import Scene, scene_of
-from .table import Table
+from .table import Table, text_of
 
 _CONTROL = ("raceway_control", "friction_coefficient")
 """Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""
@@ -171,7 +171,7 @@ def _scene(
 
 def _is_ball(own: Mapping[str, Any]) -> bool:
     """Whether the keys of a bearing are of one with balls."""
-    kind, name = own.get("type"), own.get("designation")
+    kind, name = own.get("type"), text_of(own.get("designation"))
     if kind is None and isinstance(name, str):
         with contextlib.suppress(ValueError):
             kind = catalogue_entry(name).type

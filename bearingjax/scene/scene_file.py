@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from datetime import date, time
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ import jax
 
 from ..design.catalogue_entry import catalogue_entry
 from .quantity import SceneError
+from .table import typed
+from .text_file import read_text
 
 
 def shipped_scenes() -> dict[str, Path]:
@@ -52,7 +55,9 @@ def find_scene(source: str | Path) -> Path:
         problem = f"neither a .toml file nor a shipped scene ({', '.join(shipped)})"
         raise SceneError(f"{source}: {problem}{_of_catalogue(str(source))}")
     if not path.is_file():
-        problem = "is a folder; name a file" if path.is_dir() else "no such file"
+        problem = "is a pipe or a device; name a file"
+        if path.is_dir() or not path.exists():
+            problem = "is a folder; name a file" if path.is_dir() else "no such file"
         raise SceneError(f"{source}: {problem}")
     return path
 
@@ -152,17 +157,13 @@ def parse_scene(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 def _parse(path):
     kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
     try:
-        # Windows editors may write a byte order mark.
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
+    except ValueError as error:
+        raise SceneError(f"{path.name}: {error}") from error
+    try:
         return _echoed(path, text) if kind == "JSON" else copy.deepcopy(_toml(text))
     except SceneError:
         raise
-    except OSError as error:
-        problem = f"cannot be read: {error.strerror or error}"
-        raise SceneError(f"{path.name}: {problem}") from error
-    except UnicodeDecodeError as error:
-        problem = f"cannot be read as {kind}: {error}; save it as UTF-8"
-        raise SceneError(f"{path.name}: {problem}") from error
     except (ValueError, RecursionError) as error:
         # Syntax errors, and numbers too long to convert, are ValueErrors.
         raise SceneError(f"{path.name}: cannot be read as {kind}: {error}") from error
@@ -194,8 +195,10 @@ def _set(data: dict, setting: str, file: str) -> None:
         parsed = tomllib.loads(f"value = {text}")
     except ValueError:
         parsed = {}
-    # Further lines would be lost: the value is text then.
+    # Further lines would be lost: the value is text then, and so are dates.
     value = parsed["value"] if len(parsed) == 1 else text.strip()
+    value = text.strip() if isinstance(value, date | time) else value
+    value = typed(value, text.partition("#")[0].strip())
     assign(data, ".".join(parts), value, file)
 
 

@@ -348,8 +348,11 @@ def _value(table: Table, field: Field) -> Any:
 def _text(table: Table, name: str, *default: Any) -> Any:
     """Read any text."""
     value = table.raw(name, *default)
-    if name in table and not isinstance(value, str):
-        raise table.error(name, f"{value!r} is not a text")
+    if name in table:
+        text = table.text(name)
+        if text is None:
+            raise table.error(name, f"{value!r} is not a text")
+        table.fill(name, value := text)
     return value
 
 

@@ -151,11 +151,11 @@ def _part(
     if "teeth" in known:
         values["teeth"] = table.integer("teeth")
     for key, choices in words.items():
-        word = table.word(key)
+        word = table.text(key)
         if word is None and key in table:
             raise table.error(key, f"{table.raw(key)!r} is not a text")
         if word is not None:
-            values[key] = table.choice(key, choices) if choices else table.raw(key)
+            values[key] = table.choice(key, choices or (word,))
     with table.building():
         return kind(**values)
 

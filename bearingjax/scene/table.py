@@ -16,6 +16,49 @@ LARGEST = 1e9
 """Largest bare number allowed in a scene."""
 
 
+class _Typed:
+    """A number given by a setting or in a CSV, which keys of text take as text.
+
+    Attributes:
+        text: The number as written.
+        plain: Class of the number.
+    """
+
+    text = ""
+    plain: type
+
+    def __repr__(self):
+        return self.text
+
+
+class _TypedInt(_Typed, int):
+    plain = int
+
+
+class _TypedFloat(_Typed, float):
+    plain = float
+
+
+def typed(value: Any, text: str) -> Any:
+    """Return a number that remembers how it was written, and other values unchanged.
+
+    Args:
+        value: Value as parsed.
+        text: What it was parsed from.
+    """
+    kind = {int: _TypedInt, float: _TypedFloat}.get(type(value))
+    if kind is None:
+        return value
+    number = kind(value)
+    number.text = text
+    return number
+
+
+def text_of(value: Any) -> Any:
+    """Return the text of a typed number, and other values unchanged."""
+    return value.text if isinstance(value, _Typed) else value
+
+
 class Table:
     """One table of a scene file that records which of its keys were read.
 
@@ -169,6 +212,8 @@ class Table:
             words: The choices as described in errors, where they are too many to list.
         """
         value = self._get(key, default, f"one of {words or listed(choices)}")
+        if self.text(key) in choices:
+            self.fill(key, value := self.text(key))
         if key in self._data and value not in choices:
             raise self.error(key, not_among(value, choices, words))
         return value
@@ -177,6 +222,11 @@ class Table:
         """Return the text at a key, or `None` if it is not text."""
         self._known.append(key)
         value = self._data.get(key)
+        return value if isinstance(value, str) else None
+
+    def text(self, key: str) -> str | None:
+        """Return the text at a key, or that of a typed number; else `None`."""
+        value = text_of(self._data.get(key))
         return value if isinstance(value, str) else None
 
     def raw(self, key: str, default: Any = _MISSING) -> Any:
@@ -322,8 +372,10 @@ class Table:
         self._asked.append(key)
         self._known.append(key)
         if key in self._data:
-            self._read.setdefault(key, self._data[key])
-            return self._data[key]
+            value = self._data[key]
+            value = value.plain(value) if isinstance(value, _Typed) else value
+            self._read.setdefault(key, value)
+            return value
         if default is not _MISSING and isinstance(default, bool | int | float | str):
             self._read.setdefault(key, default)
         if default is _MISSING:

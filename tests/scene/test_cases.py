@@ -113,6 +113,36 @@ def test_cases_list_units_in_header(scene):
     np.testing.assert_array_equal(table.cases.design, [0, 0])
 
 
+OF_OTHERS = {
+    "semicolons": ("utf-8", LIST.replace(",", ";").replace("0.5", "0,5")),
+    "semicolons and points": ("utf-8", LIST.replace(",", ";")),
+    "first line": ("utf-8-sig", "sep=;\r\n" + LIST.replace(",", ";")),
+    "another first line": ("utf-8", "sep=|\n" + LIST.replace(",", "|")),
+    "tabs": ("utf-16", LIST.replace(",", "\t").replace("0.5", "0,5")),
+    "UTF-16": ("utf-16", LIST),
+    "Windows": ("utf-8-sig", LIST.replace("\n", "\r\n")),
+    "Macintosh": ("utf-8", LIST.replace("\n", "\r")),
+    "minus": ("utf-8", LIST.replace("-1", "−1")),
+}
+
+
+@pytest.mark.parametrize("what", OF_OTHERS)
+def test_cases_list_of_other_programs(scene, tmp_path, what):
+    encoding, text = OF_OTHERS[what]
+    name = "Lasten für Süd (1), 'neu'.csv"
+    (tmp_path / name).write_bytes(text.encode(encoding))
+    table = read_cases(scene(f'[cases]\nfile = "{name}"'))
+    np.testing.assert_array_equal(table.cases.load[:, 1], [-1e3, -2e3])
+    np.testing.assert_array_equal(table.cases.load[:, 3], [0.5, 0.0])
+    np.testing.assert_array_equal(table.cases.design, [0, 0])
+
+
+def test_cases_list_of_one_column_has_decimal_commas(scene):
+    files = {"one.csv": "operating.load.Fy [kN]\n-1,5\n-2,25\n"}
+    table = read_cases(scene('[cases]\nfile = "one.csv"', files=files))
+    np.testing.assert_array_equal(table.cases.load[:, 1], [-1500.0, -2250.0])
+
+
 def test_solve_leaves_the_cases_alone(scene):
     with_cases, without = read_scene(scene(GRID)), read_scene(scene(""))
     assert with_cases.load == without.load
@@ -251,7 +281,27 @@ WRONG = {
     ),
     "twice": ('[cases]\nfile = "twice.csv"', "names a column twice"),
     "twice in two units": ('[cases]\nfile = "two.csv"', "twice, operating.load.Fy"),
-    "semicolons": ('[cases]\nfile = "semi.csv"', "has semicolons; commas part columns"),
+    "two decimal marks": (
+        '[cases]\nfile = "both.csv"',
+        "both.csv: line 2 has a decimal comma, '1,5', and line 3 a decimal point",
+    ),
+    "thousands": (
+        '[cases]\nfile = "thousands.csv"',
+        "thousands.csv: line 2: the comma of '1,500' may be a decimal one or part th",
+    ),
+    "thousands and decimals": (
+        '[cases]\nfile = "german.csv"',
+        "german.csv: line 2: operating.load.Fy: '1.500,5' is not a finite number",
+    ),
+    "semicolons in a short row": (
+        '[cases]\nfile = "semi.csv"',
+        "semi.csv: line 3 has 1 values, not 2",
+    ),
+    "NUL": (
+        '[cases]\nfile = "a\\u0000b.csv"',
+        "cannot be read: a file name has no NUL",
+    ),
+    "pipe": ('[cases]\nfile = "/dev/zero"', "/dev/zero: cannot be read: it is a pipe"),
     "not text": ('[cases]\nfile = "zero.csv"', "zero.csv: cannot be read"),
     "folder": (
         '[cases]\nfile = "."',
@@ -276,13 +326,16 @@ FILES = {
     "short.csv": "operating.load.Fy [N],operating.load.Fx [N]\n1,2\n1\n",
     "bad.csv": "load in y!\n1\n",
     "cell.csv": "operating.load.Fy [N]\n1\n\nmuch\n",
-    "comma.csv": 'operating.load.Fy [N]\n"1,5"\n',
+    "comma.csv": 'operating.load.Fy [N],operating.load.Fx [N]\n"1,5",2\n',
     "nan.csv": "operating.load.Fy [N]\nnan\n",
     "gap.csv": "operating.load.Fy [N],operating.load.Fx [N]\n1,2\n1,\n , \n",
     "hole.csv": "bearing.roller_length [mm],operating.load.Fx [N]\n,2\n",
     "kind.csv": "operating.load.Fy [mm]\n1\n",
     "two.csv": "operating.load.Fy [N],operating.load.Fy [kN]\n1,1\n",
-    "semi.csv": "operating.load.Fy [N];operating.load.Fx [N]\n1;2\n",
+    "semi.csv": "operating.load.Fy [N];operating.load.Fx [N]\n1,5;2\n1,5\n",
+    "both.csv": "operating.load.Fy [N];operating.load.Fx [N]\n1,5;2\n1;2.5\n",
+    "thousands.csv": "operating.load.Fy [N]\n1,500\n2,500\n",
+    "german.csv": "operating.load.Fy [N];operating.load.Fx [N]\n1.500,5;2\n",
     "zero.csv": "operating.load.Fy [N]\n" + 200_000 * "1",
     "unit.csv": "operating.load.Fy\n1\n",
     "twice.csv": "operating.load.Fy [N],operating.load.Fy [N]\n1,1\n",

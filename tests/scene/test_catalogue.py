@@ -18,9 +18,11 @@ from bearingjax.design.catalogue_entry import UNITS
 from bearingjax.design.keywords import BALLS, ROLLERS
 from bearingjax.numerics.units import unit_of
 from bearingjax.scene import (
+    SceneError,
     catalogue_report,
     new_scene,
     read_cases,
+    read_scene,
     shipped_scenes,
 )
 from bearingjax.scene.read import scene_of
@@ -752,3 +754,33 @@ def test_examples_command(run):
     assert kinds["deep_groove"] == "solve" and kinds["load_map"] == "sweep"
     assert kinds["skid_axial"] == "skid" and kinds["taper_contact"] == "contact"
     assert run("examples", "needle").out.startswith("# Drawn-cup needle roller bearing")
+
+
+@pytest.mark.parametrize("name", ["6205", "608", "6205 # a comment", "NU 205 EC"])
+def test_designation_given_by_a_setting(tmp_path, name):
+    """The shell takes the quotes: a number for a key of text is the text."""
+    path = tmp_path / "one.toml"
+    path.write_text('[bearing]\ndesignation = "6206"\n[operating]\n', "utf-8")
+    scene = read_scene(path, [f"bearing.designation={name}"])
+    assert scene.catalogue.entry.designation == name.partition(" #")[0]
+
+
+@pytest.mark.parametrize("name", ["0608", "6e3", "1_000", "nan", "2024-01-01"])
+def test_designation_is_the_text_of_a_setting(tmp_path, name):
+    path = tmp_path / "one.toml"
+    path.write_text('[bearing]\ndesignation = "6206"\n[operating]\n', "utf-8")
+    with pytest.raises(SceneError, match=f"`bearing.designation`: '{name}' is not a b"):
+        read_scene(path, [f"bearing.designation={name}"])
+
+
+def test_designations_in_a_list_of_cases(tmp_path):
+    path = tmp_path / "one.toml"
+    path.write_text('[bearing]\ndesignation = "6206"\n[operating]\n', "utf-8")
+    key = "bearing.designation"
+    rows = f"{key},operating.load.Fy [kN]\n6205,-1\n608,-1\n"
+    (tmp_path / "7").write_text(rows, "utf-8")
+    table = read_cases(path, ["cases.file=7"])
+    assert table.settings == ({key: "6205"}, {key: "608"})
+    (tmp_path / "7").write_text(rows.replace("608", "0608"), "utf-8")
+    with pytest.raises(SceneError, match="'0608' is not a bearing of the catalogue"):
+        read_cases(path, ["cases.file=7"])
