@@ -39,12 +39,13 @@ def run(options, tools: Tools) -> Outcome:
     scenes = [read_scene(source, options.set) for source in options.scenes]
     found = run_compare(scenes)
     named = list(zip(found.names, found.solved, strict=True))
+    some = any(one.converged for one in found.solved)
     return Outcome(
         ", ".join(found.names),
         {f"{name}: {k}": v for name, one in named for k, v in one.scene.inputs.items()},
         lambda: compare_as_dict(found),
-        compare_report(found),
-        lambda: compare_columns(found),
+        compare_report(found) if some else None,
+        (lambda: compare_columns(found)) if some else None,
         problems=[
             f"{name}: {why_unsolved(one)}" for name, one in named if not one.converged
         ],

@@ -9,6 +9,7 @@ import numpy as np
 from . import jax_settings
 from .execute import Outcome, Tools, check_table
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .status import NOT_SOLVED, SOLVED
 
 
 def add(commands):
@@ -78,13 +79,18 @@ def run(options, tools: Tools) -> Outcome:
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
     lost = int((~solved.converged).sum())
 
+    words = f"{lost} of {solved.cases.count} cases not solved"
+
     def interrupted():
         if not left and interrupt.number is None:
             return None
+        if not left:  # struck during the last cases, or while files were written
+            told = f"; {words}" if lost else ""
+            told = f"interrupted, but all cases were run{told}"
+            return told, NOT_SOLVED if lost else SOLVED
         status = 128 + (interrupt.number or signal.SIGINT)
         return _how_to_go_on(options, left, solved.cases.count), status
 
-    words = f"{lost} of {solved.cases.count} cases not solved"
     return Outcome(
         table.scene.name,
         table.inputs,
@@ -101,10 +107,10 @@ def run(options, tools: Tools) -> Outcome:
 def _how_to_go_on(options, left: int, count: int) -> str:
     """Return the message on how to resume an interrupted sweep."""
     words = f"interrupted: {left} of {count} cases not run"
-    if left and options.table is not None:
+    if options.table is not None:
         given = [word for word in options.given if word != "--resume"]
         again = shlex.join(["bearingjax", *given, "--resume"])
         words += f"; go on with: {again}"
-    elif left:
+    else:
         words += "; with --table what is solved is kept, and --resume goes on from it"
     return words

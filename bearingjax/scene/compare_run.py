@@ -28,6 +28,9 @@ _ROUND_OFF = 1e-9
 """Relative difference below which numbers count as equal."""
 
 
+_HEADERS = "result", "difference [1]"
+"""Columns of the table beside those of the scenes."""
+
 _SMALL = 1e-5
 """Size over the largest of its kind in all scenes below which it is left out [1]."""
 
@@ -37,7 +40,8 @@ class Comparison:
     """Comparison of solved scenes.
 
     Attributes:
-        names: Names of the scenes; duplicates are numbered.
+        names: Names of the scenes; numbered if some are alike, or are that of another
+            column of the table.
         solved: From `solve_scene`, converged or not.
         quantities: By header, "name [unit]": the value for each scene in SI (scene,),
             NaN where a scene does not have it or was not solved; sorted by decreasing
@@ -58,7 +62,7 @@ def run_compare(scenes: Sequence[Scene]) -> Comparison:
     """
     solved = [solve_scene(scene) for scene in scenes]
     names = [scene.name for scene in scenes]
-    if len(set(names)) < len(names):
+    if len({*names, *_HEADERS}) < len(names) + len(_HEADERS):
         names = [f"{name} ({k + 1})" for k, name in enumerate(names)]
     return Comparison(names, solved, _side_by_side([_numbers(one) for one in solved]))
 
@@ -192,9 +196,10 @@ def compare_columns(found: Comparison) -> dict[str, np.ndarray]:
     Args:
         found: From `run_compare`.
     """
-    values = np.array([*found.quantities.values()])
+    values = np.array([*found.quantities.values()]).reshape(-1, len(found.names))
+    result, apart = _HEADERS
     return {
-        "result": np.array([*found.quantities]),
+        result: np.array([*found.quantities], dtype=str),
         **{name: values[:, k] for k, name in enumerate(found.names)},
-        "difference [1]": np.array([*map(difference, found.quantities.values())]),
+        apart: np.array([*map(difference, values)]),
     }

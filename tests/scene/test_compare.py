@@ -8,6 +8,7 @@ import pytest
 import bearingjax as bj
 from bearingjax.scene import as_dict
 from bearingjax.scene.compare_run import _side_by_side, difference
+from bearingjax.statics import sweep_table
 
 SCENE = "cylindrical_rig"
 PAIR = """
@@ -82,6 +83,32 @@ def test_compare_tells_which_scene_is_not_solved(run, other, tmp_path):
     assert done.status == 3
     assert done.err.startswith("bearingjax: pulled: non_finite: ")
     assert "peak_pressure" in done.out
+
+
+def test_compare_table_of_scenes_named_as_its_columns(run, other, tmp_path):
+    text, paths = other.read_text(encoding="utf-8"), []
+    for name, load in (("result", "-10.6 kN"), ("difference [1]", "-21.2 kN")):
+        paths.append(tmp_path / f"{name}.toml")
+        paths[-1].write_text(text.replace("-21.2 kN", load), encoding="utf-8")
+    table = tmp_path / "t.csv"
+    done = run("compare", *paths, "--table", table)
+    assert done.status == 0, done.err
+    found = sweep_table.read(table)
+    headers = ["result", "result (1)", "difference [1] (2)", "difference [1]"]
+    assert list(found) == headers
+    assert "largest_load [N]" in list(found["result"])
+    first, second = found["result (1)"], found["difference [1] (2)"]
+    assert not np.array_equal(first, second) and np.isfinite([first, second]).all()
+
+
+def test_compare_of_unsolved_scenes(run, other, tmp_path):
+    text = other.read_text(encoding="utf-8").replace("-21.2 kN", "1e300 N")
+    other.write_text(text, encoding="utf-8")
+    table, page = tmp_path / "t.csv", tmp_path / "t.html"
+    done = run("compare", other, other, "--table", table, "--report", page)
+    assert (done.status, done.out) == (3, "")
+    assert done.err.count("non_finite") == 2
+    assert not table.exists() and not page.exists()
 
 
 def test_compare_needs_two_scenes(run):
