@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numerics.units import shown_number
 from ..statics.cases import Cases
 from ..statics.options import SolveOptions
 from ..statics.support import check_held
@@ -283,7 +284,9 @@ def _missed(problem: Problem, best: Trial) -> str:
     value = bound.limit + bound.sign * bound.size * best.margins.min()
     side = "below" if bound.sign > 0 else "above"
     name = label_of(measure)
-    return f"; {name} is {value:.6g}, {side} its bound {bound.limit:.6g}"
+    unit = measure.unit if isinstance(measure, AbstractMeasure) else ""
+    value, limit = (shown_number(x, unit) for x in (value, bound.limit))
+    return f"; {name} is {value}, {side} its bound {limit}"
 
 
 def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:

@@ -38,7 +38,7 @@ from ..design.fits import PARTS
 from ..element import Speed
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 from .fits import Fits
-from .quantity import SceneError
+from .quantity import SceneError, scene_number
 from .schema import Keys, read_keys, scene_key
 from .schema_text import class_schema, number_schema
 from .table import Table
@@ -358,7 +358,8 @@ def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
         found[key] = _catalogued(keys, key, key, catalogue)
     size, most = found["housing_diameter"], _THICKEST * found["outside_diameter"]
     if size > most:
-        problem = f"{size:.5g} m is not allowed; at most {most:.4g} m (metres meant?)"
+        given, allowed = (scene_number(x, "length") for x in (size, most))
+        problem = f"{given} is not allowed; at most {allowed} (another unit meant?)"
         raise keys.table.error("housing_diameter", problem)
     return found
 

@@ -26,7 +26,7 @@ from ..statics.cases import Cases
 from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_ratings import life_conditions
-from .quantity import SceneError, kind_of
+from .quantity import SceneError, kind_of, scene_number
 from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
 from .schema import Keys, read_keys, scene_key
@@ -397,6 +397,10 @@ def read_variables(
             start = part.real("start", unit, None)
             if start is None and key in begun:
                 start = 0.5 * (low + high)
+        if unit and start is not None and low < high and not low <= start <= high:
+            words = (scene_number(x, kind_of(unit)) for x in (start, low, high))
+            problem = "{} must lie between `from`, {}, and `to`, {}".format(*words)
+            raise part.error("start", problem)
         with part.building():
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building():

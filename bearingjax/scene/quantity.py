@@ -59,6 +59,26 @@ KINDS = {
 with the same unit, the first is taken where only the unit is known."""
 
 
+def scene_number(value: float, kind: str, largest: float | None = None) -> str:
+    """Return a number with the unit that scenes usually have: "72.5 mm", "3000 rpm".
+
+    Args:
+        value: In SI.
+        kind: Key of `KINDS`.
+        largest: Number whose unit it takes [SI]; by default its own.
+    """
+    size = abs(value if largest is None else largest)
+    factor, unit = {
+        "length": (1e3, "mm"),
+        "angle": (180.0 / math.pi, "deg"),
+        "speed": (30.0 / math.pi, "rpm"),
+        "frequency": (0.5 / math.pi, "Hz"),
+        "pressure": (1e-9, "GPa") if size >= 1e9 else (1e-6, "MPa"),
+        "force": (1e-3, "kN") if size >= 1e3 else (1.0, "N"),
+    }.get(kind, (1.0, KINDS[kind][0]))
+    return f"{factor * value:.6g} {unit}"
+
+
 def kind_of(unit: str) -> str:
     """Return the kind of quantity of a unit.
 

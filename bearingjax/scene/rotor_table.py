@@ -24,6 +24,7 @@ from ..rotor import (
     Unbalance,
 )
 from .design_keys import read_material
+from .quantity import scene_number
 from .rotor_mounts import MountKeys, read_mounts
 from .rotor_scene import RotorScene
 from .rotor_tasks import CampbellKeys, ResponseKeys, TransientKeys
@@ -69,9 +70,11 @@ class SegmentKeys(Keys):
 
     def check(self) -> None:
         if not self.bore < self.outer_diameter:
-            allowed = f"from 0 to below the outer diameter, {self.outer_diameter:g} m"
-            problem = f"{self.bore:g} m is not allowed; {allowed}"
-            raise self.table.error("bore", problem)
+            bore, most = (
+                scene_number(x, "length") for x in (self.bore, self.outer_diameter)
+            )
+            allowed = f"from 0 to below the outer diameter, {most}"
+            raise self.table.error("bore", f"{bore} is not allowed; {allowed}")
 
 
 _OF_DISC: Any = {"without": {"mass": "give either `mass` or the sizes of a disc"}}
@@ -242,8 +245,8 @@ class RotorKeys(Keys):
             run_up = self.transient.table, "speed_to", self.transient.speed_to
             for place, key, value in ((self.table, "speed", self.speed), run_up):
                 if value is not None and value < 0.0:
-                    problem = f"{value:g} rad/s is not allowed with a motion in time"
-                    raise place.error(key, f"{problem}; 0 or more")
+                    problem = "is not allowed with a motion in time; 0 or more"
+                    raise place.error(key, f"{scene_number(value, 'speed')} {problem}")
 
     @property
     def own_damping(self) -> AbstractDamping | None:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import FREEDOMS
+from .quantity import scene_number
 from .schema import Keys, scene_key
 
 METHODS = ("linear", "harmonic_balance", "shooting")
@@ -26,8 +27,8 @@ class CampbellKeys(Keys):
 
     def check(self) -> None:
         if not self.end > self.begin:
-            problem = f"{self.end:g} rad/s is not above `from`, {self.begin:g} rad/s"
-            raise self.table.error("to", problem)
+            last, first = (scene_number(x, "speed") for x in (self.end, self.begin))
+            raise self.table.error("to", f"{last} is not above `from`, {first}")
 
     @property
     def speeds(self) -> np.ndarray:
@@ -102,8 +103,8 @@ class ResponseKeys(Keys):
 
     def check(self) -> None:
         if self.begin == self.end:
-            problem = f"{self.end:g} rad/s is `from` itself; give a range"
-            raise self.table.error("to", problem)
+            end = scene_number(self.end, "frequency")
+            raise self.table.error("to", f"{end} is `from` itself; give a range")
         least = 2 * self.harmonics
         if self.samples <= least:
             problem = f"{self.samples} is not allowed; above twice `harmonics`, {least}"

@@ -21,7 +21,7 @@ from typing import (
 )
 
 from ..numerics.units import CELSIUS
-from .quantity import KINDS, to_si
+from .quantity import KINDS, scene_number, to_si
 from .table import Table, written
 
 _REQUIRED: Any = dataclasses.MISSING
@@ -91,6 +91,17 @@ class Key:
             return value - CELSIUS
         return value / to_si(f"1 {self.shown}", self.kind) if self.shown else value
 
+    def shown_value(self, value: float, largest: float | None = None) -> str:
+        """Return a number with its unit, as it is shown in errors.
+
+        Args:
+            value: In `unit`.
+            largest: Number whose unit it takes, in `unit`; by default its own.
+        """
+        if self.kind and self.unit == KINDS[self.kind][0]:
+            return scene_number(value, self.kind, largest)
+        return f"{value:.6g} {self.unit}".rstrip()
+
     @property
     def allowed(self) -> str:
         """Range in words, such as "above 0 N"; empty without one."""
@@ -99,8 +110,11 @@ class Key:
             low = ("above", self.above)
         if self.below is not None:
             high = ("below", self.below)
-        unit = f" {self.unit}" if self.unit else ""
-        ends = {name: f"{value:g}" for name, value in (low, high) if value is not None}
+        given = {name: float(x) for name, x in (low, high) if x is not None}
+        largest = max(map(abs, given.values()), default=0.0)
+        texts = {name: self.shown_value(x, largest) for name, x in given.items()}
+        ends = {name: text.partition(" ")[0] for name, text in texts.items()}
+        unit = "".join(next(iter(texts.values()), "").partition(" ")[1:])
         first, last = ends.get("least"), ends.get("most")
         if first and last:
             return f"from {first} to {last}{unit}"
@@ -386,10 +400,9 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
         one.in_shown_unit, value if isinstance(value, tuple) else (value,)
     ):
         if not one.holds(number):
-            unit = f" {one.unit}" if one.unit else ""
             hint = f" ({one.hint})" if one.hint else ""
             problem = one.refusal or f"is not allowed; {one.allowed}{hint}"
-            raise table.error(name, f"{number:.6g}{unit} {problem}")
+            raise table.error(name, f"{one.shown_value(number)} {problem}")
     return value
 
 

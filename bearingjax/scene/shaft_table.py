@@ -31,7 +31,7 @@ from .files import read_matrix
 from .heat_table import read_heat
 from .life_ratings import life_conditions
 from .placed_bearing import check_seat, placed_bearing
-from .quantity import SceneError, to_si
+from .quantity import SceneError, scene_number, to_si
 from .read import Scene
 from .rotor_mounts import SpringKeys
 from .rotor_table import MATERIAL
@@ -80,8 +80,8 @@ class SegmentKeys(Keys):
 
     def check(self) -> None:
         if not self.bore < self.outer_diameter:
-            problem = f"{self.bore:g} m is not below the outer diameter"
-            raise self.table.error("bore", problem)
+            bore = scene_number(self.bore, "length")
+            raise self.table.error("bore", f"{bore} is not below the outer diameter")
 
 
 class ShaftKeys(Keys):

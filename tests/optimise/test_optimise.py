@@ -13,8 +13,8 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 from bearingjax.optimise import design_numbers
-from bearingjax.optimise.design_problem import Problem, Run
-from bearingjax.optimise.optimise import verdict
+from bearingjax.optimise.design_problem import Bound, Problem, Run
+from bearingjax.optimise.optimise import _missed, verdict
 from bearingjax.optimise.search import SearchOutcome
 from bearingjax.optimise.smooth import smooth_maximum, smooth_minimum
 from bearingjax.optimise.trials import Trial, Trials, optimality
@@ -558,3 +558,12 @@ def test_step_limit_counts_steps_without_movement():
     result, text = verdict(start, ending, sloped, True, 100, 1e-5)
     assert result == "step_limit"
     assert text.startswith("step limit reached after 100 steps, 0 of which changed")
+
+
+def test_missed_bound_is_shown_with_its_unit():
+    bound = Bound(0, -1.0, limit=1e8, size=1e8)
+    problem = Problem.__new__(Problem)
+    problem.bounds, problem.measures = (bound,), (bj.optimise.PeakPressure(),)
+    best = Trial(np.zeros(1), 1.0, None, np.array([-20.9648]), None)
+    told = "; peak pressure is 2196 MPa, above its bound 100 MPa"
+    assert _missed(problem, best) == told

@@ -6,7 +6,8 @@ import math
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.scene.quantity import _UNITS, KINDS, SceneError, to_si
+from bearingjax.scene.quantity import _UNITS, KINDS, SceneError, scene_number, to_si
+from bearingjax.scene.schema import Key
 from bearingjax.scene.unit_text import _NAMES
 
 G, LB, IN, TURN = 9.80665, 0.45359237, 0.0254, 2.0 * math.pi
@@ -121,6 +122,29 @@ def test_foot_pounds_and_horsepower():
     for text in ("7 ft-lb", "7 ft lb", "7 lb-ft", "7 ft-lbf", "7 ft·lbs", "84 in-lb"):
         assert to_si(text, "moment") == pytest.approx(7 * foot_pound, rel=ROUNDING)
     assert to_si("7 lb in", "unbalance") == pytest.approx(7 * LB * IN, rel=ROUNDING)
+
+
+def test_numbers_in_messages_have_units_of_scenes():
+    shown = {
+        ("length", 0.0725): "72.5 mm",
+        ("angle", math.pi / 180): "1 deg",
+        ("speed", 100 * math.pi): "3000 rpm",
+        ("frequency", 100 * math.pi): "50 Hz",
+        ("pressure", 206e9): "206 GPa",
+        ("pressure", 3e6): "3 MPa",
+        ("force", 12e3): "12 kN",
+        ("force", 12.0): "12 N",
+        ("time", 3.0): "3 s",
+    }
+    for (kind, value), text in shown.items():
+        assert scene_number(value, kind) == text
+        assert to_si(text, kind) == pytest.approx(value, rel=ROUNDING)
+    assert scene_number(500.0, "force", 2e3) == "0.5 kN"
+    length = Key("", "length", least=0.0, below=1e-4)
+    assert length.allowed == "from 0 to below 0.1 mm"
+    assert length.shown_value(2.0) == "2000 mm"
+    assert Key("", "temperature", most=50).shown_value(60.0) == "60 °C"
+    assert Key("", above=0).allowed == "above 0"
 
 
 REFUSED = {
