@@ -10,6 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..numerics.units import shown_number, unit_of
 from .system import Design
 
 
@@ -71,11 +72,14 @@ class Variable:
         if self.start is not None:
             self._check_start(self.start)
 
-    def _check_start(self, start):
+    def _check_start(self, start: float, unit: str = "") -> None:
         if not self.lower <= start <= self.upper:
+            first, low, high = (
+                shown_number(x, unit) for x in (start, self.lower, self.upper)
+            )
             raise ValueError(
-                f"Variable: the start of {self.name} is {start:g}; it must lie between"
-                f" its bounds, {self.lower:g} and {self.upper:g}."
+                f"Variable: the start of {self.name} is {first}; it must lie between"
+                f" its bounds, {low} and {high}."
             )
 
     def start_in(self, element: Design) -> float:
@@ -100,7 +104,7 @@ class Variable:
         if self.start is not None:
             return self.start
         start = float(there[self.path[0]])
-        self._check_start(start)
+        self._check_start(start, unit_of(element, self.path[0]))
         return start
 
 
@@ -218,8 +222,9 @@ def check_variables(element: Design, variables: Sequence[Variable]) -> list[floa
             try:
                 with_values(element, where, [*start[:k], bound, *start[k + 1 :]])
             except ValueError as error:
+                shown = shown_number(bound, unit_of(element, variable.path[0]))
                 raise ValueError(
-                    f"Variable: `{key}` of {variable.name} is {bound:g}, which the"
+                    f"Variable: `{key}` of {variable.name} is {shown}, which the"
                     f" design does not allow: {error}"
                 ) from error
     return start

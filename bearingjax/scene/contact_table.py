@@ -143,7 +143,7 @@ class ContactOperatingKeys(Keys):
         "angle",
         above=-0.1,
         below=0.1,
-        refusal="is not allowed; below 0.1 rad in size",
+        refusal="is not allowed; below 5.73 deg in size",
         without={"moment": ""},
     )
 

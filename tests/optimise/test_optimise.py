@@ -448,12 +448,12 @@ WRONG = {
     ),
     "start outside": (
         dict(variables=[play(0.0, 5e-6)]),
-        "start of bearing.radial_internal_clearance is 1e-05; it must lie between its"
-        " bounds, 0 and 5e-06",
+        "start of bearing.radial_internal_clearance is 10 µm; it must lie between its"
+        " bounds, 0 µm and 5 µm",
     ),
     "bound not allowed": (
         dict(variables=[bj.optimise.Variable("bearing.roller_length", 0.0, 0.02)]),
-        "`lower` of bearing.roller_length is 0, which the design does not allow:"
+        "`lower` of bearing.roller_length is 0 µm, which the design does not allow:"
         " CylindricalRollerBearing: `roller_length` is 0 m; it must be above 0 m",
     ),
     "twice": (
