@@ -6,6 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import bearingjax as bj
+
 ROLLERS = """
 [bearing]
 type = "cylindrical_roller"
@@ -110,3 +112,10 @@ def test_read_skid_with_supply_and_roughness():
     from bearingjax.scene import read_skid
 
     assert read_skid("skid_axial", settings).scene.oil.supply == "oil_jet"
+
+
+def test_viscosity_without_coefficients_does_not_depend_on_temperature(scene):
+    oil = bj.read_scene(scene).oil
+    for temperature in (283.15, 323.15, 363.15):
+        viscosity = oil.lubricant.viscosity(0.0, temperature)
+        assert float(viscosity) == pytest.approx(20e-3, rel=1e-12)
