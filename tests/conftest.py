@@ -7,6 +7,7 @@ import os
 # Processes that the tests start do without too.
 os.environ.setdefault("JAX_INCLUDE_FULL_TRACEBACKS_IN_LOCATIONS", "false")
 
+import hypothesis
 import jax
 import jaxtyping
 import pytest
@@ -34,6 +35,24 @@ gc.set_threshold(1_000_000, 10, 50)
 
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
 install_import_hook("bearingjax", "beartype.beartype").__enter__()
+
+# Properties: the same examples in every run, but for `--hypothesis-profile=random`. No
+# deadline, as a first example compiles.
+for name, examples, same in (
+    ("fast", 25, True),
+    ("long", 150, True),
+    ("random", 1000, False),
+):
+    hypothesis.settings.register_profile(
+        name,
+        max_examples=examples,
+        derandomize=same,
+        deadline=None,
+        database=None,
+        print_blob=not same,
+        suppress_health_check=[hypothesis.HealthCheck.too_slow],
+    )
+hypothesis.settings.load_profile("fast")
 
 
 LONGEST = (
