@@ -98,6 +98,18 @@ class RowResults(NamedTuple):
 
         return self.row.each(one, self.rings, self.x, *arrays)
 
+    def rolling(self, row: Any) -> "RowResults":
+        """Return these results with elements that roll at a speed they do not feel.
+
+        Args:
+            row: The `Row` at that speed, whose elements may see both rings in place of
+                their difference.
+        """
+        rings = self.rings
+        if self.element.sees_difference and not row.element.sees_difference:
+            rings = jnp.concatenate([jnp.zeros_like(rings), rings], axis=-1)
+        return self._replace(row=row, rings=rings)
+
     def motions(self) -> Float[Array, "element 3"]:
         """Section motion (u, v, θ) of every element at the node [m, rad]."""
         place = self.row.place

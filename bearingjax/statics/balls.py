@@ -37,8 +37,9 @@ class BallResults(eqx.Module):
             (ball, contact) [m]; negative: the ellipse is truncated. Infinite where no
             shoulder is given or no load carried.
         kinematics: Orbit, rotation and spin, leading axis ball; `None` without speed.
-        gyroscopic_moment: Gyroscopic moment of each ball (ball,) [N m], or `None`.
-        centrifugal_force: Centrifugal force of each ball (ball,) [N], or `None`.
+        gyroscopic_moment: Gyroscopic moment of each ball (ball,) [N m], zero where it
+            is left out; `None` without speed.
+        centrifugal_force: Centrifugal force of each ball (ball,) [N], likewise.
     """
 
     contact_load: Float[Array, "ball contact"] = eqx.field(metadata=unit("N"))

@@ -2,11 +2,13 @@
 
 from typing import NamedTuple
 
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import pitch_radius
+from ..design import Material, pitch_radius
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
@@ -106,10 +108,14 @@ def solution_at(
         q: Ring freedoms [m, rad].
         speed: Ring speeds, or `None`.
         points: Positions along the rollers at which loads are reported. Static.
-        inertia: Whether rolling elements feel the speed. Static.
+        inertia: Whether rolling elements feel the speed; if not, balls orbit and spin
+            as at the speed, without centrifugal force and gyroscopic moment. Static.
     """
     model = element.model(speed if inertia else None)
-    fields, found = describe(element, model, q, points, model.solve(q))
+    rolling = None
+    if speed is not None and not inertia:
+        rolling = without_mass(element).model(speed)
+    fields, found = describe(element, model, q, points, model.solve(q), rolling)
     nothing = jnp.zeros_like(q[0])
     return solution_kind(element.choices)(
         **fields,
@@ -123,6 +129,17 @@ def solution_at(
         unrestrained=jnp.full_like(found.result, -1),
         stats=Stats(nothing, jnp.zeros_like(found.result), found.residual, found.steps),
     )
+
+
+def without_mass(element: BearingElement) -> BearingElement:
+    """Return the bearing of materials without density."""
+
+    def light(part):
+        if not isinstance(part, Material):
+            return part
+        return eqx.tree_at(lambda m: m.density, part, 0.0 * part.density)
+
+    return jax.tree.map(light, element, is_leaf=lambda part: isinstance(part, Material))
 
 
 def _loaded_unheld(case: LoadCase) -> Bool[Array, "6"]:

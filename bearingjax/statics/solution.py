@@ -79,7 +79,8 @@ class Solution(eqx.Module):
         row_sizes: Number of rolling elements of each row.
         pitch_radius: Pitch radius of the bearing, the largest of a set [m].
         element: The bearing that was solved.
-        speed: Ring speeds, or `None`.
+        speed: Ring speeds, or `None`; balls have kinematics if, and only if, there are
+            speeds.
         free: Freedoms of the moving ring that were free.
         held: Freedoms of the moving ring that a support held, at a prescribed
             displacement or at zero; `force` there is the reaction of the support.
@@ -218,6 +219,7 @@ def describe(
     q: Ring,
     points: int,
     solved: Solved,
+    rolling: BearingModel | None = None,
 ) -> tuple[dict, Evaluated]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -227,10 +229,16 @@ def describe(
         q: Ring freedoms [m, rad].
         points: Positions along a roller.
         solved: Its rolling elements at q.
+        rolling: Model of which balls have their kinematics, where they do not feel the
+            speed; `None`: the model.
     """
     rows = model.results(q, solved)
     evaluated = model.evaluate(q, solved)
-    special = contact_results(element.choices, element.bearing, rows, points)
+    shown = rows
+    if rolling is not None:
+        pairs = zip(rows, rolling.rows, strict=True)
+        shown = tuple(one.rolling(row) for one, row in pairs)
+    special = contact_results(element.choices, element.bearing, shown, points)
     return {
         "displacement": q,
         "force": evaluated.force,

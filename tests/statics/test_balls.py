@@ -11,7 +11,8 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import inertia_load
-from bearingjax.statics import warnings
+from bearingjax.statics import BallSolution, films, warnings
+from bearingjax.statics.load_result import solution_at
 
 DEGREE = np.pi / 180
 SPEED = bj.Speed(inner=2000.0)
@@ -343,3 +344,23 @@ def test_a_lifting_ball_has_one_state_only():
     assert lifted.sum() > 20
     assert np.all(code == bj.Result.CONVERGED)
     assert residual.max() < 1e-8
+
+
+def test_balls_that_do_not_feel_the_speed_roll_at_it(deep):
+    """Without inertia a solution at a speed has the kinematics of its contact angles,
+    of a radial load ω/2 (1 ∓ γ), and no force of inertia."""
+    rings = jnp.zeros(12).at[6].set(20e-6)
+    speed = bj.Speed(inner=2.0)
+    found = solution_at(deep, rings, speed, 3, False)
+    assert isinstance(found, BallSolution) and found.kinematics is not None
+    loaded = np.asarray(found.load_zone)
+    assert 1 < loaded.sum() < 7
+    ratio = float(deep.bearing.ball_diameter / deep.bearing.pitch_diameter)
+    np.testing.assert_allclose(found.kinematics.orbit[loaded], 1.0 - ratio, rtol=1e-12)
+    np.testing.assert_array_equal(found.centrifugal_force, 0.0)
+    np.testing.assert_array_equal(found.gyroscopic_moment, 0.0)
+    load = np.asarray(found.contact_load)
+    np.testing.assert_allclose(load[:, 0], load[:, 1], rtol=1e-9)
+    assert not any("lifted" in text for text in warnings(found))
+    oil = bj.lubrication.iso_vg(68.0)
+    assert (np.asarray(films(found, oil, 330.0).minimum)[loaded] > 0).all()
