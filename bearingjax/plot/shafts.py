@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..numerics.gravity import GRAVITY
+from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
 from .rotor import rotor_section
@@ -21,6 +22,9 @@ _COLOURS = (INNER, OUTER)
 def shaft_overview(run: Any, title: str = "") -> Figure:
     """Plot each shaft to scale with its lines, and the load zone of each bearing.
 
+    Under load cases they are those of the first, as the head says. Where the warming up
+    is followed, temperatures over time come last.
+
     Args:
         run: Result of the scene of a system of shafts, solved.
         title: Head of the page; "Shafts" if empty.
@@ -32,9 +36,10 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
     shown = [b for b in run.bearings if b.solution is not None]
     across = max(1, min(_ACROSS, len(shown)))
     n_shafts, rows = len(system.shafts), -(-len(shown) // across)
-    figure = pyplot().figure(figsize=(18.0, 1.0 + 4.6 * n_shafts + 4.4 * rows))
+    warm = int(run.warming is not None)
+    figure = pyplot().figure(figsize=(18.0, 1.0 + 4.6 * n_shafts + 4.4 * (rows + warm)))
     grid = figure.add_gridspec(
-        n_shafts + rows, 15, left=0.05, right=0.95, wspace=1.6, hspace=0.42,
+        n_shafts + rows + warm, 15, left=0.05, right=0.95, wspace=1.6, hspace=0.42,
         top=1.0 - 0.9 / figure.get_figheight(), bottom=0.6 / figure.get_figheight(),
     )  # fmt: skip
     for k, line in enumerate(system.shafts):
@@ -68,8 +73,22 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         legend.remove()
         if place + 1 == across or k + 1 == len(shown):
             zone_legend(ax, list(named.values()), list(named))
-    head(figure, title or "Shafts")
+    if warm:
+        _warming(figure.add_subplot(grid[n_shafts + rows, :]), run)
+    head(figure, ", ".join(filter(None, (title or "Shafts", run.shown_case))))
     return figure
+
+
+def _warming(ax, run):
+    """Plot the temperatures of rings and housing over time."""
+    for k, (name, warm) in enumerate(run.warm_nodes.items()):
+        style = "--" if name.endswith("outer") else "-"
+        colour = GREY if name == "housing" else f"C{k // 2}"
+        ax.plot(run.task.times / 60.0, warm - CELSIUS, style, color=colour, label=name)
+    ax.set_xlabel("time [min]")
+    ax.set_ylabel("temperature [°C]")
+    ax.set_title("Warming up from the cold")
+    ax.legend(fontsize="small")
 
 
 def _line(ax, position, values, label):

@@ -443,6 +443,7 @@ def _command(data: Mapping[str, Any]) -> str:
     tables = {
         "rotor": "rotor",
         "vibration": "noise",
+        "shaft": "shaft",
         "life": "life",
         "lubricant": "skid",
         "raceway": "contact",

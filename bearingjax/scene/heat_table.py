@@ -1,10 +1,12 @@
 """The [heat] table of a system of shafts: where friction heat goes."""
 
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from ..design.fits import PARTS
 from ..shafts import BearingOil, HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series, skf_series_of
 from ..statics.reference_speed import heat_area
@@ -42,6 +44,13 @@ class HeatKeys(Keys):
         "times that are reported", default=61, least=2, most=2000, needs=("duration",)
     )
 
+    pauses: str = scene_key(
+        "temperature of bearings in cases at rest: that of the ambience, or the mean of"
+        " all cases over their hours",
+        choices=("ambient", "mean"),
+        default="ambient",
+    )
+
     @property
     def instants(self) -> np.ndarray | None:
         """Times from the start (time,) [s], closer at first; `None`: none."""
@@ -52,8 +61,8 @@ class HeatKeys(Keys):
 
 def read_heat(
     top: Table, own: Mapping[str, Table], bearings: Mapping[str, Scene | None]
-) -> tuple[HeatNetwork | None, np.ndarray | None]:
-    """Read the paths of the heat and the times; `None` without [heat].
+) -> tuple[HeatNetwork | None, HeatKeys | None]:
+    """Read the paths of the heat, and [heat]; `None` without it.
 
     Args:
         top: The scene.
@@ -71,10 +80,22 @@ def read_heat(
         return None, None
     keys = read_keys(HeatKeys, top.table("heat"))
     paths = [_path(own[name], scene) for name, scene in bearings.items()]
+    loose = [name for name, one in bearings.items() if one is not None and not one.fits]
+    if loose:
+        text = "temperatures change the viscosity of the oil alone, neither clearance"
+        text = f"{text} nor preload, without the seats of a `fit`"
+        warnings.warn(f"{', '.join(loose)}: {text}", stacklevel=2)
+    for name, one in bearings.items():
+        given = None if one is None or one.fits is None else one.fits.conditions
+        if given is not None and any(
+            float(getattr(given, part)) != float(given.reference) for part in PARTS
+        ):
+            text = "its `temperature` is not used: [heat] finds temperatures"
+            warnings.warn(f"{name}: {text}", stacklevel=2)
     with keys.table.building():
         more = keys.table.fields(HeatNetwork, left_out=("ambient",))
         network = HeatNetwork(**more | {"ambient": keys.ambient}, paths=paths)
-    return network, keys.instants
+    return network, keys
 
 
 def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:

@@ -26,9 +26,6 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
         several cases `cases`; `result`, `message`, `warnings`, `inputs`, `version`.
     """
     found = run.solution
-    code = Result(int(found.result))
-    if run.duty is not None and not run.converged:
-        code = Result(int(np.max(run.duty.result)))
     numbers: dict[str, Any] = {}
     if run.bearings:
         numbers = {
@@ -55,7 +52,7 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
         if run.duty is not None:
             numbers["cases"] = _cases(run, run.duty)
     numbers |= {
-        "result": code.label,
+        "result": run.result.label,
         "message": run.problem,
         "residual": found.residual,
         "iterations": found.steps,
@@ -133,7 +130,8 @@ def _wheels(run: ShaftRun) -> dict[str, Any]:
         kind = "gear" if hasattr(wheel, "teeth") else "belt"
         if kind == "gear":
             numbers["misalignment"] = apart
-            numbers["radius"] = np.linalg.norm(mesh.place)
+            frame = np.asarray(task.system.shaft(wheel.shaft).frame)
+            numbers["radius"] = np.linalg.norm(frame[:2] @ mesh.place)
         same = found[kind].get(mesh.wheel)
         if same is None:
             found[kind][mesh.wheel] = numbers

@@ -12,6 +12,8 @@ from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .shaft_run import ShaftRun, bearing_loss
 
 _MICRO = 1e6, "µrad"
+_TIMES = 9
+"""Most times of the warming up that are shown."""
 
 
 def shaft_report(run: ShaftRun) -> Report:
@@ -50,7 +52,7 @@ def shaft_page(run: ShaftRun) -> Report:
         parts: list[Part] = [*life_section(scene, solution, life), *fits_section(scene)]
         if scene.oil is not None:
             parts += oil_report(scene.oil, bearing.oil)
-        sections[f"Bearing {bearing.name}"] = parts
+        sections[f"Bearing {bearing.name}{_of_case(run)}"] = parts
     return Report(sections, report.warnings)
 
 
@@ -58,10 +60,9 @@ def _head(run: ShaftRun) -> list[Part]:
     task, power = run.task, run.solution.power
     system = task.system
     count = len(system.shafts), len(system.seats)
-    first = " (first case)" if run.duty is not None else ""
     lines = [
         f"{task.name}: {count[0]} shaft{'s' * (count[0] > 1)} on {count[1]} bearings"
-        f"{first}"
+        f"{_of_case(run)}"
     ]
     drive = system.drive
     if drive is None:
@@ -85,6 +86,11 @@ def _head(run: ShaftRun) -> list[Part]:
     return [*lines, *([f"losses: {', '.join(shown)}"] if shown else [])]
 
 
+def _of_case(run: ShaftRun) -> str:
+    """Return in brackets the case of which numbers are; empty without cases."""
+    return f" ({run.shown_case})" if run.shown_case else ""
+
+
 def _shafts(run: ShaftRun) -> Grid:
     states = run.solution.shafts
     bent = [np.linalg.norm(s.displacement[:, :2], axis=1).max() for s in states]
@@ -99,7 +105,7 @@ def _shafts(run: ShaftRun) -> Grid:
             Column("bending moment", moment, "N m", ".4g"),
             Column("at", where, "m", ".1f", (1e3, "mm")),
         ],
-        "largest of each shaft",
+        f"largest of each shaft{_of_case(run)}",
     )
 
 
@@ -132,7 +138,8 @@ def _wheels(run: ShaftRun) -> Section:
     ]
     if any(value is not None for value in across):
         columns.append(Column("over the face", across, "m", ".2f"))
-    return [Grid(columns, "torque on the shaft and force on the wheel, global axes")]
+    what = "torque on the shaft and force on the wheel, global axes"
+    return [Grid(columns, f"{what}{_of_case(run)}")]
 
 
 def _bearings(run: ShaftRun) -> Section:
@@ -173,7 +180,7 @@ def _bearings(run: ShaftRun) -> Section:
         if b.oil is not None and b.oil.skf is not None and b.oil.skf.assumed
     ]
     words = "load of the shaft on the inner ring; axial along its shaft"
-    return [Grid(columns, words), *told]
+    return [Grid(columns, f"{words}{_of_case(run)}"), *told]
 
 
 def _temperatures(run: ShaftRun) -> Section:
@@ -187,8 +194,7 @@ def _temperatures(run: ShaftRun) -> Section:
         Column("outer ring", celsius[1], ["°C"] * len(celsius[1]), ".1f"),
         Column("friction", np.asarray(state.friction), "W", ".4g"),
     ]
-    of = "" if run.duty is None else ", in the first case"
-    parts: list[Part] = [Grid(columns, f"in equilibrium with friction{of}")]
+    parts: list[Part] = [Grid(columns, f"in equilibrium with friction{_of_case(run)}")]
     if run.task.heat is not None and run.task.heat.housing is not None:
         parts.append(f"housing and oil: {float(state.housing) - 273.15:.1f} °C")
     if float(state.slowest) > 0:
@@ -196,6 +202,14 @@ def _temperatures(run: ShaftRun) -> Section:
             "the slowest disturbance decays in"
             f" {1.0 / float(state.slowest) / 60.0:.3g} min"
         )
+    times = run.task.times
+    if run.warming is not None and times is not None:
+        at = np.unique(np.linspace(0, len(times) - 1, _TIMES).round().astype(int))
+        columns = [Column("time", times[at], ["s"] * len(at), ".4g")]
+        for name, warm in run.warm_nodes.items():
+            shown = warm[at] - 273.15
+            columns.append(Column(name, shown, ["°C"] * len(at), ".1f"))
+        parts.append(Grid(columns, f"warming up from the cold{_of_case(run)}"))
     return parts
 
 
@@ -212,10 +226,6 @@ def _lives(run: ShaftRun) -> Section:
     system, rows = run.task.system, []
     if run.duty is not None:
         hours = run.hours
-        worst = [
-            None if np.isnan(of).all() else int(np.nanargmax(of))
-            for of in run.duty.lives["damage"].T
-        ]
         safety = [
             None if np.isnan(of).all() else float(np.nanmin(of))
             for of in run.duty.lives["static_safety"].T
@@ -227,7 +237,7 @@ def _lives(run: ShaftRun) -> Section:
         rows = [
             Column("bearing", [seat.name for seat in system.seats]),
             Column("life", hours, "h"),
-            Column("worst case", ["-" if w is None else w for w in worst]),
+            Column("worst case", ["-" if w is None else w for w in run.worst_cases]),
             Column("least C0/P0", safety, "1", ".3g", (1.0, "")),
             Column("most pressure", most, "Pa", ".3f", (1e-9, "GPa")),
         ]

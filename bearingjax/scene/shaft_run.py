@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..design import radial_clearance, rows_of
@@ -23,8 +24,9 @@ from ..shafts import (
     warm_up,
 )
 from ..shafts.doubts import load_doubts
-from ..shafts.equilibrium import searched_system, unsolved
-from ..shafts.heat import overheated
+from ..shafts.duty import case_damage
+from ..shafts.equilibrium import searched_system, system_state, unsolved
+from ..shafts.heat import overheated, with_temperatures
 from ..shafts.seats import adjusted, speed_of
 from ..shafts.state import moving
 from ..statics.life import Life, life_of
@@ -113,18 +115,57 @@ class ShaftRun:
     @functools.cached_property
     def hours(self) -> np.ndarray:
         """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
-        system = self.task.system
         if self.duty is not None:
-            of = [system.station(seat)[0] for seat in system.seats]
-            given = [case.hours for case in self.task.cases]
-            share = None if None in given else np.array(given, float)
-            speed = self.duty.speed[:, of]
-            return np.asarray(bearing_hours(self.duty.lives["damage"], speed, share))
+            return np.asarray(bearing_hours(*self._spectrum(self.duty)))
         found = []
         for bearing in self.bearings:
             life = None if bearing.life is None else bearing.life.life_hours
             found.append(np.nan if life is None else float(life))
         return np.array(found)
+
+    @functools.cached_property
+    def worst_cases(self) -> list[int | None]:
+        """Case with the most damage to each bearing over its hours; `None` of springs,
+        of bearings without damage, and without cases."""
+        if self.duty is None:
+            return [None] * len(self.task.system.seats)
+        damage = np.nan_to_num(case_damage(*self._spectrum(self.duty)))
+        return [int(np.argmax(of)) if of.any() else None for of in damage.T]
+
+    def _spectrum(self, duty: DutyResult) -> tuple[Any, Any, Any]:
+        """Return damage, speeds of the bearings and hours of the cases."""
+        of = [self.task.system.station(seat)[0] for seat in self.task.system.seats]
+        given = [case.hours for case in self.task.cases]
+        hours = None if None in given else np.array(given, float)
+        return duty.lives["damage"], duty.speed[:, of], hours
+
+    @property
+    def warm_nodes(self) -> dict[str, np.ndarray]:
+        """Temperatures over `task.times` by the name of ring or housing (time,) [K]."""
+        if self.warming is None:
+            return {}
+        found, seats = {}, self.task.system.seats
+        for k, seat in enumerate(seats):
+            if seat.installed is not None:
+                found[f"{seat.name} inner"] = self.warming[:, 2 * k]
+                found[f"{seat.name} outer"] = self.warming[:, 2 * k + 1]
+        if self.warming.shape[1] > 2 * len(seats):
+            found["housing"] = self.warming[:, -1]
+        return found
+
+    @property
+    def shown_case(self) -> str:
+        """Case of which a picture or a table is, in words; empty without cases."""
+        count = len(self.task.cases)
+        return f"case 0 of {count}" if self.duty is not None else ""
+
+    @property
+    def result(self) -> Result:
+        """Most severe result of all cases, or of the one."""
+        codes = [int(self.solution.result)]
+        codes += [] if self.thermal is None else [int(self.thermal.result)]
+        codes += [] if self.duty is None else [int(np.max(self.duty.result))]
+        return Result(max(codes))
 
     @functools.cached_property
     def system_hours(self) -> float | None:
@@ -154,7 +195,7 @@ def run_shafts(
     """
     say = on_stage or (lambda name: None)
     system, cases = task.system, task.cases
-    state, problem = None, ""
+    states, problem = [], ""
     try:
         if task.heat is None:
             say("static equilibrium")
@@ -163,52 +204,77 @@ def run_shafts(
                 problem = unsolved(system, jax.device_get(found), np.asarray(place))
         else:
             say("thermal equilibrium")
-            state = solve_heat(system, task.heat, throw=False)
-            found = state.solution
-            if int(state.result) != Result.CONVERGED:
-                problem = overheated(state)
-            task = _warm(task, state)
+            states = _thermal(task)
+            found = states[0].solution
+            if int(states[0].result) != Result.CONVERGED:
+                problem = overheated(states[0])
+            else:
+                task = _warm(task, states[0])
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
     found, bearings = jax.device_get(found), ()
     duty, rings, warming, solved = None, None, None, not problem
     if cases and solved:
         say("load cases")
-        duty, rings, problem = _duty(task, state)
+        duty, rings, problem = _duty(task, states)
     if solved:
         say("bearings")
         speeds = found.power.speed[None] if duty is None else duty.speed
         bearings = tuple(_in_place(task, found, np.asarray(speeds)))
-    if task.heat is not None and task.times is not None:
+    if solved and task.heat is not None and task.times is not None:
         say("warming up")
         warming = np.asarray(warm_up(system, task.heat, task.times))
-    state = jax.device_get(state)
+    state = jax.device_get(states[0]) if states else None
     run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
     warned = dict.fromkeys((*task.warnings, *_warnings(run)))
     return dataclasses.replace(run, warnings=tuple(warned))
 
 
+def _thermal(task: ShaftScene) -> list[ThermalState]:
+    """Find the temperatures of all cases, of those at rest as `pauses` has them."""
+    cases, states = task.cases or (task,), []
+    offsets: dict[Any, Any] = {}
+    for case in cases:
+        assert case.heat is not None
+        # The first keeps its preload, for the warnings.
+        system = adjusted(case.system, offsets) if states else case.system
+        states.append(solve_heat(system, case.heat, throw=False))
+    hot = any(int(state.result) != Result.CONVERGED for state in states)
+    if task.pauses == "ambient" or hot:
+        return states
+    # Rises are as linear in the heat as the network: their mean is of its mean.
+    hours = [case.hours for case in cases]
+    weights = None if None in hours else np.array(hours, float)
+    warm = {
+        name: np.average([getattr(s, name) for s in states], axis=0, weights=weights)
+        for name in ("inner_ring", "outer_ring", "housing")
+    }
+    rings = np.stack([warm["inner_ring"], warm["outer_ring"]], axis=1).ravel()
+    for k, case in enumerate(cases):
+        if not case.system.turns and case.heat is not None:
+            rises = jnp.asarray(rings) - case.heat.ambient
+            system = with_temperatures(states[k].system, case.heat, rises)
+            found, _ = system_state(adjusted(system))
+            more = {"system": system, "solution": found, "result": found.result}
+            states[k] = dataclasses.replace(states[k], **warm, **more)
+    return states
+
+
 def _duty(
-    task: ShaftScene, first: ThermalState | None
+    task: ShaftScene, states: list[ThermalState]
 ) -> tuple[DutyResult, np.ndarray | None, str]:
     """Solve the load cases, each warm if there is heat.
 
     Args:
         task: The scene.
-        first: Temperatures of the first case; `None` without heat.
+        states: Temperatures in each case; empty without heat.
 
     Returns:
         The cases, temperatures of the rings, and what was not solved, in words.
     """
-    cases, states = task.cases, []
+    cases = task.cases
     try:
-        if first is not None:
-            offsets: dict[Any, Any] = {}
-            states = [first]
-            for case in cases[1:]:
-                assert case.heat is not None
-                cold = adjusted(case.system, offsets)
-                states.append(solve_heat(cold, case.heat, throw=False))
+        if states:
             cases = [
                 _warm(case, state) if state.result == Result.CONVERGED else case
                 for case, state in zip(cases, states, strict=True)

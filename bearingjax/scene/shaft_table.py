@@ -24,7 +24,9 @@ from ..shafts import (
     ShaftLoad,
     ShaftSystem,
 )
+from ..shafts.duty import alike
 from ..shafts.parts import APEXES, HANDS
+from ..statics.cases import check_hours
 from ..statics.life import LifeConditions
 from .cases_table import CasesKeys, Varied
 from .files import read_matrix
@@ -46,6 +48,10 @@ AXES = {
 }
 """Directions along the global axes, by name."""
 _MOST_CASES = 20_000
+_NAMES = {"bearing": "bearings"} | {
+    f"{name}s": name for name in ("shaft", "gear", "belt", "coupling", "load")
+}
+"""Names of tables as they may be mistaken, and the right ones."""
 
 
 def _vector(table: Table, key: str) -> tuple[float, ...]:
@@ -225,6 +231,9 @@ class SeatKeys(Keys):
         if self.housing is not None and len(self.housing) != 3:
             problem = f"has {len(self.housing)} numbers; it must have three, x, y, z"
             raise self.table.error("housing", problem)
+        if self.housing is not None and min(self.housing) < 0:
+            problem = f"{min(self.housing):g} N/m is negative; a housing resists"
+            raise self.table.error("housing", problem)
 
     def seat(
         self, name: str, shafts: Mapping[str, ShaftKeys], scene: Scene | None
@@ -287,6 +296,7 @@ class ShaftScene:
         lives: Conditions of the life of each bearing; `None` of springs.
         heat: Paths of the friction heat, or `None`: temperatures are as given.
         times: Times at which the warming up is reported (time,) [s], or `None`.
+        pauses: Temperatures of cases at rest, "ambient" or "mean".
         hours: Time in this case [h]; `None` without cases.
         cases: Each load case as a scene of its own; empty without [cases].
         varied: Keys that vary from case to case.
@@ -301,6 +311,7 @@ class ShaftScene:
     lives: tuple[LifeConditions | None, ...]
     heat: HeatNetwork | None
     times: np.ndarray | None
+    pauses: str
     hours: float | None
     cases: tuple["ShaftScene", ...]
     varied: tuple[str, ...]
@@ -320,6 +331,11 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
+    for key in data:
+        name = _NAMES.get(key)
+        if name is not None and ("shaft" in data or name == "shaft"):
+            problem = f"in a system of shafts write [{name}.NAME] for [{key}.NAME]"
+            raise SceneError(f"{path.name}: `{key}`: {problem}")
     if not is_shafts(data):
         problem = "the scene of a system of shafts has [shaft.NAME] and [bearings.NAME]"
         raise SceneError(f"{path.name}: `shaft`: {problem}")
@@ -332,7 +348,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     elsewhere = ("cases", "optimise")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
-        return _read(alone, path, known)
+        return _with_lives(_read(alone, path, known), path)
     count = columns[0].index.size
     if count > _MOST_CASES:
         problem = f"{count} cases are too many; at most {_MOST_CASES}"
@@ -354,6 +370,17 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
             raise SceneError(f"{error} (case {case})") from error
         cases.append(dataclasses.replace(one, hours=_hours(hours)))
         every.append(values)
+    try:
+        given = [one.hours for one in cases]
+        check_hours(None if None in given else given)
+        systems = alike([one.system for one in cases])
+    except ValueError as error:
+        where = "" if "Cases" not in str(error) else "`cases.hours`: "
+        raise SceneError(f"{path.name}: {where}{error}") from error
+    cases = [
+        _with_lives(dataclasses.replace(one, system=system), path)
+        for one, system in zip(cases, systems, strict=True)
+    ]
     first = cases[0]
     warned = dict.fromkeys(text for one in cases for text in one.warnings)
     return dataclasses.replace(
@@ -371,6 +398,19 @@ _VARYING = (
     "drive load bearings gear belt coupling shaft life lubricant system heat".split()
 )
 _ALLOWED = ", ".join(_VARYING)
+
+
+def _with_lives(scene: ShaftScene, path: Path) -> ShaftScene:
+    """Return a scene with the conditions of the lives of its bearings."""
+    turning = scene.system.inertia is not None
+    if scene.heat is not None and not turning:
+        problem = "needs a `speed` of the drive; at rest nothing warms"
+        raise SceneError(f"{path.name}: `heat`: {problem}")
+    lives = (
+        None if one is None else life_conditions(one, (), turning)
+        for one in scene.bearings
+    )
+    return dataclasses.replace(scene, lives=tuple(lives))
 
 
 def _hours(value: Any) -> float | None:
@@ -433,20 +473,15 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             index, station = whole.station(seat)
             given = scene.fits, scene.catalogue, whole.beam(index), station
             check_seat(seat.name, *given)
-    heat, times = read_heat(top, own, alone)
-    if heat is not None and (drive is None or float(drive.speed) == 0.0):
-        raise top.error("heat", "needs a `speed` of the drive; at rest nothing warms")
-    turning = drive is not None and float(drive.speed) != 0.0
+    heat, keys = read_heat(top, own, alone)
     return ShaftScene(
         name=path.stem,
         system=whole,
         bearings=tuple(alone.values()),
-        lives=tuple(
-            None if scene is None else life_conditions(scene, (), turning)
-            for scene in alone.values()
-        ),
+        lives=(),
         heat=heat,
-        times=times,
+        times=None if keys is None else keys.instants,
+        pauses="ambient" if keys is None else keys.pauses,
         hours=None,
         cases=(),
         varied=(),

@@ -17,6 +17,7 @@ from ..element.inertia import Speed
 from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
+from ..statics.cases import check_hours
 from ..statics.life import LifeConditions, life_of
 from ..statics.life_warning import life_sizes
 from ..statics.reference_life import BALLS, exponents_of
@@ -25,7 +26,7 @@ from ..statics.warning import sizes
 from .equilibrium import check_torques, system_state, torques_left
 from .power import power_flow
 from .seats import adjusted, in_place, speed_of
-from .system import ShaftSystem
+from .system import ShaftSystem, feel_speed
 
 BATCH = 64
 """Cases that are solved side by side."""
@@ -154,8 +155,7 @@ def alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
     Raises:
         ValueError: If parts stand in another order in one of them.
     """
-    known = [system.inertia for system in systems]
-    fast = None if all(one is None for one in known) else any(known)
+    fast = feel_speed(system.inertia for system in systems)
     first, found = systems[0], []
     for k, system in enumerate(systems):
         for plan, own in zip(first.plans, system.plans, strict=True):
@@ -264,12 +264,33 @@ def bearing_hours(
         speed: Speed of the shaft of each bearing [rad/s].
         hours: Time in each case [h]; `None`: the same in all.
 
+    Raises:
+        ValueError: For hours that are negative, or all zero.
+
     Source: Palmgren (1924), Miner (1945); ISO 281.
     """
-    share = jnp.ones(damage.shape[0]) if hours is None else jnp.asarray(hours)
-    share = share / jnp.sum(share)
-    used = share @ (damage * jnp.abs(speed) * (3600.0 / (2.0 * jnp.pi)))
+    used = jnp.sum(case_damage(damage, speed, hours), axis=0)
     return jnp.where(used == 0, jnp.inf, 1.0 / jnp.where(used == 0, 1.0, used))
+
+
+def case_damage(
+    damage: Float[Array | np.ndarray, "case bearing"],
+    speed: Float[Array | np.ndarray, "case bearing"],
+    hours: Float[Array | np.ndarray, " case"] | None = None,
+) -> Array:
+    """Return the damage of each case in an hour of the spectrum (case, bearing) [1/h].
+
+    Args:
+        damage, speed, hours: As in `bearing_hours`.
+
+    Raises:
+        ValueError: For hours that are negative, or all zero.
+    """
+    check_hours(hours)
+    share = jnp.ones(damage.shape[0]) if hours is None else jnp.asarray(hours)
+    share = (share / jnp.sum(share))[:, None]
+    turns = jnp.abs(speed) * (3600.0 / (2.0 * jnp.pi))
+    return share * damage * turns
 
 
 def system_life(system: ShaftSystem, hours: Any) -> Scalar:

@@ -188,11 +188,14 @@ class ThermalState(eqx.Module):
 def solve_heat(
     system: ShaftSystem, network: HeatNetwork, *, throw: bool = True
 ) -> ThermalState:
-    """Find the temperatures of a turning system, and its equilibrium at them.
+    """Find the temperatures of a system, and its equilibrium at them.
+
+    A system at rest is as cold as the ambience.
 
     Args:
         system: The system; clearances, preloads and the distance of its bearings change
-            with temperature where bearings have seats (`Installed.mounting`).
+            with temperature where bearings have seats (`Installed.mounting`), without
+            them only the viscosity of the oil.
         network: Paths of the heat.
         throw: Raise if there is no thermal equilibrium. Static.
 
@@ -202,7 +205,7 @@ def solve_heat(
     Fails: `STEP_LIMIT`: temperatures run away.
 
     Raises:
-        ValueError: If the system is at rest, or paths and bearings differ in number.
+        ValueError: If paths and bearings differ in number.
         SolveError: If no equilibrium was found and `throw`.
     """
     _check(system, network)
@@ -214,7 +217,7 @@ def solve_heat(
     else:
 
         def evaluated(rise):
-            return _evaluated(cold, network, rise)
+            return _at(cold, network, rise)
 
         given = [_conductance(network), _capacity(network)]
         found, solution = searched(evaluated, given, None, stepped_while)
@@ -283,7 +286,7 @@ def warm_up(
         return network.ambient + _transient(cold, network, times, steps)
 
     def evaluated(rise):
-        return _evaluated(cold, network, rise)[:2]
+        return _at(cold, network, rise)[:2]
 
     def made(rise):
         return evaluated(rise)[0]
@@ -311,7 +314,8 @@ def runaway_speed(
     sense = -1.0 if float(system.drive.speed) < 0 else 1.0
 
     def stays(speed):
-        turning = eqx.tree_at(lambda s: s.drive.speed, system, as_real(sense * speed))
+        drive = eqx.tree_at(lambda d: d.speed, system.drive, as_real(sense * speed))
+        turning = system.with_parts(drive=drive)
         found = solve_heat(turning, network, throw=False)
         return int(found.result) == Result.CONVERGED
 
@@ -336,10 +340,14 @@ def _check(system, network) -> None:
                 f"solve_heat: {seat.name} is a bearing without paths of its heat, or"
                 " springs with them."
             )
-    if system.drive is None or (
-        not is_traced(system.drive.speed) and float(system.drive.speed) == 0.0
-    ):
-        raise ValueError("solve_heat: the system is at rest; nothing warms it.")
+
+
+def _at(system, network, rise):
+    """Return `_evaluated`; at rest nothing makes heat."""
+    if system.turns:
+        return _evaluated(system, network, rise)
+    solution, _ = system_state(with_temperatures(system, network, rise))
+    return jnp.zeros_like(rise), jnp.zeros((rise.size, rise.size)), solution
 
 
 def _is_traced(*trees: Any) -> bool:
@@ -453,7 +461,7 @@ def heat_and_state(
     if network.housing is not None:
         made[-1] = solution.power.loss
     turning = [k for k, path in enumerate(network.paths) if path is not None]
-    if not turning:
+    if not turning or warm.inertia is None:
         return jnp.stack(made), solution
     speeds = [speed_of(warm, k, solution.power.speed)[0].inner for k in turning]
     oil = [network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1]) for k in turning]

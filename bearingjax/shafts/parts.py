@@ -61,11 +61,16 @@ def _one_source(owner) -> None:
 def torque_of(part: Any, speed: Any) -> Any:
     """Return the given torque on the shaft of a part [N m]; `None` if none is given.
 
+    Without power there is no torque, also at rest.
+
     Args:
         part: Part with `torque` and `power`.
         speed: Speed of its shaft [rad/s].
     """
-    return part.torque if part.power is None else part.power / speed
+    if part.power is None:
+        return part.torque
+    idle = (part.power == 0) & (speed == 0)
+    return jnp.where(idle, 0.0, part.power / jnp.where(idle, 1.0, speed))
 
 
 class AbstractWheel(AbstractPlaced):
@@ -73,7 +78,7 @@ class AbstractWheel(AbstractPlaced):
 
     Attributes:
         mates_with: Wheel of another shaft that it meshes with, or whose belt it shares;
-            each pair is named once. `None`: none of the system.
+            one of the two may name the other. `None`: none of the system.
         torque: By which a mate outside the system acts on the shaft, about its local z
             [N m]; `None`: from the balance of torques, of one wheel at most.
         power: The same as power into the shaft, negative out of it [W].
@@ -112,11 +117,12 @@ class Gear(AbstractWheel):
         hand: "right" or "left"; "none" of straight teeth.
         pressure_angle: Normal to the teeth [rad].
         mesh_angle: Angle of the mesh around the shaft, from local x towards local
-            y [rad]; `None`: from the places of both shafts.
+            y [rad]; `None`: from the places of both shafts, with which it must agree.
         pitch_angle: Half the angle of the pitch cone of a bevel gear [rad]; `None`:
             cylindrical.
         apex: Side of its apex, "+z" or "-z" of the shaft; `None` of a cylindrical gear.
-        face_width: Width of the teeth, over which a misalignment is told [m].
+        face_width: Width of the teeth, over which a misalignment is told; the force of
+            two gears acts in the middle of the common part of their faces [m].
 
     Others as in `AbstractWheel`. Traced: all numbers but `teeth`.
     """
@@ -291,7 +297,8 @@ class Drive(eqx.Module):
         number(self, "speed")
         _one_source(self)
         turns = is_traced(self.speed) or float(self.speed) != 0.0
-        if self.power is not None and not turns:
+        idle = not is_traced(self.power) and self.power == 0.0
+        if self.power is not None and not (turns or idle):
             raise ValueError(
                 "Drive: `power` needs a `speed`, from which its torque follows; give"
                 " the `torque` of a machine at rest."
@@ -377,3 +384,18 @@ class Seat(AbstractPlaced):
         if self.preload is not None:
             positive(self, "preload")
         number(self, "axial_offset")
+        moved = not is_traced(self.axial_offset) and float(self.axial_offset) != 0.0
+        for name, given in (
+            ("preload", self.preload is not None),
+            ("axial_offset", moved),
+        ):
+            if given and (self.stiffness is not None or self.floating):
+                why = "its outer ring slides (`floating`), so that nothing keeps it"
+                if self.stiffness is not None:
+                    why = "it goes with a bearing, not with springs (`stiffness`)"
+                raise ValueError(f"Seat: `{name}` of {self.name} has no effect: {why}.")
+        if self.turned and self.stiffness is not None:
+            raise ValueError(
+                f"Seat: `turned` of {self.name} has no effect: springs are the same"
+                " from both sides."
+            )

@@ -9,7 +9,8 @@ from jaxtyping import Array, Float
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
 from .line import ShaftLine
-from .parts import APEXES, Gear, Pulley, torque_of
+from .mesh_place import mesh_place
+from .parts import Gear, Pulley, torque_of
 from .system import ShaftSystem
 
 
@@ -21,12 +22,14 @@ class Contact(NamedTuple):
         mate: Its mate in the system; `None`: outside of it.
         radial: Direction from the shaft to the mesh, of a pulley of the pull (3,) [1].
         radius: Working pitch radius [m].
+        point: Where the force acts, from the shaft at the wheel (3,) [m].
     """
 
     wheel: Gear | Pulley
     mate: Gear | Pulley | None
     radial: Float[Array, "3"]
     radius: Scalar
+    point: Float[Array, "3"]
 
 
 class Mesh(eqx.Module):
@@ -79,16 +82,15 @@ def contacts(system: ShaftSystem) -> list[tuple[Contact, Contact | None]]:
         system: The system.
     """
     found: list[tuple[Contact, Contact | None]] = []
-    taken = {wheel.mates_with for wheel in system.wheels}
+    pairs = system.pairs()
+    taken = {wheel.name for pair in pairs for wheel in pair}
     for wheel in system.wheels:
-        shaft = system.shaft(wheel.shaft)
-        if wheel.mates_with is None:
-            if wheel.name not in taken:
-                found.append((_alone(wheel, shaft), None))
-            continue
-        mate = system.wheel(wheel.mates_with)
-        pair = _between(wheel, mate, shaft, system.shaft(mate.shaft))
-        found.append(pair)
+        if wheel.name not in taken:
+            found.append((_alone(wheel, system.shaft(wheel.shaft)), None))
+        for one, other in pairs:
+            if one.name == wheel.name:
+                shafts = system.shaft(one.shaft), system.shaft(other.shaft)
+                found.append(_between(one, other, *shafts))
     return found
 
 
@@ -100,26 +102,15 @@ def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
             f"ShaftSystem: `{name}` of {wheel.name} is missing; it has no mate in the"
             " system from which it follows."
         )
-    return Contact(wheel, None, shaft.radial_direction(angle), wheel.radius)
+    radial = shaft.radial_direction(angle)
+    return Contact(wheel, None, radial, wheel.radius, wheel.radius * radial)
 
 
 def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Contact]:
     """Return both contacts of a pair."""
-    z, known = shaft.frame[2], shaft.origin is not None and far.origin is not None
-    if isinstance(one, Gear) and one.pitch_angle is not None:
-        outward = [
-            -APEXES[str(g.apex)] * s.frame[2] for g, s in ((one, shaft), (other, far))
-        ]
-        radial = [_unit(_across(b, a)) for a, b in (outward, outward[::-1])]
-        radii = one.radius, other.radius
-    elif known:
-        first, second = (as_real(s.origin) for s in (shaft, far))
-        apart = _across(second - first, z)
-        distance = jnp.sqrt(apart @ apart)
-        radial = [apart / distance, -apart / distance]
-        share = distance / (one.radius + other.radius)
-        share = share if isinstance(one, Gear) else jnp.ones_like(share)
-        radii = one.radius * share, other.radius * share
+    found = mesh_place(one, other, shaft, far)
+    if found is not None:
+        radial, radii, points = [*found.ways], found.radii, found.points
     else:
         name = "mesh_angle" if isinstance(one, Gear) else "direction"
         angles = [getattr(wheel, name) for wheel in (one, other)]
@@ -135,23 +126,16 @@ def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Conta
             else -far.radial_direction(angles[1])
         )
         radial, radii = [first, -first], (one.radius, other.radius)
+        points = [r * way for r, way in zip(radii, radial, strict=True)]
     given = [getattr(wheel, "direction", None) for wheel in (one, other)]
     radial = [
         s.radial_direction(angle) if angle is not None else way
         for s, angle, way in zip((shaft, far), given, radial, strict=True)
     ]
     return (
-        Contact(one, other, radial[0], radii[0]),
-        Contact(other, one, radial[1], radii[1]),
+        Contact(one, other, radial[0], radii[0], points[0]),
+        Contact(other, one, radial[1], radii[1], points[1]),
     )
-
-
-def _across(vector, axis):
-    return vector - (vector @ axis) * axis
-
-
-def _unit(vector):
-    return vector / jnp.sqrt(vector @ vector)
 
 
 def power_flow(system: ShaftSystem) -> PowerFlow:
@@ -361,12 +345,10 @@ def _closing(system, names, free, away, order) -> tuple[str | None, int]:
 
 def _feeds(system, names, shaft, away) -> bool:
     """Whether a shaft drives another, farther from the drive."""
-    for wheel in system.wheels:
-        if wheel.mates_with is not None:
-            pair = wheel, system.wheel(wheel.mates_with)
-            a, b = (names.index(one.shaft) for one in pair)
-            if shaft in (a, b) and away[a if shaft == b else b] > away[shaft]:
-                return True
+    for pair in system.pairs():
+        a, b = (names.index(one.shaft) for one in pair)
+        if shaft in (a, b) and away[a if shaft == b else b] > away[shaft]:
+            return True
     return False
 
 
@@ -381,5 +363,4 @@ def _mesh(system: ShaftSystem, contact: Contact, torque, push) -> Mesh:
         return Mesh(wheel.name, mate, torque, pull, nothing, nothing)
     sign = jnp.where(push < 0, -1.0, 1.0)
     way, line = wheel.push(axis, contact.radial, contact.radius, sign)
-    place = contact.radius * contact.radial
-    return Mesh(wheel.name, mate, torque, push * way, place, line)
+    return Mesh(wheel.name, mate, torque, push * way, contact.point, line)

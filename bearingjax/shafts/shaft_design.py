@@ -19,6 +19,7 @@ from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted
+from ..statics.cases import check_hours
 from ..statics.life import LifeConditions
 from ..statics.warning import counted
 from .bearing_oil import BearingOil
@@ -184,7 +185,7 @@ def load_cases(
 
     Raises:
         ValueError: If there are none, they differ in structure, or the hours are not
-            one for each.
+            one for each, negative, or all zero.
     """
     if not designs or (hours is not None and len(hours) != len(designs)):
         raise ValueError(
@@ -192,6 +193,7 @@ def load_cases(
             f" {'no' if hours is None else len(hours)} hours; give one design at least,"
             " and hours for each or none."
         )
+    check_hours(hours)
     systems = alike([design.system for design in designs])
     whole = [
         eqx.tree_at(lambda d: d.system, design, system)

@@ -16,6 +16,7 @@ from ..numerics.types import as_real
 from ..numerics.units import unit
 from ..rotor import Shaft
 from .line import Plan, ShaftLine
+from .mesh_place import mesh_place
 from .parts import (
     AbstractPlaced,
     Coupling,
@@ -31,6 +32,8 @@ _APART = 0.06
 profile shifts do not take gears farther."""
 _FAST = 10.0 * 2.0 * np.pi / 60.0
 """Speed times pitch diameter from which inertia counts, 10 000 mm/min [m rad/s]."""
+_ANGLE = np.deg2rad(0.5)
+"""Largest difference of a given angle of a mesh from that of the places [rad]."""
 _ACROSS = 1e-6
 """Sine of the angle between two axes from which they are not parallel [1]."""
 
@@ -43,6 +46,16 @@ def _all(parts: Any) -> tuple:
 def _order(plan: Plan) -> str:
     """Stations of a shaft in words."""
     return ", ".join(s if isinstance(s, str) else f"end {s}" for s in plan.stations)
+
+
+def feel_speed(known: Iterable[bool | None]) -> bool | None:
+    """Return `ShaftSystem.inertia` of systems that share it: what one of them needs.
+
+    Args:
+        known: That of each.
+    """
+    known = [one for one in known if one is not None]
+    return any(known) if known else None
 
 
 class HousingStiffness(eqx.Module):
@@ -60,6 +73,12 @@ class HousingStiffness(eqx.Module):
 
     def __check_init__(self):
         n, shape = len(self.seats), jnp.shape(self.matrix)
+        twice = [name for name in self.seats if self.seats.count(name) > 1]
+        if twice:
+            raise ValueError(
+                f"HousingStiffness: `seats` has {twice[0]} twice; the matrix has one"
+                " place for each."
+            )
         if not n or shape not in ((3 * n, 3 * n), (6 * n, 6 * n)):
             raise ValueError(
                 f"HousingStiffness: `matrix` has shape {shape}; for the {n} seats"
@@ -171,30 +190,48 @@ class ShaftSystem(eqx.Module):
             shaft.plan({p.name: p.position for p in self.on(shaft.name)})
             for shaft in self.shafts
         )
-        self.inertia = self._is_fast()
+        for pair in self.pairs():
+            self._check_mesh(*pair)
         for wheel in self.wheels:
-            if wheel.mates_with is not None:
-                self._check_mesh(wheel, self.wheel(wheel.mates_with))
+            if isinstance(wheel, Gear) and wheel.mesh_angle is not None:
+                self._check_angle(wheel)
+        self._check_powers()
+        self.inertia = self._is_fast()
 
     def _is_fast(self) -> bool | None:
         """Whether a bearing turns fast enough for inertia; `None` at rest."""
-        if self.drive is None:
+        if self.drive is None or not self.turns:
             return None
         if is_traced(self.drive.speed):
             return True
-        if float(self.drive.speed) == 0.0:
-            return None
         sizes = [
-            2.0 * float(pitch_radius(seat.installed.drawing.bearing))
+            (seat.shaft, pitch_radius(seat.installed.drawing.bearing))
             for seat in self.seats
             if seat.installed is not None
         ]
-        # Shafts behind gears may be faster than the drive.
-        step = max((wheel.radius for wheel in self.wheels), default=1.0) / min(
-            (wheel.radius for wheel in self.wheels), default=1.0
+        if any(map(is_traced, jax.tree.leaves((self.wheels, [r for _, r in sizes])))):
+            return True
+        ratio = self._speed_ratios()
+        speed = abs(float(self.drive.speed))
+        return any(
+            speed * ratio.get(shaft, 1.0) * 2.0 * float(radius) >= _FAST
+            for shaft, radius in sizes
         )
-        fastest = abs(float(self.drive.speed)) * max(1.0, float(step))
-        return fastest * max(sizes, default=0.0) >= _FAST
+
+    def _speed_ratios(self) -> dict[str, float]:
+        """Return sizes of the speeds of all shafts over that of the drive, by name."""
+        into = self.drive.into if self.drive is not None else ""
+        names = [wheel.name for wheel in self.wheels]
+        ratio = {self.wheel(into).shaft if into in names else into: 1.0}
+        pairs = self.pairs()
+        for _ in pairs:
+            for near, far in (*pairs, *(pair[::-1] for pair in pairs)):
+                sizes = [
+                    w.teeth if isinstance(w, Gear) else w.radius for w in (near, far)
+                ]
+                if near.shaft in ratio and far.shaft not in ratio:
+                    ratio[far.shaft] = ratio[near.shaft] * float(sizes[0] / sizes[1])
+        return ratio
 
     def _check_kinds(self):
         kinds = {
@@ -264,9 +301,7 @@ class ShaftSystem(eqx.Module):
         if one.shaft == other.shaft:
             raise ValueError(f"ShaftSystem: {pair} sit on one shaft.")
         for wheel in (one, other):
-            if wheel.mates_with is not None and (
-                wheel.torque is not None or wheel.power is not None
-            ):
+            if wheel.torque is not None or wheel.power is not None:
                 raise ValueError(
                     f"ShaftSystem: {wheel.name} has a mate, from which its torque"
                     " follows; leave out its `torque` or `power`."
@@ -278,6 +313,7 @@ class ShaftSystem(eqx.Module):
         if isinstance(one, Pulley):
             if not parallel:
                 raise ValueError(f"ShaftSystem: the shafts of {pair} are not parallel.")
+            self._check_place(one, other)
             return
         for name in ("normal_module", "pressure_angle", "helix_angle"):
             known = concrete(getattr(one, name), getattr(other, name))
@@ -299,7 +335,7 @@ class ShaftSystem(eqx.Module):
                     f"ShaftSystem: the shafts of {pair} are not parallel; crossed"
                     " helical gears and worms are not modelled."
                 )
-            self._check_distance(one, other, shafts)
+            self._check_place(one, other)
             return
         sides = (1.0 if g.apex == "+z" else -1.0 for g in (one, other))
         a, b = (
@@ -314,34 +350,90 @@ class ShaftSystem(eqx.Module):
                 f" {np.degrees(sum(known)):.5g} deg; between the shafts, from the apex"
                 f" to the gears, are {np.degrees(between):.5g} deg."
             )
+        self._check_place(one, other)
 
-    def _check_distance(self, one, other, shafts):
-        first, second = (shaft.origin for shaft in shafts)
-        if first is None or second is None:
-            if one.mesh_angle is None and other.mesh_angle is None:
+    def _check_place(self, one, other):
+        """Raise if it is not known where two wheels touch, or they do not."""
+        pair, gears = f"{one.name} and {other.name}", isinstance(one, Gear)
+        both = mesh_place(one, other, self.shaft(one.shaft), self.shaft(other.shaft))
+        if both is None:
+            if gears and one.mesh_angle is None and other.mesh_angle is None:
                 raise ValueError(
-                    f"ShaftSystem: it is not known where {one.name} and {other.name}"
-                    " mesh; give a `mesh_angle` of one of them, or the origins of both"
-                    " shafts."
+                    f"ShaftSystem: it is not known where {pair} mesh; give a"
+                    " `mesh_angle` of one of them, or the origins of both shafts."
                 )
             return
-        apart = np.asarray(second) - np.asarray(first)
-        z = np.asarray(shafts[0].frame[2])
-        distance = np.linalg.norm(apart - (apart @ z) * z)
-        usual = float(one.radius + other.radius)
-        if abs(distance - usual) > _APART * usual:
+        if any(map(is_traced, (*both.gap, both.size, both.overlap))):
+            return
+        gap, size, overlap = float(np.linalg.norm(both.gap)), both.size, both.overlap
+        usual, bevel = one.radius + other.radius, gears and one.pitch_angle is not None
+        if gears and abs(size - usual) > _APART * usual:
             raise ValueError(
-                f"ShaftSystem: the shafts of {one.name} and {other.name} are"
-                f" {1e3 * distance:.6g} mm apart, their pitch circles touch at"
-                f" {1e3 * usual:.6g} mm."
+                f"ShaftSystem: the shafts of {pair} are {1e3 * float(size):.6g} mm"
+                f" apart, their pitch circles touch at {1e3 * float(usual):.6g} mm."
             )
-        far = np.asarray(shafts[1].frame[2]) * float(other.position)
-        along = float((apart + far) @ z) - float(one.position)
-        if abs(along) > _APART * usual:
+        where = f"{1e3 * gap:.6g} mm apart along their shafts"
+        if overlap is not None and overlap <= 0.0:
+            problem = f"the faces of {pair} do not overlap, middles {where}"
+        elif overlap is not None or gap <= _APART * size:
+            return
+        elif bevel:
+            problem = f"the cones of {pair} have apexes that are {1e3 * gap:.6g} mm"
+            problem += " apart; bevel gears that mesh have one"
+        else:
+            problem = f"{pair} are {where}; wheels that mesh, or share a belt, are in"
+            problem += " one plane"
+        raise ValueError(f"ShaftSystem: {problem}.")
+
+    def _check_angle(self, gear):
+        """Raise if a `mesh_angle` contradicts the places of the shafts, or the angle of
+        the mate, or would be that of two meshes."""
+        shaft, ways, source = self.shaft(gear.shaft), [], "the places of the shafts"
+        pairs, lent = self.pairs(), []
+        for pair in pairs:
+            names = [wheel.name for wheel in pair]
+            if gear.name not in names:
+                continue
+            side = names.index(gear.name)
+            both = mesh_place(*pair, *(self.shaft(wheel.shaft) for wheel in pair))
+            mate: Any = pair[1 - side]
+            way = None
+            if both is not None:
+                way = both.ways[side]
+            elif mate.mesh_angle is None:
+                lent.append(mate.name)
+            elif sum(mate.name in {w.name for w in p} for p in pairs) == 1:
+                way = -self.shaft(mate.shaft).radial_direction(mate.mesh_angle)
+                source = f"that of {mate.name}"
+            ways.append(way)
+        if len(lent) > 1:
             raise ValueError(
-                f"ShaftSystem: {one.name} and {other.name} are {1e3 * along:.6g} mm"
-                " apart along their shafts; gears that mesh are in one plane."
+                f"ShaftSystem: `mesh_angle` of {gear.name} would be that of its meshes"
+                f" with {' and '.join(lent)}; give a `mesh_angle` of each of these."
             )
+        own = shaft.radial_direction(gear.mesh_angle)
+        if not ways or any(way is None or is_traced(way) for way in (*ways, own)):
+            return
+        if max(float(way @ own) for way in ways) < np.cos(_ANGLE):
+            there = np.arctan2(shaft.frame[1] @ ways[0], shaft.frame[0] @ ways[0])
+            raise ValueError(
+                f"ShaftSystem: `mesh_angle` of {gear.name} is"
+                f" {np.degrees(float(gear.mesh_angle)):.6g} deg; by {source} it meshes"
+                f" at {np.degrees(there):.6g} deg; leave out one of them."
+            )
+
+    def _check_powers(self):
+        """Raise for a power at rest, from which no torque follows."""
+        if self.turns:
+            return
+        for part in (*self.wheels, *self.couplings):
+            power = part.power
+            if power is not None and (is_traced(power) or float(power) != 0.0):
+                raise ValueError(
+                    f"ShaftSystem: `power` of {part.name} needs a `speed` of the drive,"
+                    " from which its torque follows; give the `torque` of a machine at"
+                    " rest."
+                )
 
     def with_parts(self, **parts: Any) -> "ShaftSystem":
         """Return the system with other numbers in some of its fields.
@@ -354,21 +446,34 @@ class ShaftSystem(eqx.Module):
             ValueError: If the system does not allow them, or a part has passed another
                 one or the end of a segment.
         """
+        inertia = self.inertia
         if not any(map(is_traced, jax.tree.leaves((self, parts)))):
             names = "shafts seats drive wheels couplings loads housing gravity".split()
             given = {name: getattr(self, name) for name in names}
-            plans = ShaftSystem(**given | parts).plans
-            for line, old, new in zip(self.shafts, self.plans, plans, strict=True):
+            whole = ShaftSystem(**given | parts)
+            for line, old, new in zip(
+                self.shafts, self.plans, whole.plans, strict=True
+            ):
                 if new._replace(divisions=old.divisions) != old:
                     raise ValueError(
                         f"ShaftSystem: on shaft {line.name} stand {_order(new)} in"
                         f" place of {_order(old)}; no part may pass another one or a"
                         " step of the shaft."
                     )
+            inertia = feel_speed((self.inertia, whole.inertia))
         other = copy.copy(self)
+        object.__setattr__(other, "inertia", inertia)
         for name, value in parts.items():
             object.__setattr__(other, name, value)
         return other
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is driven at a speed, or, of a traced speed, may be. Static."""
+        drive = self.drive
+        return drive is not None and (
+            is_traced(drive.speed) or float(drive.speed) != 0.0
+        )
 
     def shaft(self, name: str) -> ShaftLine:
         """Return a shaft by its name."""
@@ -377,6 +482,15 @@ class ShaftSystem(eqx.Module):
     def wheel(self, name: str) -> Gear | Pulley:
         """Return a wheel by its name."""
         return next(wheel for wheel in self.wheels if wheel.name == name)
+
+    def pairs(self) -> list[tuple[Gear | Pulley, Gear | Pulley]]:
+        """Return the pairs of mates, each once, also if both name each other."""
+        found: dict[Any, tuple[Any, Any]] = {}
+        for wheel in self.wheels:
+            if wheel.mates_with is not None:
+                mate = self.wheel(wheel.mates_with)
+                found.setdefault(frozenset((wheel.name, mate.name)), (wheel, mate))
+        return list(found.values())
 
     def on(self, shaft: str) -> list[AbstractPlaced]:
         """Return bearings, wheels and loads of a shaft by its name."""

@@ -132,7 +132,7 @@ class Cases(eqx.Module):
         for name in ("inner_speed", "outer_speed", "hours", "design"):
             setattr(self, name, full(name))
         self.prescribed = {name: full(name) for name in prescribed}
-        _check_hours(self.hours)
+        check_hours(self.hours)
 
     @property
     def count(self) -> int:
@@ -159,7 +159,15 @@ def _array(name, value, tail):
     return value
 
 
-def _check_hours(hours):
+def check_hours(hours: Any) -> None:
+    """Raise unless the hours of cases are finite, not negative, and not all zero.
+
+    Args:
+        hours: Time in each case [h], or `None`; traced ones are not checked.
+
+    Raises:
+        ValueError: If they are not.
+    """
     if hours is None or is_traced(hours):
         return
     values = np.atleast_1d(hours)

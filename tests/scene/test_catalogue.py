@@ -752,6 +752,8 @@ def test_examples_command(run):
     assert [line.split()[0] for line in lines] == list(shipped_scenes())
     kinds = {line.split()[0]: line.split()[1] for line in lines}
     assert kinds["deep_groove"] == "solve" and kinds["load_map"] == "sweep"
+    shafts = [name for name in kinds if name.startswith("shaft_")]
+    assert len(shafts) == 4 and {kinds[name] for name in shafts} == {"shaft"}
     assert kinds["skid_axial"] == "skid" and kinds["taper_contact"] == "contact"
     assert run("examples", "needle").out.startswith("# Drawn-cup needle roller bearing")
 

@@ -1,16 +1,25 @@
 """Scenes of shaft systems, and what `bearingjax shaft` makes of them."""
 
+import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from studies import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
+from bearingjax.numerics.result import Result
+from bearingjax.plot.shafts import _warming
 from bearingjax.scene import SceneError, read_shafts, run_shafts
+from bearingjax.scene.report_model import Grid
 from bearingjax.scene.shaft_output import shaft_columns
+from bearingjax.scene.shaft_report import _temperatures
+from bearingjax.scene.shaft_run import ShaftRun
+from bearingjax.shafts import DutyResult
 
 GEARS = Path(__file__).with_name("refused") / "gears.toml"
 SCENE = GEARS.read_text(encoding="utf-8")
@@ -240,6 +249,119 @@ def test_cases_with_heat(tmp_path):
     np.testing.assert_array_equal(
         columns["inner_ring [K]"], found.rings[..., 0].ravel()
     )
+
+
+def solved(scene, **more):
+    """A run of a scene with numbers made up."""
+    known: dict[str, Any] = dict.fromkeys(("thermal", "warming", "duty", "rings"))
+    known |= {"task": scene, "solution": SimpleNamespace(result=0), "problem": ""}
+    run = object.__new__(ShaftRun)
+    for name, value in (known | more).items():
+        object.__setattr__(run, name, value)
+    return run
+
+
+def test_worst_case_of_a_spectrum(tmp_path):
+    """By the damage of its hours: not a case of no time, nor one at rest."""
+    (tmp_path / "x.toml").write_text(SCENE + CASES, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml")
+    damage = np.array([[1.0, 1.0, 1.0, 0.0], [5.0, 20.0, 1.0, 0.0], [99.0] * 4])
+    speed = np.array([[10.0, 1.0], [10.0, 1.0], [10.0, 1.0]])
+    none, six = np.zeros((3, 4)), np.zeros((3, 4, 6))
+    codes = np.zeros(3, int)
+    duty = DutyResult(
+        six, six, none, speed, none[:, 0], codes, none, {"damage": damage}, ()
+    )
+    run = solved(scene, duty=duty)
+    assert run.worst_cases == [0, 1, 0, None]
+    assert run.shown_case == "case 0 of 3"
+    np.testing.assert_allclose(
+        run.hours[:2], 110 / (100 + 10 * np.array([5, 20])) / 10 / 3600 * 2 * np.pi
+    )
+    assert np.isinf(run.hours[3])
+
+
+def test_result_of_what_runs_away(tmp_path):
+    """It is that of the temperatures too, not of the shafts alone."""
+    hot: Any = SimpleNamespace(result=int(Result.STEP_LIMIT))
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml")
+    assert solved(scene, thermal=hot).result is Result.STEP_LIMIT
+    told = "B: temperatures change the viscosity of the oil alone, neither"
+    assert [text for text in scene.warnings if "viscosity" in text][0].startswith(told)
+    given = "bearings.A.temperature={shaft='50 °C'}"
+    warned = read_shafts(tmp_path / "x.toml", [given]).warnings
+    assert "A: its `temperature` is not used: [heat] finds temperatures" in warned
+
+
+@pytest.mark.slow
+def test_thermal_runaway(run, tmp_path):
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    ways = [f"bearings.A.heat.{ring}=1e-3 W/K" for ring in ("inner", "outer")]
+    given = [part for way in ways for part in ("--set", way)]
+    done = run("shaft", tmp_path / "x.toml", *given, "--json", tmp_path / "x.json")
+    assert done.status == 3 and "no thermal equilibrium" in done.err
+    found = json.loads((tmp_path / "x.json").read_text("utf-8"))
+    assert found["result"] == "step_limit"
+
+
+PAUSE = """
+[cases]
+spectrum = [
+    { "drive.speed" = "0 rpm", hours = "10 h" },
+    { "drive.speed" = "3000 rpm", hours = "30 h" },
+]
+"""
+
+
+@pytest.mark.slow
+def test_pauses_of_a_duty_cycle(tmp_path):
+    """At rest nothing makes heat or damage; a bearing that cools slowly keeps the mean
+    of the cycle."""
+    (tmp_path / "x.toml").write_text(WARM + PAUSE, "utf-8")
+    rises = []
+    for pauses in ("ambient", "mean"):
+        scene = read_shafts(tmp_path / "x.toml", [f"heat.pauses={pauses}"])
+        found = run_shafts(scene)
+        assert found.converged and found.duty is not None and found.rings is not None
+        rises.append(found.rings - 295.15)
+        assert found.worst_cases == [1, 1]
+        assert all(np.isfinite(found.hours))
+    np.testing.assert_allclose(rises[0][0], 0.0, atol=1e-9)
+    np.testing.assert_allclose(rises[1][0], 0.75 * rises[1][1], rtol=1e-9)
+    np.testing.assert_allclose(rises[0][1], rises[1][1], rtol=1e-9)
+
+
+def test_scene_at_rest_has_no_heat(tmp_path):
+    (tmp_path / "x.toml").write_text(WARM + PAUSE, "utf-8")
+    read_shafts(tmp_path / "x.toml")
+    never = 'cases={spectrum=[{"drive.speed"="0 rpm", hours="1 h"}]}'
+    with pytest.raises(SceneError, match="`heat`: needs a `speed` of the drive"):
+        read_shafts(tmp_path / "x.toml", [never])
+
+
+def test_warming_up_is_shown(tmp_path):
+    """As a table and a panel, ring by ring."""
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml", ["heat.duration=1 h", "heat.times=31"])
+    assert scene.times is not None
+    warming = 295.15 + np.outer(1.0 - np.exp(-scene.times / 900.0), [30, 20, 25, 15])
+    state: Any = SimpleNamespace(
+        inner_ring=warming[-1, ::2], outer_ring=warming[-1, 1::2], friction=[9.0, 8.0],
+        slowest=1e-3, result=0,
+    )  # fmt: skip
+    run = solved(scene, thermal=state, warming=warming)
+    *_, grid = _temperatures(run)
+    assert isinstance(grid, Grid) and grid.title.startswith("warming up")
+    assert [column.name for column in grid.columns][1:] == [*run.warm_nodes]
+    _, ax = plt.subplots()
+    _warming(ax, run)
+    names = ["A inner", "A outer", "B inner", "B outer"]
+    assert [line.get_label() for line in ax.lines] == names
+    drawn = np.asarray(ax.lines[1].get_xydata())
+    np.testing.assert_allclose(drawn[:, 1], warming[:, 1] - 273.15)
+    np.testing.assert_allclose(drawn[-1, 0], 60.0)
+    plt.close("all")
 
 
 def test_housing_file(tmp_path):

@@ -10,6 +10,7 @@ from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
 import bearingjax as bj
 from bearingjax.shafts import (
     Drive,
+    Gear,
     HousingStiffness,
     Seat,
     ShaftLine,
@@ -19,6 +20,7 @@ from bearingjax.shafts import (
     solve_system,
 )
 from bearingjax.shafts.seats import axial_growth
+from bearingjax.statics import BallSolution, films, warnings
 
 LOAD = [
     ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0), (10.0, -25.0, 0.0)),
@@ -240,6 +242,21 @@ def test_soft_housing_shares_the_load():
     np.testing.assert_allclose(soft.housing[0, 1], -900.0 * share[1] / 5e7, rtol=1e-9)
 
 
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        (lambda: springs("x", "s", 0.1, preload=3.0), "`preload` of x has no effect"),
+        (lambda: springs("x", "s", 0.1, axial_offset=1e-6), "goes with a bearing"),
+        (lambda: springs("x", "s", 0.1, turned=True), "`turned` of x has no effect"),
+        (lambda: ball("x", "s", 0.1, preload=3.0, floating=True), "ring slides"),
+        (lambda: HousingStiffness(("x", "x"), np.eye(6)), "`seats` has x twice"),
+    ],
+)
+def test_inputs_without_effect_are_refused(wrong, told):
+    with pytest.raises(ValueError, match=told):
+        wrong()
+
+
 def test_housing_matrix():
     """A housing that couples its seats, with rotations, on an oblique shaft: the whole
     linear system in global axes."""
@@ -280,6 +297,73 @@ def test_floating_bearing():
         axial = np.asarray(found.load[:, 2])
         wanted = np.array([0.0, 900.0]) if floating == "A" else np.array([900.0, 0.0])
         np.testing.assert_allclose(axial, wanted, atol=1e-6)
+
+
+OIL = bj.lubrication.iso_vg(68.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [0.0, 1.0, 100.0])
+def test_balls_of_standing_slow_and_fast_shafts(speed):
+    """Whether or not balls feel the speed, a solution at a speed has their kinematics,
+    and lives, films, friction and warnings follow from it."""
+    seats = [ball("A", "s", 0.05), ball("B", "s", 0.25, floating=True)]
+    load = ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0))
+    drive = Drive("s", speed, torque=0.0)
+    system = ShaftSystem(ShaftLine("s", [0.3], [0.04]), seats, drive, loads=load)
+    assert system.inertia is {0.0: None, 1.0: False, 100.0: True}[speed]
+    for one in bearing_solutions(system, solve_system(system)):
+        assert isinstance(one, BallSolution)
+        assert isinstance(warnings(one), list)
+        life = bj.rating_life(one.element, one)
+        if not speed:
+            assert one.speed is None and one.kinematics is None
+            assert life.life_hours is None
+            continue
+        loaded = np.asarray(one.load_zone)
+        cosine = np.cos(np.asarray(one.contact_angle)[loaded].mean(axis=1))
+        wanted = 0.5 * speed * (1.0 - 0.015081 / 0.065 * cosine)
+        assert one.kinematics is not None and one.centrifugal_force is not None
+        np.testing.assert_allclose(one.kinematics.orbit[loaded], wanted, rtol=1e-3)
+        assert (np.asarray(one.centrifugal_force) > 0).all() == (speed > 10)
+        hours = float(life.reference_rating_life) / (speed * 3600.0 / (2.0 * np.pi))
+        assert life.life_hours is not None
+        np.testing.assert_allclose(float(life.life_hours), hours, rtol=1e-12)
+        found = films(one, OIL, 330.0).minimum[loaded]
+        assert (np.asarray(found) > 0).all() and np.isfinite(found).all()
+        assert float(bj.friction_torque(one, 3e-5).power) > 0
+
+
+def test_inertia_is_that_of_the_fastest_bearing():
+    """Speeds multiply over the stages: 10 000 mm/min of a bearing behind three stages
+    that speed up by 3, 2 and 2.5 are 10.3 rpm of the drive."""
+    pairs = {"ab": (60, 20), "bc": (40, 20), "cd": (50, 20)}
+    lines = [ShaftLine(name, [0.3], [0.03]) for name in "abcd"]
+    seats = [
+        (ball if name == "d" else springs)(f"{name}{z}", name, z)
+        for name in "abcd"
+        for z in (0.02, 0.28)
+    ]
+    wheels = []
+    for k, ((near, far), (large, small)) in enumerate(pairs.items()):
+        near, far = (near, large), (far, small)
+        place = 0.05 * (k + 1)
+        wheels += [
+            Gear(f"{shaft}{far[0]}", shaft, place, teeth, 3e-3,
+                 mates_with=None if teeth == large else f"{near[0]}{far[0]}",
+                 mesh_angle=0.3 if teeth == large else None)
+            for shaft, teeth in (near, far)
+        ]  # fmt: skip
+    limit = 1e4 / 65.0 / 15.0 * 2.0 * np.pi / 60.0
+    for share in (0.99, 1.01):
+        drive = Drive("a", share * limit, torque=1.0)
+        system = ShaftSystem(lines, seats, drive, wheels)
+        assert system.inertia is (share > 1.0)
+        # The slow end of the same gears driven at the other one.
+        drive = Drive("d", share * limit, torque=1.0)
+        assert ShaftSystem(lines, seats, drive, wheels).inertia is False
+    faster = system.with_parts(drive=Drive("a", 2.0 * limit, torque=1.0))
+    assert faster.inertia is True
 
 
 @pytest.mark.slow

@@ -213,6 +213,16 @@ def test_balance_of_heat():
 
 
 @pytest.mark.slow
+def test_solve_heat_at_rest():
+    """Nothing warms a system at rest: it is as cold as the ambience."""
+    found = solve_heat(spindle(speed=0.0), network())
+    rings = [found.inner_ring, found.outer_ring]
+    np.testing.assert_array_equal(rings, np.full((2, 2), 293.15))
+    np.testing.assert_array_equal(found.friction, 0.0)
+    assert int(found.result) == 0 and float(found.slowest) > 0
+
+
+@pytest.mark.slow
 def test_warming_up_ends_in_the_equilibrium():
     system, paths = spindle(), network()
     steady_state = solve_heat(system, paths)
@@ -284,7 +294,6 @@ def test_derivatives_of_temperatures():
         (lambda: ThermalPaths(0.0, 1.0, OIL), "`inner` is 0 W/K"),
         (lambda: ThermalPaths(1.0, 1.0, OIL, shaft_share=1.5), "`shaft_share` is 1.5"),
         (lambda: HeatNetwork(20.0, []), "from 150 to 600 K"),
-        (lambda: solve_heat(spindle(speed=0.0), network()), "at rest; nothing warms"),
         (
             lambda: solve_heat(spindle(), HeatNetwork(293.15, network().paths[:1])),
             "1 paths and the system 2 bearings",

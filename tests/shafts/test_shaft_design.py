@@ -215,3 +215,13 @@ def test_warnings_are_those_of_the_system_too():
     (twice,) = (text for text in told if text.startswith("shaft in is located by A"))
     load[0, 1, 0], load[1, 0, 2] = 300.0, 200.0
     assert design.warnings(None, solved) == [twice]
+
+
+@pytest.mark.parametrize(
+    "hours, told", [([1.0, -1.0], "-1 h in case 1"), ([0.0, 0.0], "0 h in all")]
+)
+def test_hours_that_cannot_be(hours, told):
+    with pytest.raises(ValueError, match=f"`hours` is {told}"):
+        bearing_hours(np.ones((2, 1)), np.ones((2, 1)), np.array(hours))
+    with pytest.raises(ValueError, match=f"`hours` is {told}"):
+        load_cases([powered(1e3)] * 2, hours)

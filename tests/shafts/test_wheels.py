@@ -77,7 +77,7 @@ BACK = {"pitch_angle": np.pi / 2 - CONE}
 @pytest.mark.parametrize(
     "system",
     [
-        pair({"helix_angle": 0.0, "mesh_angle": 0.4}),
+        pair({"helix_angle": 0.0, "mesh_angle": 0.4}, {"mesh_angle": 0.4 - np.pi}),
         pair({"mesh_angle": -2.0}, {"mesh_angle": None}),
         pair({"mesh_angle": 0.4}, {"mesh_angle": None}, axis=(0.0, 0.0, -1.0)),
         pair({**BEVEL, "helix_angle": 0.0}, {**BACK, "apex": "-z"}, axis=(0.6, 0.8, 0)),
@@ -255,7 +255,12 @@ def test_free_loads_count_in_the_balance():
     np.testing.assert_allclose(out[1], out[0] - 7.0, rtol=1e-12)
 
 
-def fork(*outputs):
+def moved(wheel, **numbers):
+    """The wheel with other numbers."""
+    return dataclasses.replace(wheel, **numbers)
+
+
+def fork(*outputs, speed=50.0):
     lines = [ShaftLine(s, [0.2], [0.03]) for s in "abc"]
     seats = [
         springs(f"{s}{k}", s, z) for s in "abc" for k, z in enumerate((0.02, 0.18))
@@ -265,7 +270,7 @@ def fork(*outputs):
         Gear("2", "b", 0.1, 20, 3e-3, mates_with="1"),
         Gear("3", "c", 0.1, 20, 3e-3, mates_with="1", mesh_angle=0.0),
     ]
-    drive = Drive("a", 50.0, torque=30.0)
+    drive = Drive("a", speed, torque=30.0)
     return ShaftSystem(lines, seats, drive, wheels, couplings=outputs)
 
 
@@ -321,3 +326,124 @@ def test_torque_has_derivatives():
 
     slope = jax.jacfwd(force)(15e3)
     np.testing.assert_allclose(slope, np.asarray(force(15e3)) / 15e3, rtol=1e-12)
+
+
+def couple(system):
+    """Force and moment about the origin of all meshes, in global axes."""
+    force, moment = np.zeros(3), np.zeros(3)
+    for mesh in power_flow(system).meshes:
+        wheel = system.wheel(mesh.wheel)
+        shaft = system.shaft(wheel.shaft)
+        centre = np.asarray(shaft.origin) + float(wheel.position) * shaft.frame[2]
+        force = force + np.asarray(mesh.force)
+        moment = moment + np.cross(np.asarray(centre) + mesh.place, mesh.force)
+    return force, moment
+
+
+def in_space(one, other, **axis):
+    lines = [ShaftLine("a", [0.2], [0.03], origin=(0.0, 0.0, 0.0)),
+             ShaftLine("b", [0.2], [0.03], **axis)]  # fmt: skip
+    seats = [springs(f"{s}{k}", s, z) for s in "ab" for k, z in enumerate((0.02, 0.18))]
+    return ShaftSystem(lines, seats, Drive("a", 100.0, torque=50.0), [one, other])
+
+
+ONE, TWO = Gear("1", "a", 0.1, 20, 3e-3), Gear("2", "b", 0.1, 40, 3e-3, mates_with="1")
+PLACE = {"origin": (0.09, 0.0, 0.0)}
+FACES = {"face_width": 0.04}, {"face_width": 0.03}
+
+
+@pytest.mark.parametrize(
+    "system, middle",
+    [
+        (in_space(ONE, moved(TWO, position=0.104), **PLACE), 0.102),
+        (in_space(moved(ONE, **FACES[0]), moved(TWO, position=0.104, **FACES[1]),
+                  **PLACE), 0.104),
+        (in_space(moved(ONE, **FACES[0]), moved(TWO, position=0.11, **FACES[1]),
+                  **PLACE), 0.1075),
+    ],
+)  # fmt: skip
+def test_wheels_out_of_plane_act_in_one_point(system, middle):
+    """The force of a mesh acts in the middle of the common part of both faces, so that
+    action and reaction leave no couple."""
+    force, moment = couple(system)
+    assert np.abs(force).max() < 1e-9 and np.abs(moment).max() < 1e-9
+    for mesh in power_flow(system).meshes:
+        wheel = system.wheel(mesh.wheel)
+        np.testing.assert_allclose(float(wheel.position) + mesh.place[2], middle)
+
+
+def test_belts_out_of_plane_and_bevel_gears_leave_no_couple():
+    pulleys = Pulley("1", "a", 0.1, 0.1, 2.0), Pulley("2", "b", 0.11, 0.2, 2.0,
+                                                      mates_with="1")  # fmt: skip
+    force, moment = couple(in_space(*pulleys, origin=(0.5, 0.0, 0.0)))
+    assert np.abs(force).max() < 1e-9 and np.abs(moment).max() < 1e-9
+    bevel = {"pitch_angle": np.pi / 4, "apex": "+z"}
+    gears = (
+        Gear("1", "a", 0.1, 20, 3e-3, **bevel),
+        Gear("2", "b", 0.1, 20, 3e-3, mates_with="1", **bevel),
+    )
+    at = {"axis": (-1.0, 0.0, 0.0), "origin": (0.13, 0.0, 0.13)}
+    force, moment = couple(in_space(*gears, **at))
+    assert np.abs(force).max() < 1e-9 and np.abs(moment).max() < 1e-9
+    with pytest.raises(ValueError, match="have apexes that are 10 mm"):
+        in_space(*gears, **{**at, "origin": (0.13, 0.0, 0.14)})
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        (lambda: in_space(moved(ONE, mesh_angle=0.1), TWO, **PLACE),
+         "of 1 is 5.7.* deg; by the places of the shafts it meshes at 0 deg"),
+        (lambda: in_space(moved(ONE, mesh_angle=0.0), moved(TWO, mesh_angle=0.0)),
+         "of 1 is 0 deg; by that of 2 it meshes at -?180 deg"),
+        (lambda: in_space(moved(ONE, torque=3.0), TWO, **PLACE),
+         "1 has a mate, from which its torque follows"),
+        (lambda: in_space(ONE, moved(TWO, position=0.11), **PLACE),
+         "2 and 1 are 10 mm apart along"),
+        (lambda: in_space(moved(ONE, **FACES[0]), moved(TWO, position=0.136,
+                          **FACES[1]), **PLACE), "faces of 2 and 1 do not overlap"),
+        (lambda: in_space(Pulley("1", "a", 0.1, 0.1, 2.0),
+                          Pulley("2", "b", 0.15, 0.2, 2.0, mates_with="1"),
+                          origin=(0.5, 0.0, 0.0)), "share a belt, are in one plane"),
+        (lambda: fork(Coupling("x", "b", power=-5.0), speed=0.0),
+         "`power` of x needs a `speed` of the drive"),
+    ],
+)  # fmt: skip
+def test_contradicting_wheels_are_refused(wrong, told):
+    with pytest.raises(ValueError, match=told):
+        wrong()
+
+
+def test_mates_may_name_each_other():
+    """A pair that is named from both sides is one mesh."""
+    both = in_space(moved(ONE, mates_with="2"), TWO, **PLACE)
+    flow, wanted = power_flow(both), power_flow(in_space(ONE, TWO, **PLACE))
+    assert len(flow.meshes) == 2
+    np.testing.assert_allclose(flow.speed, wanted.speed)
+    forces = {mesh.wheel: mesh.force for mesh in flow.meshes}
+    for mesh in wanted.meshes:
+        np.testing.assert_allclose(forces[mesh.wheel], mesh.force, atol=1e-9)
+
+
+def test_angle_of_a_sun_is_not_that_of_two_planets():
+    planets = [ShaftLine(name, [0.2], [0.03]) for name in "abc"]
+    seats = [
+        springs(f"{s}{k}", s, z) for s in "abc" for k, z in enumerate((0.02, 0.18))
+    ]
+    wheels = [
+        Gear("sun", "a", 0.1, 20, 3e-3, mesh_angle=0.0),
+        Gear("1", "b", 0.1, 20, 3e-3, mates_with="sun"),
+        Gear("2", "c", 0.1, 20, 3e-3, mates_with="sun"),
+    ]
+    drive = Drive("a", 50.0, torque=30.0)
+    with pytest.raises(ValueError, match="that of its meshes with 1 and 2; give"):
+        ShaftSystem(planets, seats, drive, wheels)
+
+
+def test_idle_machine_has_no_torque_of_its_power():
+    """A case of no power may stand."""
+    system = in_space(ONE, TWO, **PLACE)
+    still = Drive("a", 0.0, power=0.0)
+    flow = power_flow(ShaftSystem(system.shafts, system.seats, still, system.wheels))
+    np.testing.assert_array_equal(flow.drive, 0.0)
+    np.testing.assert_array_equal(flow.meshes[0].force, 0.0)

@@ -1,0 +1,94 @@
+"""Where two wheels of a system of shafts touch, by the places of their shafts.
+
+The force of a pair acts on both wheels at one point, so that no couple is left: gears
+touch in the middle of the common part of their faces, a belt pulls along the line from
+one pulley to the other.
+"""
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ..numerics.types import Scalar, as_real
+from .parts import APEXES, Gear, Pulley
+
+Pair = tuple[Float[Array, "3"], Float[Array, "3"]]
+
+
+class MeshPlace(NamedTuple):
+    """Where two wheels touch, in global axes.
+
+    Attributes:
+        ways: Directions from their shafts to the mesh, of pulleys of the pull (3,) [1].
+        radii: Working pitch radii [m].
+        points: Where the force acts, from the shaft at each wheel (3,) [m].
+        gap: From where the first wheel meshes to where the second does, if their
+            places do not agree; zero if places are not known (3,) [m].
+        size: Sum of the radii of gears, distance of pulleys [m].
+        overlap: Common part of the faces of cylindrical gears, below zero if there is
+            none [m]; `None` if a face or a place is not known.
+    """
+
+    ways: Pair
+    radii: tuple[Scalar, Scalar]
+    points: Pair
+    gap: Float[Array, "3"]
+    size: Scalar
+    overlap: Scalar | None
+
+
+def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
+    """Return where two wheels touch; `None` if the places of their shafts do not tell.
+
+    Args:
+        one, other: The wheels.
+        shaft, far: Their shafts.
+    """
+    z, apart = shaft.frame[2], None
+    if shaft.origin is not None and far.origin is not None:
+        centres = [
+            as_real(s.origin) + w.position * s.frame[2]
+            for s, w in ((shaft, one), (far, other))
+        ]
+        apart = centres[1] - centres[0]
+    radii, overlap = (one.radius, other.radius), None
+    if isinstance(one, Gear) and one.pitch_angle is not None:
+        outward = [
+            -APEXES[str(g.apex)] * s.frame[2] for g, s in ((one, shaft), (other, far))
+        ]
+        first, second = (unit_vector(across(b, a)) for a, b in (outward, outward[::-1]))
+    elif apart is None:
+        return None
+    elif isinstance(one, Pulley):
+        first = unit_vector(apart)
+        none, gap = jnp.zeros_like(apart), (apart @ z) * z
+        size = jnp.sqrt(apart @ apart)
+        return MeshPlace((first, -first), radii, (none, none), gap, size, None)
+    else:
+        radial = across(apart, z)
+        distance, first = jnp.sqrt(radial @ radial), unit_vector(radial)
+        second, share = -first, distance / (radii[0] + radii[1])
+        radii = radii[0] * share, radii[1] * share
+    points = [radii[0] * first, radii[1] * second]
+    size = radii[0] + radii[1]
+    gap = jnp.zeros_like(first) if apart is None else apart + points[1] - points[0]
+    shift = 0.5 * gap
+    if apart is not None and one.pitch_angle is None:
+        if one.face_width is not None and other.face_width is not None:
+            along, half = gap @ z, (0.5 * one.face_width, 0.5 * other.face_width)
+            low = jnp.maximum(-half[0], along - half[1])
+            high = jnp.minimum(half[0], along + half[1])
+            shift, overlap = 0.5 * (low + high) * z, high - low
+    points = points[0] + shift, points[1] + shift - gap
+    return MeshPlace((first, second), radii, points, gap, size, overlap)
+
+
+def across(vector: Array, axis: Array) -> Array:
+    """Return the part of a vector across an axis of length 1."""
+    return vector - (vector @ axis) * axis
+
+
+def unit_vector(vector: Array) -> Array:
+    """Return the vector of length 1 along a vector."""
+    return vector / jnp.sqrt(vector @ vector)
