@@ -107,6 +107,21 @@ def test_integration_is_of_second_order():
     assert errors[1] < 0.3 * errors[0] < 1e-2
 
 
+def test_rises_over_time_with_fast_settling_node():
+    """Long steps do not upset a node that settles ten thousand times faster."""
+
+    def made(rises, _):
+        return 5.0 + 0.0 * rises
+
+    conductance = jnp.diag(jnp.array([2.0, 1.0, 1.0]))
+    capacity = jnp.array([1000.0, 500.0, 0.1])
+    times = jnp.linspace(0.0, 3000.0, 7)
+    rises = rises_over_time(made, 0.0, conductance, capacity, times, 8)
+    rate = np.diagonal(conductance) / np.asarray(capacity)
+    wanted = 5.0 / np.diagonal(conductance) * -np.expm1(-rate * 3000.0)
+    np.testing.assert_allclose(rises[-1], wanted, rtol=1e-3)
+
+
 OIL = BearingOil(bj.lubrication.iso_vg(68.0))
 SEAT = bj.Mounting(0.04, 0.09, 0.13, 10e-6, 0.0)
 
