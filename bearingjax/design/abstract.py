@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 from ..numerics.types import Scalar
 from .checks import count, instance, number
 from .material import Material
+from .published import Published
 
 
 class AbstractBearing(eqx.Module):
@@ -23,10 +24,12 @@ class AbstractBearing(eqx.Module):
             (element, 2, 3) [m], see `Deviation.raceway`; `None`: as on the drawing.
         material: Material of the rolling elements.
         ring_material: Material of the rings; `None`: as the rolling elements.
+        published: Ratings and factors that a catalogue prints for it, or `None`.
         noun: "ball" or "roller".
         is_thrust: Whether it is a thrust bearing between two washers.
         aligns: Whether it is a row of a self-aligning bearing, with the centre of its
             spherical outer raceway in the origin.
+        rated_fields: Names of the fields on which its load ratings depend.
     """
 
     aligns: ClassVar[bool] = False
@@ -37,8 +40,10 @@ class AbstractBearing(eqx.Module):
     raceway_deviation: eqx.AbstractVar[Float[Array, "element 2 3"] | None]
     material: eqx.AbstractVar[Material]
     ring_material: eqx.AbstractVar[Material | None]
+    published: eqx.AbstractVar[Published | None]
     noun: eqx.AbstractClassVar[str]
     is_thrust: eqx.AbstractClassVar[bool]
+    rated_fields: eqx.AbstractClassVar[tuple[str, ...]]
 
     @property
     def is_ball(self) -> bool:
@@ -89,3 +94,4 @@ class AbstractBearing(eqx.Module):
         number(self, "first_azimuth")
         instance(self, "material", Material)
         instance(self, "ring_material", Material, None)
+        instance(self, "published", Published, None)

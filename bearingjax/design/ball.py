@@ -27,6 +27,7 @@ from .checks import (
 )
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
+from .published import Published
 
 
 class Groove(NamedTuple):
@@ -74,10 +75,18 @@ class AbstractBallBearing(AbstractBearing):
         inner_shoulder: Height of the inner shoulders above the groove bottom [m].
         material: Material of the balls.
         ring_material: Material of the rings; `None`: as the balls.
+        published: Ratings and factors that a catalogue prints for it, or `None`.
     """
 
     noun: ClassVar[str] = "ball"
     is_thrust: ClassVar[bool] = False
+    rated_fields: ClassVar[tuple[str, ...]] = (
+        "n_balls",
+        "pitch_diameter",
+        "ball_diameter",
+        "outer_osculation",
+        "inner_osculation",
+    )
 
     n_balls: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
@@ -108,6 +117,7 @@ class AbstractBallBearing(AbstractBearing):
     )
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
+    published: Published | None = eqx.field(default=None, kw_only=True)
 
     @property
     def n_elements(self) -> int:

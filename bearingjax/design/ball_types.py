@@ -101,6 +101,8 @@ class AngularContactBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    rated_fields = (*AbstractBallBearing.rated_fields, "contact_angle")
+
     contact_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True
     )
@@ -189,6 +191,8 @@ class FourPointBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    rated_fields = (*AbstractBallBearing.rated_fields, "shim_angle")
+
     shim_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True
     )
@@ -264,6 +268,7 @@ class SelfAligningBallRow(AbstractBallBearing):
     """
 
     aligns: ClassVar[bool] = True
+    rated_fields = (*AbstractBallBearing.rated_fields, "row_offset")
 
     row_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), kw_only=True)
     radial_internal_clearance: Scalar = eqx.field(

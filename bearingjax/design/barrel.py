@@ -102,6 +102,8 @@ class _AbstractSphere(AbstractBarrelBearing):
         outer_raceway_radius: Radius of the sphere [m]; `None`: that about the axis.
     """
 
+    rated_fields = (*AbstractRollerBearing.rated_fields, "contact_angle")
+
     contact_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True
     )

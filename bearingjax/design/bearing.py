@@ -16,6 +16,7 @@ from .checks import check, concrete, in_range, instance, number, positive
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
+from .published import Published
 from .rib import Ribs
 
 
@@ -44,6 +45,7 @@ class AbstractRollerBearing(AbstractBearing):
         ribs: The ribs.
         material: Material of the rollers.
         ring_material: Material of the rings; `None`: as the rollers.
+        published: Ratings and factors that a catalogue prints for it, or `None`.
         caged: Whether without ribs the cage, or a free end, bears what inertia pushes
             the rollers along their axes.
     """
@@ -51,6 +53,12 @@ class AbstractRollerBearing(AbstractBearing):
     noun: ClassVar[str] = "roller"
     is_thrust: ClassVar[bool] = False
     caged: ClassVar[bool] = False
+    rated_fields: ClassVar[tuple[str, ...]] = (
+        "n_rollers",
+        "pitch_diameter",
+        "roller_diameter",
+        "roller_length",
+    )
 
     n_rollers: int = eqx.field(static=True, converter=as_count)
     pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
@@ -81,6 +89,7 @@ class AbstractRollerBearing(AbstractBearing):
     ribs: Ribs = eqx.field(default_factory=Ribs, kw_only=True)
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
+    published: Published | None = eqx.field(default=None, kw_only=True)
 
     @property
     def axis_angle(self) -> Scalar:
@@ -278,6 +287,12 @@ class TaperedRollerBearing(AbstractRollerBearing):
 
     Traced: all fields but `n_rollers`.
     """
+
+    rated_fields = (
+        *AbstractRollerBearing.rated_fields,
+        "roller_axis_angle",
+        "roller_half_angle",
+    )
 
     roller_axis_angle: Scalar = eqx.field(
         converter=as_real, metadata=unit("rad"), kw_only=True, default=jnp.nan

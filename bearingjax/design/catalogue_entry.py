@@ -17,6 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .bearing_set import rows_of
 from .designation import Suffixes, compact, split_designation
 from .fit_limits import (
     CLEARANCE_CLASSES,
@@ -29,6 +30,7 @@ from .fit_limits import (
 )
 from .iso286 import Limits
 from .keywords import bearing_of
+from .published import Published, rated_dimensions, with_published
 
 CLEARANCES = {
     "deep_groove_ball": ball_clearance,
@@ -72,6 +74,7 @@ UNITS = {
     CLEARANCE: "um",
     "axial_internal_clearance": "um",
     "contact_angle": "deg",
+    "rated_contact_angle": "deg",
     "shim_angle": "deg",
     "roller_axis_angle": "deg",
     "roller_half_angle": "deg",
@@ -227,8 +230,28 @@ class CatalogueEntry:
 
     @property
     def bearing(self) -> Any:
-        """The design: a bearing, or the set of both rows of a self-aligning bearing."""
-        return bearing_of(self.design)
+        """The design: a bearing, or the set of both rows of a self-aligning bearing.
+
+        It carries the published ratings and axial factors.
+        """
+        bearing = bearing_of(self.design)
+        return with_published(bearing, self.published(rows_of(bearing)[0].bearing))
+
+    def published(self, row: Any) -> Published | None:
+        """Return its ratings and axial factors for a row; `None`: not published.
+
+        Of the axial factors of a self-aligning ball bearing Y2 is printed; the others
+        have fixed ratios to it (ISO 281, ISO 76).
+
+        Args:
+            row: A row with the dimensions of this entry.
+        """
+        if self.dynamic_capacity is None:
+            return None
+        given = self.dynamic_capacity, self.static_capacity, self.fatigue_load_limit
+        y2 = self.printed.get("axial_factor", 0.0) / 0.65
+        factors = self.printed.get("axial_factors", (0.42 * y2, 0.65 * y2, 0.44 * y2))
+        return Published([x or 0.0 for x in given], factors, rated_dimensions(row))
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:

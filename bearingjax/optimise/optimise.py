@@ -17,6 +17,7 @@ from ..statics.options import SolveOptions
 from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
+from .life import OfLife
 from .measure import AbstractMeasure, label_of
 from .search import METHODS, SearchOutcome, search, takes_gradients
 from .system import AbstractSystem, Design, check_design
@@ -173,6 +174,9 @@ def optimise(
     _check_cases(cases, kind)
     _check_call(objective, constraints, max_steps, tolerance)
     check_design("optimise", element, cases)
+    for measure in (objective, *(constraint.measure for constraint in constraints)):
+        if isinstance(measure, OfLife):
+            measure.check(element)
     options = SolveOptions(free, fixed_ring, points, solve_tolerance)
     options.check("optimise", "solve_tolerance")
     if isinstance(cases, Cases):

@@ -143,6 +143,9 @@ def dotted(keys: Any) -> str:
 def changed(design: Any, values: Mapping[str, Any]) -> Any:
     """The design with other numbers, constructed again, so that its checks run.
 
+    A bearing with another dimension on which its load ratings depend no longer has
+    the published ones.
+
     Args:
         design: An element, bearing or part.
         values: New numbers by dotted path [SI]; traced ones pass unchecked.
@@ -166,6 +169,10 @@ def changed(design: Any, values: Mapping[str, Any]) -> Any:
             changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
         )
     parts = {k: changed(getattr(design, k), v) for k, v in inner.items()}
+    published = getattr(design, "published", None)
+    if published is not None and set(parts) & set(design.rated_fields):
+        # At its start too, or the first step would leap to the ratings of standards.
+        parts["published"] = published.void()
     if hasattr(design, "with_parts"):
         return design.with_parts(**parts)
     return dataclasses.replace(design, **parts)

@@ -150,8 +150,7 @@ def _judged(task: Optimisation, found: Optimised) -> Optimised:
     if scene.life is None or any(isinstance(m, OfLife) for m in measures):
         return found
     turning = bool(turns_of(task.cases).any())
-    names = [variable.name for variable in task.variables]
-    life = RatingLife(life_conditions(scene, names, turning))
+    life = RatingLife(life_conditions(scene, turning))
     sides = {"before": found.initial, "after": found.element}
     judged = {}
     for side, design in sides.items():

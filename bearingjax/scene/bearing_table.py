@@ -48,13 +48,21 @@ def read_bearing(
         SceneError: For what is missing, unknown or not allowed.
     """
     table = _completed(table, found)
-    bearing = read_row(table)
+    bearing = _read_row(table, found)
     if "set" not in parent:
         return with_both_rows(table, bearing), None
     if shares_rings(bearing):
         problem = f"a {two_row_name(bearing)} bearing has both its rows already"
         raise parent.error("set", problem)
     return _set(parent.table("set"), bearing)
+
+
+def _read_row(
+    table: Table, found: tuple[dict[str, Any], FromCatalogue] | None
+) -> AbstractBearing:
+    """Read a row, with the published ratings of its designation."""
+    row = read_row(table)
+    return row if found is None else found[1].carried(row)
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
@@ -152,7 +160,8 @@ class RowKeys(SpringKeys):
         bearing = common
         if "bearing" in self.table:
             own = self.table.table("bearing")
-            bearing = read_row(_completed(own, designated(own)))
+            found = designated(own)
+            bearing = _read_row(_completed(own, found), found)
         if shares_rings(bearing):
             problem = f"a {two_row_name(bearing)} bearing is no row of a set"
             raise self.table.error("bearing", problem)

@@ -476,7 +476,7 @@ def _designs(data, path, columns):
     alike: dict[Any, list[int]] = {}
     for number, element in enumerate(elements):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
-        key = jax.tree.structure(element), shapes, _rated_as(scenes[number])
+        key = jax.tree.structure(element), shapes, _published_speeds(scenes[number])
         alike.setdefault(key, []).append(number)
     design_groups = tuple(
         DesignGroup(
@@ -489,14 +489,11 @@ def _designs(data, path, columns):
     return design_groups, design.reshape(-1), tuple(made), tuple(warned)
 
 
-def _rated_as(scene: Scene) -> tuple[Any, ...]:
-    """Return the values on which published ratings and speeds of a design depend."""
-    arrangement = scene.inputs.get("set", {}).get("arrangement")
+def _published_speeds(scene: Scene) -> tuple[Any, ...]:
+    """Return the published speeds of a design."""
     if scene.catalogue is None:
-        return None, arrangement
-    entry = scene.catalogue.entry
-    published = entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit
-    return published, entry.limiting_speed, entry.reference_speed, arrangement
+        return ()
+    return scene.catalogue.entry.limiting_speed, scene.catalogue.entry.reference_speed
 
 
 def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:

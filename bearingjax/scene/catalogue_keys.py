@@ -12,7 +12,8 @@ from ..design.catalogue_entry import (
     catalogue_entry,
     in_catalogue_unit,
 )
-from .design_keys import read_design
+from ..design.published import with_published
+from .design_keys import BALLS, ROLLERS, read_design
 from .quantity import SceneError, to_si
 from .table import Table
 
@@ -60,6 +61,22 @@ class FromCatalogue:
 
     entry: CatalogueEntry
     overridden: tuple[str, ...]
+
+    @property
+    def rerated(self) -> tuple[str, ...]:
+        """Overridden keys on which load ratings depend: the published ones are void."""
+        fields = {**ROLLERS, **BALLS}[self.entry.type].rated_fields
+        return tuple(key for key in self.overridden if key in fields)
+
+    def carried(self, row: Any) -> Any:
+        """Return a row of the scene with the published ratings, unless they are void.
+
+        Args:
+            row: The row as the scene has it.
+        """
+        if self.rerated:
+            return row
+        return with_published(row, self.entry.published(row))
 
     def varied(self, keys: Iterable[str]) -> "FromCatalogue":
         """Mark further scene keys, such as "bearing.n_balls", as overridden."""

@@ -21,19 +21,19 @@ _SOURCES = {
 _SHOWN = ("C", "C0", "C_u")
 
 
-def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
+def life_as_dict(life: Life, scene: Scene) -> dict[str, Any]:
     """Return the numbers of a rating life in SI, by name; infinite ones are null.
 
     Args:
         life: In NumPy.
-        origins: Origins of the given ratings, from `rating_origins`.
+        scene: Its scene.
 
     Returns:
         The available numbers of `LIFE_OUTPUTS`, the ratings as in
         `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
         `standards` that results follow.
     """
-    found = ratings_as_dict(life.ratings, origins)
+    found = ratings_as_dict(life.ratings, rating_origins(scene, life.ratings))
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
         found[name] = plain(getattr(life, name))
     row, ring, track = life.weakest
@@ -42,8 +42,9 @@ def life_as_dict(life: Life, origins: Mapping[str, str]) -> dict[str, Any]:
 
 
 def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
-    """Return ratings [N] by name, each with its `..._source`, "given" or the standard,
-    and its `..._origin`, the origin of a given rating or `None`.
+    """Return ratings [N] by name, each with its `..._source`, "given", "published" or
+    the standard, and its `..._origin` in words, `None` of a computed rating; and the
+    source of the factors of axial load in P and P0.
 
     Args:
         ratings: `Ratings`, in NumPy.
@@ -54,11 +55,12 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
         found[name] = plain(getattr(ratings, name))
         found[f"{name}_source"] = getattr(ratings, source)
         found[f"{name}_origin"] = origins.get(name)
+    found["axial_factors_source"] = ratings.factors_source
     return found
 
 
 def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]:
-    """Format C, C0 and C_u in kN, each with its origin.
+    """Format C, C0 and C_u in kN, each with its origin, and that of Y and Y0.
 
     Args:
         ratings, origins: As in `ratings_as_dict`.
@@ -67,7 +69,7 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
         f" ({origins.get(name, getattr(ratings, source))})"
         for shown, (name, source) in zip(_SHOWN, _SOURCES.items(), strict=True)
-    }
+    } | {"Y": f"factors of axial load, Y and Y0: {ratings.factors_source}"}
 
 
 def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
@@ -105,7 +107,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
         f"{axially} ratings",
         *(
             f"  {words}"
-            for words in ratings_in_words(r, rating_origins(scene)).values()
+            for words in ratings_in_words(r, rating_origins(scene, r)).values()
         ),
         *not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..design.published import with_published
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
@@ -69,7 +70,7 @@ class LifeRun:
     @property
     def origins(self) -> dict[str, str]:
         """Origins of the given ratings, from `rating_origins`."""
-        return rating_origins(self.table.scene, self.table.varied)
+        return rating_origins(self.table.scene, self.ratings)
 
     @property
     def asked_name(self) -> str:
@@ -138,7 +139,7 @@ def run_life(
         SceneError: For cases whose life cannot be computed.
     """
     scene = table.scene
-    conditions = life_conditions(scene, table.varied)
+    conditions = life_conditions(scene)
     turning = revolutions_per_hour(table.cases, np) is not None
     oiled = conditions.viscosity is not None
     if oiled and not turning:
@@ -158,6 +159,8 @@ def run_life(
         }
     outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
     bearing = scene.element.bearing
+    if scene.catalogue is not None and scene.catalogue.varied(table.varied).rerated:
+        bearing = with_published(bearing, None)
     given = (
         conditions.dynamic_capacity,
         conditions.static_capacity,
@@ -266,6 +269,7 @@ def _lives(run) -> list[Part]:
         f" {', '.join(table.varied)}",
         rated["C"],
         rated["C0"],
+        rated["Y"],
         *not_published(table.scene, table.varied),
         "",
         lives_grid(revolutions, None if at_rest else hours),

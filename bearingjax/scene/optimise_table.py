@@ -293,9 +293,7 @@ def _optimisation(
     keys, balls = read_keys(OptimiseKeys, table), scene.element.bearing.is_ball
     with table.building():
         PeakPressure(keys.exponent)
-    measured = _Measured(
-        keys.exponent, balls, _life(scene, cases, keys.variables.keys())
-    )
+    measured = _Measured(keys.exponent, balls, _life(scene, cases))
     objective = measured.objective(keys)
     table.table("variables", required=True)
     return Optimisation(
@@ -421,11 +419,11 @@ def _no_number(key, table, numbers):
     return not_among(key, near)
 
 
-def _life(scene: Scene, cases: Cases, varied: Iterable[str]) -> RatingLife | None:
+def _life(scene: Scene, cases: Cases) -> RatingLife | None:
     """Return the rating life in hours by [life], or `None` without speeds."""
     if cases.inner_speed is None and cases.outer_speed is None:
         return None
-    return RatingLife(life_conditions(scene, varied), True)
+    return RatingLife(life_conditions(scene), True)
 
 
 class _Measured(NamedTuple):

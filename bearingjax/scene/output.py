@@ -7,7 +7,6 @@ from ..numerics.result import Result
 from ..statics.solution import BallSolution, message
 from .files import plain, plain_run, write_numbers
 from .fit_report import fit_as_dict
-from .life_ratings import rating_origins
 from .life_report import life_as_dict
 from .oil_table import oil_as_dict
 from .preload_of_set import preload_as_dict
@@ -78,7 +77,7 @@ def as_dict(found: SolvedScene) -> dict[str, Any]:
 
 def _life(found: SolvedScene) -> dict[str, Any]:
     life = found.life
-    return {} if life is None else life_as_dict(life, rating_origins(found.scene))
+    return {} if life is None else life_as_dict(life, found.scene)
 
 
 def solved_as_dict(found: SolvedScene) -> dict[str, Any]:

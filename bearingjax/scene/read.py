@@ -197,8 +197,10 @@ def scene_of(
         table = top.table("bearing", required=True)
         table.know(*other_keys)
         found = designated(table)
+        if found is not None:
+            found = found[0], found[1].varied(varied)
         bearing, preload = read_bearing(table, top, found)
-    catalogue = None if found is None else found[1].varied(varied)
+    catalogue = None if found is None else found[1]
     warned = tuple(str(w.message) for w in caught)
     if found is not None:
         warned += leftover_warnings(*found, varied)

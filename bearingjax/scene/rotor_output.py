@@ -8,7 +8,6 @@ from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .files import plain_run
 from .fit_report import fit_as_dict
-from .life_ratings import rating_origins
 from .life_report import life_as_dict
 from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
@@ -64,7 +63,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
             {
                 "bearing": mount.name,
                 "station": mount.station,
-                **life_as_dict(life, rating_origins(mount.scene)),
+                **life_as_dict(life, mount.scene),
             }
             for mount, life in run.lives
             if mount.scene is not None

@@ -211,7 +211,7 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
             speed if mount.inertia else None,
             scene.points,
         )
-        conditions = life_conditions(scene, (), speed is not None)
+        conditions = life_conditions(scene, speed is not None)
         life = life_of(support.element, solution, conditions, speed=speed)
         found.append((mount, jax.device_get(life)))
         bearing = support.element.bearing

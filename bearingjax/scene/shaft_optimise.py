@@ -119,20 +119,11 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     measures = [_measure(keys, "objective", *known)]
     measures += [_measure(one, "measure", *known) for one in keys.constraints]
     oily = any(isinstance(measure, PowerLoss) for measure in measures)
-    # Ratings of the catalogue hold for no other inside.
-    changed = {
-        seat.name: [
-            key
-            for key in ({} if alone is None else installed_numbers(alone))
-            if key.replace("bearing.", f"bearings.{seat.name}.", 1) in free.keys()
-        ]
-        for seat, alone in zip(scene.system.seats, scene.bearings, strict=True)
-    }
     each = scene.cases or (scene,)
     hours = [one.hours for one in each]
     with top.building():
         design, cases = load_cases(
-            [_design(one, changed, oily, table) for one in each],
+            [_design(one, oily, table) for one in each],
             None if None in hours else hours,
         )
     numbers = shaft_numbers(scene)
@@ -166,9 +157,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     )
 
 
-def _design(
-    scene: ShaftScene, changed: dict[str, list[str]], oily: bool, table: Table
-) -> ShaftDesign:
+def _design(scene: ShaftScene, oily: bool, table: Table) -> ShaftDesign:
     """Return the design of one case, with oils if the friction is wanted."""
     lives, oils = [], []
     turning = scene.system.inertia is not None
@@ -177,7 +166,7 @@ def _design(
         if alone is None:
             lives.append(None)
         else:
-            lives.append(life_conditions(alone, changed[seat.name], turning))
+            lives.append(life_conditions(alone, turning))
         if alone is None or oil is None:
             if oily and alone is not None:
                 problem = "power_loss needs a [lubricant], or one of each bearing;"

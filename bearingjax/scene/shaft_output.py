@@ -9,7 +9,6 @@ from ..shafts import DutyResult
 from ..shafts.doubts import axial_load
 from .files import plain_run
 from .fit_report import fit_as_dict
-from .life_ratings import rating_origins
 from .life_report import life_as_dict
 from .oil_table import oil_as_dict
 from .shaft_run import ShaftRun, bearing_loss
@@ -103,7 +102,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     names += ["contact_load", "contact_angle"] if of_balls else []
     numbers |= {name: getattr(solution, name) for name in names}
     numbers["peak_pressure"] = np.max(solution.roller_pressure)
-    numbers |= life_as_dict(life, rating_origins(scene))
+    numbers |= life_as_dict(life, scene)
     numbers["life_hours"] = run.hours[k]
     if scene.oil is not None:
         numbers |= oil_as_dict(bearing.oil)

@@ -20,6 +20,7 @@ from ..numerics.units import unit
 from ..statics.cases import check_hours
 from ..statics.life import LifeConditions, life_of
 from ..statics.life_warning import life_sizes
+from ..statics.rating import check_alike
 from ..statics.reference_life import BALLS, exponents_of
 from ..statics.solution import Solution
 from ..statics.warning import sizes
@@ -98,8 +99,8 @@ def solve_duty(
         DutyResult; nothing is raised for a failed case, read `result`.
 
     Raises:
-        ValueError: If there are no cases, they differ in structure, or the torques of
-            one do not balance.
+        ValueError: If there are no cases, they differ in structure, the torques of one
+            do not balance, or a bearing is a set of unlike rows.
     """
     if not systems or len(systems) != len(conditions):
         raise ValueError(
@@ -119,6 +120,7 @@ def solve_duty(
             none = np.full(len(systems), np.nan)
             lives.append((none, dict.fromkeys(LIVES, none), {}))
             continue
+        check_alike(seat.installed.drawing.bearing)
         speeds = [speed_of(first, k, speed)[0] for speed in np.asarray(found["speed"])]
         given = [
             (system.seats[k].installed, motion, speed, of_case[k])

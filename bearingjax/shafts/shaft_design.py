@@ -21,6 +21,7 @@ from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted
 from ..statics.cases import check_hours
 from ..statics.life import LifeConditions
+from ..statics.rating import check_alike
 from ..statics.warning import counted
 from .bearing_oil import BearingOil
 from .doubts import load_doubts
@@ -78,7 +79,8 @@ class ShaftDesign(AbstractSystem):
     Traced: all numbers.
 
     Raises:
-        ValueError: If they are not as many as the bearings.
+        ValueError: If they are not as many as the bearings, or a bearing is a set of
+            unlike rows.
     """
 
     of_cases: ClassVar[type] = ShaftCases
@@ -96,6 +98,9 @@ class ShaftDesign(AbstractSystem):
                     f"ShaftDesign: `{name}` are {len(found)} of {count} bearings; give"
                     " one for each, `None` of springs."
                 )
+        for seat in self.system.seats:
+            if seat.installed is not None:
+                check_alike(seat.installed.drawing.bearing)
 
     @property
     def element(self):

@@ -38,7 +38,7 @@ from ..design import (
 )
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, as_real
-from .rating import nominal_contact_angle, rated_axially
+from .rating import nominal_contact_angle, published_factors, rated_axially
 
 # Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
 _RELATIVE = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)
@@ -203,6 +203,10 @@ def _is_flat(angle):
 def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factors:
     """Factors of ISO 281 and ISO 76 of a bearing or of a set of like rows.
 
+    Self-aligning ball bearings and spherical roller bearings of the catalogue have the
+    factors of axial load that it prints: those of the former are up to a sixth larger
+    than their estimated contact angles give.
+
     Args:
         bearing: The design.
         axial: Axial load, on which those of small contact angles depend [N].
@@ -218,6 +222,14 @@ def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factor
         radial = _of_balls(row, angle, double, sharing, axial)
     else:
         radial = _of_rollers(angle, double)
+    printed = published_factors(bearing)
+    if printed is not None:
+        y1, y2, y0 = printed[0]
+        own = jnp.stack([y1, y2]), jnp.stack([y0, jnp.zeros_like(y0)])
+        radial = tuple(
+            factors.at[:, 1].set(jnp.where(printed[1], y, factors[:, 1]))
+            for factors, y in zip(radial, own, strict=True)
+        )
     # At 90 degrees it carries no radial load at all.
     alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
     thrust = [

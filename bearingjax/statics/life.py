@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, bearings_of, pitch_radius, rows_of
+from ..design import bearings_of, pitch_radius, rows_of
 from ..design.checks import check, in_range, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -37,10 +37,11 @@ from .life_factor import (
 )
 from .rating import (
     Ratings,
-    arc_rows,
+    check_alike,
     is_axial,
     nominal_contact_angle,
     ratings,
+    row_ratings,
 )
 from .reference_life import (
     BALLS,
@@ -342,6 +343,7 @@ def life_of(
                 f"rating_life: `lamina_load` has shape {shape}; it must be (element, 2,"
                 " lamina), of the rollers of the solution."
             )
+    check_alike(element.bearing)
     return _life(element.bearing, solution, conditions, speed, lamina_load)
 
 
@@ -520,31 +522,16 @@ class _RowPart(NamedTuple):
 
 
 def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
-    """Fatigue of every row, as bearings of their own.
-
-    Source: ISO 281: C = C_1 i^0.7 of i rows of balls, C_1 i^(7/9) of rollers; the
-        arcs of a four-point bearing count as two rows (`arc_rows`).
-    """
-    rows = rows_of(bearing)
-    arcs = arc_rows(rows[0].bearing)
-    turned = sum(row.mirrored for row in rows)
-    one_way = min(count for count in (turned, len(rows) - turned) if count)
-    one_way = len(rows) if arcs == 2 else one_way
-    ends = np.cumsum(row_sizes)
-    parts = []
-    for row, size, end in zip(rows, row_sizes, ends, strict=True):
-        angle = nominal_contact_angle(row.bearing)
-        thrust = is_axial(row.bearing.is_thrust, angle)
-        together = 0.7 if isinstance(row.bearing, AbstractBallBearing) else 7.0 / 9.0
-        count = jnp.where(thrust, float(one_way), float(arcs * len(rows)))
-        fatigue = row_fatigue(
-            row.bearing,
-            rated.dynamic_capacity / count**together,
-            angle,
-            loads[int(end) - size : int(end)],
-            turning,
-        )
-        parts.append(_RowPart(fatigue, rated.fatigue_load_limit / count, thrust))
+    """Fatigue of every row, as bearings of their own."""
+    ends, parts = np.cumsum(row_sizes), []
+    alone = row_ratings(bearing, rated)
+    sizes = zip(bearings_of(bearing), alone, row_sizes, ends, strict=True)
+    for row, (capacity, limit), size, end in sizes:
+        angle = nominal_contact_angle(row)
+        thrust = is_axial(row.is_thrust, angle)
+        loaded = loads[int(end) - size : int(end)]
+        fatigue = row_fatigue(row, capacity, angle, loaded, turning)
+        parts.append(_RowPart(fatigue, limit, thrust))
     return parts
 
 

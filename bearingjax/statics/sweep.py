@@ -23,6 +23,7 @@ from .cases import Cases
 from .life import LIFE_OUTPUTS, LifeConditions
 from .names_of_zeros import names_of_zeros
 from .options import SolveOptions
+from .rating import check_alike
 from .solution import Solution
 from .support import check_held
 from .sweep_program import WARNED, Program, Task
@@ -223,6 +224,8 @@ def sweep(
         )
     keep, lives = _kept(outputs)
     life = LifeConditions() if lives and life is None else life
+    if life is not None:
+        check_alike(element.bearing)
     task = Task(options, keep, warn, lives, life)
     program = Program(element, task, size, places)
     # The looser tolerance of float32 would leave near starts a digit less.

@@ -14,12 +14,9 @@ from bearingjax.scene import (
     read_rotor,
     read_skid,
 )
-from bearingjax.scene.life_ratings import (
-    life_conditions,
-    not_published,
-    rating_origins,
-)
+from bearingjax.scene.life_ratings import not_published, rating_origins
 from bearingjax.scene.rotor_run import task_warnings
+from bearingjax.statics import ratings
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 
@@ -34,42 +31,53 @@ def read(tmp_path):
     return made
 
 
-def rated(conditions) -> tuple[Any, ...]:
-    names = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
-    values = (getattr(conditions, name) for name in names)
-    return tuple(None if value is None else float(value) for value in values)
+NAMES = ("dynamic_capacity", "static_capacity", "fatigue_load_limit")
+
+
+def rate(scene) -> Any:
+    given = (getattr(scene.life, name, None) for name in NAMES)
+    return ratings(scene.element.bearing, *given)
+
+
+def rated(scene) -> tuple[Any, ...]:
+    """C, C0 and Pu that are given or published; `None` of those from the geometry."""
+    found = rate(scene)
+    counts = found.given | np.asarray(found.published)[:3]
+    pairs = zip(NAMES, counts, strict=True)
+    return tuple(float(getattr(found, name)) if yes else None for name, yes in pairs)
 
 
 def test_published_ratings_count_unless_given(read):
     entry = bj.catalogue_entry("6205")
     scene = read('designation = "6205"', "[life]\n")
     own = (entry.dynamic_capacity, entry.static_capacity, entry.fatigue_load_limit)
-    assert rated(life_conditions(scene)) == own
+    assert rated(scene) == own
     # What says nothing of the ratings leaves them, what is said in [life] counts.
     scene = read(
         'designation = "6205"\nradial_internal_clearance = "3 um"\n',
         '[life]\ndynamic_capacity = "15 kN"\n',
     )
-    assert rated(life_conditions(scene)) == (15e3, *own[1:])
+    assert rated(scene) == (15e3, *own[1:])
 
 
 @pytest.mark.slow
 def test_another_geometry_is_rated_by_the_standards(read):
     scene = read('designation = "6205"\nn_balls = 8', "[life]\n")
-    assert rated(life_conditions(scene)) == (None, None, None)
+    assert rated(scene) == (None, None, None)
     assert not_published(scene) == [
         "  (not the published ones of 6205: n_balls differs)"
     ]
     scene = read('designation = "6205"', "[life]\n")
-    assert rated(life_conditions(scene, ["bearing.ball_diameter"])) == (None,) * 3
+    (line,) = not_published(scene, ["bearing.ball_diameter"])
+    assert "6205: ball_diameter differs" in line
     harmless = ["bearing.radial_internal_clearance", "operating.load.Fy"]
-    assert rated(life_conditions(scene, harmless))[0] == 14.8e3
+    assert rated(scene)[0] == 14.8e3
     assert not_published(scene, harmless) == []
 
 
 def test_not_published_lists_unprinted_ratings(read):
     scene = read('designation = "7308 C"', "[life]\n")
-    assert rated(life_conditions(scene)) == (None, None, None)
+    assert rated(scene) == (None, None, None)
     (line,) = not_published(scene)
     assert "those of 7308 C are not known for this contact angle; from the" in line
     given = read('designation = "7308 C"', '[life]\ndynamic_capacity = "32 kN"\n')
@@ -83,32 +91,32 @@ def test_a_pair_is_rated_as_two_rows(read):
     scene = read('designation = "7208B"', pair)
     # ISO 281, 5.1.2.2: two rows bear 2^0.7 of what one bears.
     wanted = [f * v for f, v in zip((2**0.7, 2, 2), own, strict=True) if v is not None]
-    assert rated(life_conditions(scene)) == pytest.approx(wanted, rel=1e-12)
+    assert rated(scene) == pytest.approx(wanted, rel=1e-12)
     words = "published for 7208 BE, of one row; for 2 rows "
-    assert rating_origins(scene) == {
-        "dynamic_capacity": f"{words}by ISO 281",
-        "static_capacity": f"{words}by ISO 76",
-        "fatigue_load_limit": f"{words}in proportion to C0",
+    listed = "7208B is listed as 7208 BE"
+    assert rating_origins(scene, rate(scene)) == {
+        "dynamic_capacity": f"{words}by ISO 281; {listed}",
+        "static_capacity": f"{words}by ISO 76; {listed}",
+        "fatigue_load_limit": f"{words}in proportion to C0; {listed}",
     }
 
 
 def test_who_gave_a_rating_is_told(read):
     given = '[life]\ndynamic_capacity = "15 kN"\n'
-    assert rating_origins(read('designation = "6205/C3"', given)) == {
+    scene = read('designation = "6205/C3"', given)
+    assert rating_origins(scene, rate(scene)) == {
         "dynamic_capacity": "given in [life]",
         "static_capacity": "published for 6205/C3",
         "fatigue_load_limit": "published for 6205/C3",
     }
     # Worked out from the geometry, what is not given in [life].
     other = read('designation = "6205"\nn_balls = 8', given)
-    assert list(rating_origins(other)) == ["dynamic_capacity"]
+    assert list(rating_origins(other, rate(other))) == ["dynamic_capacity"]
 
 
 def test_rated_capacity_of_self_aligning_bearing_covers_both_rows(read):
     entry = bj.catalogue_entry("1205")
-    assert rated(life_conditions(read('designation = "1205"')))[0] == (
-        entry.dynamic_capacity
-    )
+    assert rated(read('designation = "1205"'))[0] == entry.dynamic_capacity
 
 
 def test_clearance_restating_catalogue_keeps_class(read):
@@ -211,7 +219,7 @@ def test_sweep_over_designations_ratings(tmp_path):
     table = cases(tmp_path, f"{CATALOGUED}bearing.designation = {names}")
     assert [made["bearing.designation"] for made in table.settings] == names
     found = {
-        names[number]: rated(life_conditions(part.scene))[0]
+        names[number]: rated(part.scene)[0]
         for part in table.design_groups
         for number in np.asarray(part.designs)
     }
@@ -224,15 +232,37 @@ def test_sweep_over_row_count_ratings(tmp_path):
     text = CATALOGUED.replace("[cases", tandem + "[cases")
     counts = "{ start = 1, stop = 2, count = 2 }"
     table = cases(tmp_path, f"{text}set.count = {counts}")
-    one, two = (rated(life_conditions(part.scene))[0] for part in table.design_groups)
+    one, two = (rated(part.scene)[0] for part in table.design_groups)
     assert two == pytest.approx(2**0.7 * one, rel=1e-12)  # ISO 281, 5.1.2.2
 
 
-def test_rows_with_bearings_of_their_own_are_rated_by_the_standards(read):
+def test_rows_with_bearings_of_their_own_have_their_published_ratings(read):
     own = '[[set.rows]]\nbearing = { designation = "7210 B" }\n'
     rows = "".join(f'{own}position = "{z} mm"\n' for z in (0, 20))
     scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{rows}')
-    assert rated(life_conditions(scene)) == (None, None, None)
+    entry = bj.catalogue_entry("7210 B")
+    c, c0, limit = rated(scene)
+    assert c == pytest.approx(2**0.7 * entry.dynamic_capacity, rel=1e-12)
+    assert (c0, limit) == (2 * entry.static_capacity, 2 * entry.fatigue_load_limit)
+    origin = rating_origins(scene, rate(scene))["dynamic_capacity"]
+    assert origin.startswith("published for the bearing of its rows, of one row; for 2")
+
+
+def test_sweep_over_rated_dimension_leaves_out_published_ratings(tmp_path):
+    """Also in the case that has the dimension of the catalogue."""
+    text = CATALOGUED.replace("7208 B", "6205")
+    own = bj.load_bearing("6205").ball_diameter
+    sizes = f'bearing.ball_diameter = ["{1e3 * float(own)} mm", "7.9 mm"]'
+    (part,) = cases(tmp_path, text + sizes).design_groups
+    assert part.element.bearing.published is None
+
+
+def test_rating_origins_name_the_listed_design(read):
+    for name, listed in (("22220", "22220 E"), ("NU 205 W", "NU 205 EC")):
+        scene = read(f'designation = "{name}"')
+        origin = rating_origins(scene, rate(scene))["dynamic_capacity"]
+        plain = name.removesuffix(" W")
+        assert origin == f"published for {listed}; {plain} is listed as {listed}"
 
 
 def test_sweep_over_clearance_of_catalogue_bearing(tmp_path):
@@ -251,7 +281,7 @@ def test_ratings_come_back_from_the_json(read, tmp_path):
     path = tmp_path / "again.json"
     path.write_text(json.dumps({"inputs": scene.inputs}), encoding="utf-8")
     again = bj.read_scene(path)
-    assert rated(life_conditions(again)) == rated(life_conditions(scene))
+    assert rated(again) == rated(scene)
     # Defaults that the JSON has filled in override nothing.
     assert again.catalogue.overridden == ()
 

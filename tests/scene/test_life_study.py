@@ -231,6 +231,7 @@ def two_cases():
         dynamic_source="given",
         static_source="given",
         limit_source="given",
+        factors_source="ISO 281 and ISO 76 from geometry",
     )
     solved = Sweep(cases, outputs, "inner", ())
     run = LifeRun(table, solved, known, asked, ratings)  # pyright: ignore[reportArgumentType]

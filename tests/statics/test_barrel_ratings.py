@@ -27,6 +27,7 @@ from bearingjax.statics.equivalent_load import equivalent_load, left_out, load_f
 from bearingjax.statics.friction import _of_row
 from bearingjax.statics.friction_skf import _TYPES, _variables
 from bearingjax.statics.life_warning import life_warnings
+from bearingjax.statics.rating import row_ratings
 from bearingjax.statics.reference_life import contact_capacities
 from bearingjax.statics.row_rating import RollerRow
 
@@ -606,6 +607,76 @@ def test_thrust_rollers_on_two_circles():
     pair = bj.BearingSet((bj.design.SetRow(inner), bj.design.SetRow(nearly, 0.02)))
     two = float(bj.dynamic_capacity(pair))
     assert two == pytest.approx(2 ** (7 / 9) * c[0], rel=1e-6)
+    # Inside a compiled program too, in either order, and row by row.
+    other = bj.BearingSet(both.rows[::-1])
+
+    @jax.jit
+    def found(bearing):
+        rated = bj.statics.ratings(bearing)
+        rows = jnp.asarray(row_ratings(bearing, rated))
+        return rated.dynamic_capacity, rated.fatigue_load_limit, rows
+
+    for bearing, alone, static in ((both, c, c0), (other, c[::-1], c0[::-1])):
+        dynamic, limit, rows = found(bearing)
+        assert float(dynamic) == pytest.approx(wanted, rel=ROUNDING)
+        assert float(limit) == pytest.approx(sum(c0) / 8.2, rel=ROUNDING)
+        np.testing.assert_allclose(rows[:, 0], alone, rtol=ROUNDING)
+        np.testing.assert_allclose(rows[:, 1], np.array(static) / 8.2, rtol=ROUNDING)
     turned = bj.design.SetRow(outer, 0.05, mirrored=True)
     with pytest.raises(ValueError, match="row 1 of the set is another bearing"):
         bj.dynamic_capacity(bj.BearingSet((bj.design.SetRow(inner), turned)))
+
+
+def test_ratings_of_unlike_rows_are_nan_when_traced():
+    """Where the numbers are not known, a set of alike rows is still rated."""
+    row = bj.CylindricalThrustRollerBearing(20, 0.078, 0.009, 0.008)
+    other = eqx.tree_at(lambda b: b.roller_length, row, jnp.asarray(0.007))
+    capacity = jax.jit(lambda bearing: bj.statics.ratings(bearing).dynamic_capacity)
+
+    def pair(second):
+        turned = bj.design.SetRow(second, 0.05, mirrored=True)
+        return bj.BearingSet((bj.design.SetRow(row), turned))
+
+    alone = float(bj.dynamic_capacity(row))
+    assert float(capacity(pair(row))) == pytest.approx(alone, rel=ROUNDING)
+    assert np.isnan(capacity(pair(other)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("order", (1, -1))
+def test_rating_life_of_thrust_rollers_on_two_circles(order):
+    inner = bj.CylindricalThrustRollerBearing(20, 0.078, 0.009, 0.008)
+    outer = bj.CylindricalThrustRollerBearing(26, 0.098, 0.009, 0.008)
+    rows = [bj.design.SetRow(row) for row in (inner, outer)][::order]
+    element = bj.BearingElement(bj.BearingSet(tuple(rows)))
+    load = np.array([0.0, 0.0, 30e3, 0.0, 0.0, 0.0])
+    life = bj.rating_life(bj.solve_load(element, load, free=("uz",)))
+    capacity = float(bj.dynamic_capacity(element.bearing))
+    assert float(life.dynamic_capacity) == pytest.approx(capacity, rel=ROUNDING)
+    basic = 1e6 * (capacity / 30e3) ** (10 / 3)
+    assert float(life.basic_rating_life) == pytest.approx(basic, rel=1e-9)
+
+
+def test_unlike_rows_are_refused_before_they_are_solved():
+    """By all that computes lives in compiled programs, where numbers are not known."""
+    row = spherical_thrust()
+    other = eqx.tree_at(lambda b: b.roller_length, row, row.roller_length * 0.9)
+    rows = bj.design.SetRow(row), bj.design.SetRow(other, 0.1)
+    element = bj.BearingElement(bj.BearingSet(rows))
+    cases = bj.Cases(np.tile([0.0, 0.0, 1e4, 0.0, 0.0, 0.0], (2, 1)))
+    words = "row 1 of the set is another bearing than row 0"
+    with pytest.raises(ValueError, match=words):
+        bj.sweep(element, cases, outputs=["damage"])
+    path = "bearing.rows.0.bearing.roller_profile_radius"
+    variable = bj.optimise.Variable(path, 0.1, 0.1019)
+    measure = bj.optimise.RatingLife()
+    with pytest.raises(ValueError, match=words):
+        bj.optimise.optimise(element, cases, [variable], measure)
+    seat = bj.shafts.Seat("A", "main", 0.0, bj.statics.Installed(element))
+    ends = bj.shafts.Seat("B", "main", 0.1, stiffness=np.full(5, 1e8))
+    shaft = bj.shafts.ShaftLine("main", [0.2], [0.05])
+    system = bj.shafts.ShaftSystem([shaft], [seat, ends])
+    with pytest.raises(ValueError, match=words):
+        bj.shafts.ShaftDesign(system, (bj.LifeConditions(), None))
+    with pytest.raises(ValueError, match=words):
+        bj.shafts.solve_duty([system], [[bj.LifeConditions(), None]])
