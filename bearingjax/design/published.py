@@ -25,15 +25,17 @@ class Published(eqx.Module):
             (3,) [N].
         axial_factors: Y1, Y2 of the equivalent dynamic load and Y0 of the static one,
             of a bearing of two rows (3,) [1].
-        dimensions: Numbers of its row to which all this belongs, as of
-            `rated_dimensions`.
+        dimensions: Numbers of its row to which all this belongs, from
+            `rated_dimensions` (dimension,) [1, m, rad].
 
     Traced: all fields.
     """
 
     ratings: Float[Array, "3"] = eqx.field(converter=as_real, metadata=unit("N"))
     axial_factors: Float[Array, "3"] = eqx.field(converter=as_real, metadata=unit("1"))
-    dimensions: Float[Array, " dimension"] = eqx.field(converter=as_real)
+    dimensions: Float[Array, " dimension"] = eqx.field(
+        converter=as_real, metadata=unit(("1", "m", "rad"))
+    )
 
     def void(self) -> "Published":
         """Return the same without ratings and factors, as if none were printed."""

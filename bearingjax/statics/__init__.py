@@ -19,9 +19,10 @@ Designs: `stack_designs([...])`, or an element made under `jax.vmap`.
 `sweep(..., stop=...)` is asked between blocks.
 
 `dynamic_capacity`, `static_capacity` and `fatigue_load_limit` rate a bearing, or a set
-of alike ones, by ISO 281 and ISO 76 from its geometry; `ratings` takes what a catalogue
-gives instead and says which is which. A catalogue's C may be higher: makers use factors
-of their own. Bearings steeper than 45 degrees are rated by axial loads.
+of alike ones, by ISO 281 and ISO 76 from its geometry; `ratings`, and so every life,
+takes what is given or what the catalogue prints for a bearing of it instead, and says
+which is which. A catalogue's C may be higher: makers use factors of their own. Bearings
+steeper than 45 degrees are rated by axial loads.
 
 A solve that fails
 ------------------

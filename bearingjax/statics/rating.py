@@ -369,7 +369,7 @@ def _rated(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
     """C, C0 and C_u of alike rows, and whether each is published; else C_u is 0."""
     now = jnp.stack(by_row.capacities(part.rows, part.is_thrust))
     plain = jnp.append(now, 0.0)
-    if part.alone is None:
+    if part.alone is None or part.published is None:
         return plain, jnp.zeros(3, bool)
     # The dimensions have the relative derivatives of the formulas.
     grown = now / jax.lax.stop_gradient(now)
