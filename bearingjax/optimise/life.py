@@ -8,10 +8,8 @@ import jax.numpy as jnp
 
 from ..element.bearing_element import BearingElement
 from ..statics.cases import Cases
-from ..statics.installed import Installed
 from ..statics.life import LifeConditions, life_of
 from ..statics.life_warning import life_sizes
-from ..statics.rating import check_alike
 from ..statics.spectrum import spectrum_life
 from ..statics.warning import counted
 from .measure import AbstractMeasure
@@ -43,15 +41,6 @@ class OfLife(AbstractMeasure):
             raise TypeError(
                 f"{type(self).__name__}: `hours` is {self.hours!r}; True or False."
             )
-
-    def check(self, design: Any) -> None:
-        """Raise ValueError if the bearing of a design is a set of unlike rows.
-
-        Args:
-            design: As `optimise` starts from, concrete.
-        """
-        element = design.drawing if isinstance(design, Installed) else design
-        check_alike(getattr(element, "element", element).bearing)
 
     def life(self, element: BearingElement, cases: Cases, solution: Any) -> Any:
         """Life under all cases [1, h].

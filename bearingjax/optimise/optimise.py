@@ -13,7 +13,9 @@ import numpy as np
 
 from ..numerics.units import shown_number
 from ..statics.cases import Cases
+from ..statics.installed import Installed
 from ..statics.options import SolveOptions
+from ..statics.rating import check_alike
 from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
@@ -174,9 +176,11 @@ def optimise(
     _check_cases(cases, kind)
     _check_call(objective, constraints, max_steps, tolerance)
     check_design("optimise", element, cases)
-    for measure in (objective, *(constraint.measure for constraint in constraints)):
-        if isinstance(measure, OfLife):
-            measure.check(element)
+    measures = objective, *(constraint.measure for constraint in constraints)
+    if any(isinstance(measure, OfLife) for measure in measures):
+        if not isinstance(element, AbstractSystem):
+            drawing = element.drawing if isinstance(element, Installed) else element
+            check_alike(drawing.bearing)
     options = SolveOptions(free, fixed_ring, points, solve_tolerance)
     options.check("optimise", "solve_tolerance")
     if isinstance(cases, Cases):
