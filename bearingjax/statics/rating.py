@@ -66,7 +66,7 @@ class Ratings(eqx.Module):
     fatigue_load_limit: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
     axial: Flag
     published: Bool[Array | np.ndarray, "*case 4"]
-    given: tuple[bool, bool, bool] = eqx.field(static=True)
+    given: tuple[bool, ...] = eqx.field(static=True)
 
     @property
     def dynamic_source(self) -> str:
@@ -369,7 +369,7 @@ def _rated(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
     """C, C0 and C_u of alike rows, and whether each is published; else C_u is 0."""
     now = jnp.stack(by_row.capacities(part.rows, part.is_thrust))
     plain = jnp.append(now, 0.0)
-    if part.alone is None or part.published is None:
+    if part.alone is None or part.published is None or part.holds is None:
         return plain, jnp.zeros(3, bool)
     # The dimensions have the relative derivatives of the formulas.
     grown = now / jax.lax.stop_gradient(now)
@@ -401,13 +401,14 @@ def row_ratings(
         thrust rollers have C in the ratio of their own, C_u in that of their C0.
     """
     parts = _parts(bearing)
+    first = parts[0]
     if len(parts) > 1:
         each = [_rated(part)[0] for part in parts]
         c, c0 = _together(parts, [values[:2] for values in each])
         shares = [(one[0] / c, one[1] / c0) for one in each]
     else:
-        rows = parts[0].rows
-        axial = is_axial(parts[0].is_thrust, rows.row.contact_angle)
+        rows = first.rows
+        axial = is_axial(first.is_thrust, rows.row.contact_angle)
         count = jnp.where(axial, rows.one_way, rows.count)
         shares = [(count ** -_power(rows.row), 1.0 / count)] * len(rows_of(bearing))
     return [

@@ -2,6 +2,7 @@
 
 import functools
 from operator import attrgetter
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -20,7 +21,7 @@ from bearingjax.statics import equivalent_load, rating, ratings
 LOAD = np.array([2e3, 0.0, 4e3, 0.0, 0.0, 0.0])
 
 
-def rows(bearing):
+def rows(bearing) -> list[Any]:
     return [row.bearing for row in bj.design.rows_of(bearing)]
 
 
