@@ -591,7 +591,7 @@ def test_four_points_live_as_one_row_by_axial_and_as_two_by_radial_load():
 
     @eqx.filter_jit
     def numbers(bearing, sizes, loads, c):
-        rated = SimpleNamespace(dynamic_capacity=c, fatigue_load_limit=900.0)
+        rated = bj.ratings(bearing, dynamic_capacity=c, fatigue_load_limit=900.0)
         oil = jnp.asarray(1.5), jnp.asarray(0.5)  # κ and e_C
         rows = _rows(bearing, sizes, loads, rated, turning)
         tired = sum(_modified(*row, *oil, BALLS) for row in rows)
