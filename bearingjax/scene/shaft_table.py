@@ -407,8 +407,7 @@ def _with_lives(scene: ShaftScene, path: Path) -> ShaftScene:
         problem = "needs a `speed` of the drive; at rest nothing warms"
         raise SceneError(f"{path.name}: `heat`: {problem}")
     lives = (
-        None if one is None else life_conditions(one, turning)
-        for one in scene.bearings
+        None if one is None else life_conditions(one, turning) for one in scene.bearings
     )
     return dataclasses.replace(scene, lives=tuple(lives))
 
