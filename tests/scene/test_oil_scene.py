@@ -1,12 +1,14 @@
 """[lubricant] in a scene that is solved: friction and films, and what is wrong."""
 
 import json
+from types import SimpleNamespace
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.scene.oil_table import oil_facts
 
 ROLLERS = """
 [bearing]
@@ -119,3 +121,8 @@ def test_viscosity_without_coefficients_does_not_depend_on_temperature(scene):
     for temperature in (283.15, 323.15, 363.15):
         viscosity = oil.lubricant.viscosity(0.0, temperature)
         assert float(viscosity) == pytest.approx(20e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [None, bj.Speed(inner=3.0, outer=3.0)])
+def test_oil_facts_are_none_at_rest(speed, untyped):
+    assert oil_facts(None, SimpleNamespace(speed=speed)) is None  # pyright: ignore
