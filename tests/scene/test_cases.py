@@ -12,6 +12,7 @@ from pages import missing_on_page
 import bearingjax as bj
 from bearingjax.scene import (
     SceneError,
+    cases_list,
     cases_table,
     design_columns,
     read_cases,
@@ -491,3 +492,9 @@ def test_a_report_shows_no_round_off(scene):
     assert "stiffness_inner_ux_inner_uy" not in told
     assert told["stiffness_inner_gx_inner_gy"] == ["2e-05", "2e-05", "N", "m"]
     assert told["residual"] == ["3e-16", "3e-16"]
+
+
+@pytest.mark.parametrize("text, value", [("12", 12), ("1.5", 1.5), ("C3", "C3")])
+def test_cells_without_unit_are_numbers_or_text(text, value):
+    found = cases_list._bare(text)
+    assert found == value and isinstance(found, type(value))

@@ -185,6 +185,12 @@ housing_diameter = "270 mm"
 """
 
 
+def test_fit_rejects_housing_in_another_unit(scene):
+    text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
+    with pytest.raises(bj.scene.SceneError, match="housing_diameter.*unit meant"):
+        bj.read_scene(scene(text.replace('"270 mm"', '"270 m"')))
+
+
 def test_fit_drive_up_of_tapered_bore(scene):
     text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
     read = bj.read_scene(scene(text))
