@@ -206,15 +206,16 @@ class BallSearchHints(SearchHints):
     def midpoint(self, rings):
         return self.element.geometry.midpoint(rings)
 
-    def start(self, rings):
+    def at_rest(self, rings):
         """A turning ball that does not reach the inner ring lies in the outer one.
 
         From the midpoint a small centrifugal force would take it there in steps of any
-        length.
+        length. From the land beside the groove, on which only the tether moves it, it
+        would creep: a ball that the load zone leaves may have gone on to it.
         """
         element, midway = self.element, self.midpoint(rings)
         if element.ball_inertia is None:
-            return midway
+            return None
         start, reach = element.grooves.start, element.grooves.reach
         outer = [k for k, on_outer in enumerate(element.grooves.on_outer) if on_outer]
         centre = sum((start[k] for k in outer[1:]), start=start[outer[0]])
@@ -230,7 +231,7 @@ class BallSearchHints(SearchHints):
         moved = element.coordinates(rings, midway)[outer[0]]
         seat = midway + target - centre / len(outer) - moved
         inner = element.contacts(rings, seat).approach[len(outer) :]
-        return jnp.where(jnp.max(inner) < 0.0, seat, midway)
+        return seat, jnp.max(inner) < 0.0
 
     @property
     def keeps_response(self):

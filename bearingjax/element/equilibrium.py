@@ -278,6 +278,10 @@ def _prepare(element, rings, magnitude, near) -> _Inputs:
     start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
         start = _followed(element, near, rings, start)
+    rest = hints.at_rest(motions)
+    if rest is not None:
+        place, apart = rest
+        start = jnp.where(apart, place, start)
     is_open = hints.is_open(motions)
     if is_open is not None:
         start = jnp.where(is_open, centre, start)

@@ -72,6 +72,18 @@ class SearchHints(eqx.Module):
         """Start of the search for the equilibrium (n,) [m]."""
         return self.midpoint(rings)
 
+    def at_rest(self, rings: Any) -> tuple[Float[Array, " n"], Bool[Array, ""]] | None:
+        """Place where inertia lays the element in one ring, if the other one is apart.
+
+        It is then the equilibrium but for round-off, and the search starts there,
+        wherever the element was before.
+
+        Returns:
+            The place (n,) [m], and whether the other ring is apart from it; `None`
+            without inertia.
+        """
+        return None
+
     @property
     def keeps_response(self) -> bool:
         """Whether the contact response is kept from the last step. Static.

@@ -112,6 +112,49 @@ def test_balls_lift_off_at_high_speed(deep):
     assert any("lifted off the inner raceway" in line for line in warnings(s))
 
 
+LITTLE_THRUST = (
+    # Fx, Fy, Fz [N] and speed [rad/s].
+    (38.3, 344.3, 21.85, 319.1),
+    (95.7, -49.9, 3.296, 554.0),
+    (-428.2, 4210.2, 340.7, 244.6),
+    (-1529.5, 575.2, 165.1, 791.9),
+    (2611.3, -1208.5, 470.0, 124.5),
+    (1183.1, 307.8, 75.2, 727.3),
+    (-3223.6, -2819.5, 397.5, 332.0),
+    (-996.7, -5089.0, 188.4, 420.2),
+    (116.1, 11.7, 14.53, 818.5),
+    (143.8, -2875.9, 212.4, 654.5),
+    (-223.8, -18.0, 31.65, 273.2),
+    (4805.8, -2294.6, 297.8, 241.4),
+)
+
+
+@pytest.mark.slow
+def test_balls_that_the_load_zone_has_left_lie_in_the_outer_groove():
+    """Little axial load moves the ring aside; a ball pressed over the bottom of the
+    groove on the land beside it would creep there, held by its tether alone."""
+    element = bj.BearingElement(bj.load_bearing("7208 BE"))
+
+    @jax.jit
+    @jax.vmap
+    def solved(load, speed):
+        free, given = ["ux", "uy", "uz"], jnp.concatenate([load, jnp.zeros(3)])
+        speed = bj.Speed(inner=speed)
+        return bj.solve_load(element, given, free=free, speed=speed, throw=False)
+
+    load, speed = np.split(np.asarray(LITTLE_THRUST), [3], axis=1)
+    s = jax.tree.map(np.asarray, solved(jnp.asarray(load), jnp.asarray(speed[:, 0])))
+    assert np.all(s.result == bj.Result.CONVERGED)
+    off = np.abs(s.force[:, 6:9] - load).max(axis=1)
+    assert np.all(off < SOLVER * np.abs(load).max(axis=1))
+    lifted = s.lifted
+    assert np.all(lifted.sum(axis=1) >= 4)
+    assert np.abs(s.contact_angle[..., 0][lifted]).max() < SOLVER
+    # Balls that press with less than 5 % of the largest load are nothing to warn of.
+    told = warnings(jax.tree.map(lambda leaf: leaf[7], s))
+    assert not any("beyond the bottom" in text for text in told)
+
+
 @pytest.mark.slow
 def test_states_of_a_four_point_bearing():
     """Pure thrust: two points. A large ball under a radial load: more."""
