@@ -269,6 +269,37 @@ DRIVEN = {
 """SKF, general catalogue, 2006, spherical roller bearings, solid shafts."""
 
 
+SMALL = {
+    30: ((10, 0.25), (15, 0.29), (15, 0.3), (20, 0.35), (15, 0.23), (20, 0.30)),
+    40: ((15, 0.30), (20, 0.35), (20, 0.35), (25, 0.4), (20, 0.30), (25, 0.38)),
+}
+"""Clearance taken [µm] and travel [mm] at 1:12 up to a bore [mm]: SKF, card of drive-up
+data; SKF, general catalogue, 2006; Timken, engineering manual."""
+
+
+def test_needed_drive_up_of_small_bores_beside_tables_of_makers():
+    """The band that its docstring states."""
+    ratios = []
+    for entry in bj.catalogue():
+        bore = 1e3 * entry.bore
+        if entry.type == "spherical_roller" and 24 < bore <= 40:
+            seats = Mounting(
+                entry.bore,
+                entry.outside_diameter,
+                2.0 * entry.outside_diameter,
+                0.0,
+                -1e-4,
+                ring_width=entry.width,
+                bore_taper=1 / 12,
+            )
+            seats = sized(seats, rows_of(entry.bearing)[0].bearing)
+            for less, travel in SMALL[30 if bore <= 30 else 40]:
+                found = 1e3 * float(needed_drive_up(seats, 1e-6 * less))
+                ratios.append(travel / found)
+    assert len(ratios) >= 30
+    assert 0.9 < min(ratios) < 1.0 and 1.6 < max(ratios) < 1.8
+
+
 @pytest.mark.slow
 def test_drive_up_beside_the_table_of_a_maker():
     """One row of the table serves all series, and seats give way more than cylinders:
