@@ -22,6 +22,7 @@ from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, Solution
 from ..statics.sweep_table import ROUND_OFF
+from ..statics.warning_sizes import ends_over
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .life_report import life_section
 from .oil_table import oil_report
@@ -318,7 +319,7 @@ def _rollers(solution):
     touching = largest > 1e-9 * largest.max()
     shown = np.flatnonzero(touching)
     pressure = np.asarray(solution.roller_pressure)[shown]
-    edge = np.any(np.asarray(solution.edge_loaded), axis=(1, 2))[shown]
+    edge = np.any(np.asarray(ends_over(solution)), axis=1)[shown]
     columns = [
         *_numbered("roller", solution, shown),
         *by_ring("load", load[shown], "N", ".4f"),

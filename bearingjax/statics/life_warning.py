@@ -150,8 +150,9 @@ def _heavy_numbers(bearing, ratings, numbers):
 
 def _light_words(size, where):
     what = where or (
-        f"of {100.0 * (1.0 - size):.3g} % of {LEAST_LOAD_OF_BALLS:g} C of balls or"
-        f" {LEAST_LOAD_OF_ROLLERS:g} C of rollers, which makers ask for: these"
+        f"of {100.0 * (1.0 - size):.3g} % of the least one that makers ask for,"
+        f" {LEAST_LOAD_OF_BALLS:g} C of ball and {LEAST_LOAD_OF_ROLLERS:g} C of roller"
+        " bearings: the rolling elements"
     )
     return f"equivalent load {what} may skid"
 

@@ -102,7 +102,6 @@ def counted(warned: dict[str, np.ndarray]) -> list[str]:
         worst = int(np.nanargmax(warned[name]))
         said = ALL[name].words(float(warned[name][worst]), "")
         out.append(
-            f"{name}: {said}, in {int(cases.sum())} of {len(cases)} cases, worst case"
-            f" {worst}"
+            f"{said}, in {int(cases.sum())} of {len(cases)} cases, worst case {worst}"
         )
     return out

@@ -223,7 +223,7 @@ def _land_words(size, where):
 def _lifted_words(size, where):
     return (
         "lifted off the inner raceway by centrifugal force, more than"
-        f" {100.0 * sizes.SMALLEST_LIFT:g} % of the largest load: "
+        f" {100.0 * sizes.SMALLEST_LOAD:g} % of the largest load: "
         f"{where or shown_count(round(size), 'ball')}"
     )
 

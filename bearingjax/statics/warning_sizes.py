@@ -31,10 +31,8 @@ from ..element.kinematics import Linearised
 from ..numerics.types import namespace
 from .balls import above_round_off
 from .rollers import EDGE_PRESSURE
+from .solution import LARGEST_PRESSURE as LARGEST_PRESSURE
 from .solution import BallSolution, RollerSolution, Solution
-
-LARGEST_PRESSURE = 4e9
-"""Contact pressure above which steel is no longer elastic [Pa]."""
 
 SOFTEST = 1e-7
 """Stiffness over E* D up to which a direction counts as free [1]: a tenth of the lowest
@@ -84,10 +82,11 @@ reaches so far is 0.39 ball diameters high: twice the usual, and more than any."
 
 LAND_SHARE = 0.05
 """Share of a contact's load beyond the groove bottom that gives a warning [1]."""
-SMALLEST_LIFT = 0.05
-"""Centrifugal force of a lifted ball over the largest load of a contact up to which it
-does not matter [1]: what such balls would carry at rest is less than that, and their
-share in the fatigue of the outer raceway, by the cube of their load, about 1e-4."""
+SMALLEST_LOAD = 0.05
+"""Load of a contact over the largest one up to which it does not matter where it lies
+[1]: of a lifted ball its centrifugal force, which is more than it would carry at rest.
+The share of such contacts in the fatigue of a raceway, by the cube of the load, is
+about 1e-4."""
 
 _PLAUSIBLE = {
     "pitch_diameter": (1e-3, 15.0, "m"),
@@ -527,13 +526,29 @@ def interference(solution: Solution) -> Any:
 
 def truncation(solution: Solution) -> Any:
     """Largest reach of a contact ellipse over its shoulder, negative: none [m]."""
-    return -_of_balls(solution).shoulder_margin.min()
+    return -_margins(solution).min()
+
+
+def _margins(solution):
+    """`BallResults.shoulder_margin` of contacts that matter, else infinite [m]."""
+    balls, xp = _of_balls(solution), namespace(solution.result)
+    return xp.where(matters(balls.contact_load), balls.shoulder_margin, xp.inf)
+
+
+def matters(load: Any) -> Any:
+    """Whether each load is above `SMALLEST_LOAD` of the largest of its bearing.
+
+    What lies in the unloaded zone, thrown outwards, may lie anywhere.
+
+    Args:
+        load: (element, contact) [N], of NumPy or of JAX.
+    """
+    return load > SMALLEST_LOAD * load.max()
 
 
 def truncated_balls(solution: Solution) -> str:
     """Raceways and balls whose ellipse reaches over a shoulder, and their load."""
-    balls = _of_balls(solution)
-    margin = balls.shoulder_margin
+    balls, margin = _of_balls(solution), _margins(solution)
     most = np.asarray(balls.contact_load)[margin < 0].max()
     sides = margin.reshape(margin.shape[0], 2, -1).min(axis=2)
     where = of_raceways(solution, sides < 0)
@@ -549,7 +564,7 @@ def on_land(solution: Solution) -> Any:
     1/2 - 3x/4 + x³/4 lies beyond; in the middle, and past it, one half is counted.
     """
     balls, xp, parts = _of_balls(solution), namespace(solution.result), []
-    carrying = above_round_off(balls.contact_load)
+    carrying = matters(balls.contact_load)
     # An open ellipse has no length.
     half = xp.where(carrying, balls.semi_axes[..., 1], 1.0)
     cut = xp.where(carrying, balls.contact_angle / half, xp.inf)
@@ -581,8 +596,7 @@ def lifted(solution: Solution) -> Any:
     load, force = balls.contact_load, balls.centrifugal_force
     assert force is not None  # this warning arises at a speed alone
     carrying = above_round_off(load).reshape(load.shape[0], 2, -1).any(axis=2)
-    matters = force > SMALLEST_LIFT * load.max()
-    return carrying[:, 0] & ~carrying[:, 1] & matters
+    return carrying[:, 0] & ~carrying[:, 1] & (force > SMALLEST_LOAD * load.max())
 
 
 def lifted_count(solution: Solution) -> Any:
@@ -591,10 +605,23 @@ def lifted_count(solution: Solution) -> Any:
 
 
 def edge_pressure(solution: Solution) -> Any:
-    """Largest pressure at a roller end [Pa]."""
-    return _of_rollers(solution).edge_pressure.max()
+    """Largest pressure at the end of a roller that passes a load that `matters` [Pa].
+
+    A roller that lies on one raceway, pressed there by its own inertia, is free to lie
+    flat.
+    """
+    rollers = _of_rollers(solution)
+    return _passed(rollers, rollers.edge_pressure).max()
+
+
+def _passed(rollers, pressure):
+    """Pressures (roller, 2, end) of rollers that pass a load, 0 of others [Pa]."""
+    load = rollers.roller_load
+    passes = load.min(axis=1) > SMALLEST_LOAD * load.max()
+    return namespace(pressure).where(passes[:, None, None], pressure, 0.0)
 
 
 def ends_over(solution: Solution) -> Any:
     """Whether each roller is edge-loaded on each raceway (roller, 2)."""
-    return (_of_rollers(solution).edge_pressure > EDGE_PRESSURE).any(axis=2)
+    rollers = _of_rollers(solution)
+    return (_passed(rollers, rollers.edge_pressure) > EDGE_PRESSURE).any(axis=2)

@@ -144,7 +144,7 @@ def test_cases(written):
     np.testing.assert_allclose(of_seats(found, "life_hours"), wanted, rtol=1e-6)
     assert "under all 3 cases" in done.out
     # What is odd in one case is told, with the case, as a sweep tells it.
-    light = [text for text in found["warnings"] if "light_load" in text]
+    light = [text for text in found["warnings"] if "may skid" in text]
     assert len(light) == 4
     assert all(re.search(r"in \d of 3 cases, worst case \d", text) for text in light)
     assert found["cases"]["hours"] == [100.0, 10.0, 0.0]

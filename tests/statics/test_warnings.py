@@ -338,15 +338,25 @@ def test_warnings_rib_interference(rollers):
 
 
 def test_warnings_edge_loading_ignores_light_pressure(rollers):
+    """So too that of rollers which pass no load: thrown on one raceway by their weight
+    they may lie there as they like."""
     s = bj.solve_load(rollers, [0, -4000.0, 300, 0, 0, 0])
-    at_ends = jnp.zeros_like(s.edge_pressure).at[2, 1, 0].set(1.0)
-    light, heavy = (
-        eqx.tree_at(lambda s: s.edge_pressure, s, size * at_ends) for size in (8e6, 8e8)
-    )
+    load = np.array(s.roller_load)
+    top, idle = int(load.min(axis=1).argmax()), int(load.min(axis=1).argmin())
+    load[idle] = 0.3, 0.0
+
+    def at_end(roller, pressure):
+        ends = jnp.zeros_like(s.edge_pressure).at[roller, 0, 1].set(pressure)
+        return eqx.tree_at(
+            lambda s: (s.roller_load, s.edge_pressure), s, (jnp.asarray(load), ends)
+        )
+
+    light, heavy, thrown = at_end(top, 8e6), at_end(top, 8e8), at_end(idle, 343.6e6)
     assert not light.edge_loaded.any() and bj.warnings(light) == []
+    assert thrown.edge_loaded.any() and bj.warnings(thrown) == []
     (text,) = bj.warnings(heavy)
     assert text.startswith("edge-loaded roller: 800 MPa")
-    assert "(inner raceway: roller 2)" in text
+    assert f"(outer raceway: roller {top})" in text
 
 
 def test_warnings_are_empty_for_failed_solution(rollers):
@@ -384,8 +394,8 @@ def test_sweep_warnings_match_single_solutions(deep):
     counts = swept.warning_counts()
     assert counts["contact_pressure"] == 2 and counts["no_stiffness"] == 1
     texts = swept.warnings
-    assert [text.partition(": ")[0] for text in texts] == list(counts)
-    (text,) = (t for t in texts if t.startswith("contact_pressure: "))
+    assert len(texts) == len(counts)
+    (text,) = (t for t in texts if t.startswith("contact pressure of "))
     assert text.endswith(", in 2 of 5 cases, worst case 4")
     assert f"{1e-6 * swept.warning_contact_pressure[4]:.5g} MPa" in text
     column = sweep_table.columns(swept)["warnings"]
@@ -398,7 +408,7 @@ def test_sweep_warnings_match_single_solutions(deep):
         lambda *leaves: jnp.stack(leaves),
         *(solved(deep, load, throw=False) for load in LOADS),
     )
-    assert [t.partition(":")[0] for t in bj.warnings(both)] == list(counts)
+    assert len(bj.warnings(both)) == len(counts)
     assert set(swept.warned) <= set(KINDS)
 
 
@@ -466,7 +476,8 @@ def test_balls_beyond_the_bottom_of_their_groove():
         s = bj.solve_load(element, [0, -1500, 0, 0, 0, 0], prescribed=held | uz)
         texts = [t for t in bj.warnings(s) if t.startswith("balls beyond the bottom")]
         assert bool(texts) is told
-    loaded = np.flatnonzero(np.asarray(s.load_zone))
+    load = np.asarray(s.contact_load)
+    loaded = np.flatnonzero(load[:, 1] > 0.05 * load.max())
     assert f"inner raceway: balls {listed(loaded)};" in texts[0]
 
 
