@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from machines import friswell, paper, stepped
 from slopes import with_slopes
-from tolerances import DIFFERENCE, PUBLISHED, SOLVER
+from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import AbstractSupport
@@ -211,6 +211,22 @@ def test_a_campbell_diagram_says_where_modes_are_not_followed():
     with pytest.warns(UserWarning, match="between 400 and 600 rad/s") as told:
         bj.rotor.campbell(rotor, np.linspace(0.0, 1000.0, 6), count=4)
     assert len(told) == 1
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, np.pi / 4, 1.2, -0.7])
+@pytest.mark.parametrize("aside", [0.0, 0.2, -0.5, 1.0])
+def test_major_axis_of_inclined_orbit(turn, aside):
+    """Half axes 1 and `aside`, turned by `turn`: as far as the orbit goes from its
+    middle, whatever its direction and sense."""
+    begun = np.exp(0.3j)
+    x = begun * (np.cos(turn) - 1j * aside * np.sin(turn))
+    y = begun * (np.sin(turn) + 1j * aside * np.cos(turn))
+    assert bj.rotor.major_axis(x, y) == pytest.approx(1.0, rel=ROUNDING)
+    phase = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 20001))
+    far = np.hypot((x * phase).real, (y * phase).real).max()
+    assert far == pytest.approx(bj.rotor.major_axis(x, y), rel=1e-7)
+    both = bj.rotor.major_axis(jnp.asarray([x, 2.0 * x]), jnp.asarray([y, 2.0 * y]))
+    assert np.allclose(both, [1.0, 2.0], rtol=ROUNDING)
 
 
 # Numbers of `stepped`, and what they are counted in.

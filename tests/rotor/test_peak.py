@@ -67,6 +67,24 @@ def test_peak_of_a_linear_oscillator():
     assert np.isclose(orbit.amplitude[0], 0.15 / (z * np.sqrt(1.0 - z**2)), rtol=1e-9)
     with pytest.raises(ValueError, match="follow the branch further"):
         peak(system, branch, 0, method, between=(1.05, 1.2))
+    # Points that end short of it, by 1e-7 of the way, have next to no slope there, and
+    # no peak between them.
+    k = int(np.flatnonzero(branch.frequency < float(orbit.frequency))[-1])
+    here, top = (
+        np.append(x, float(w))
+        for x, w in (
+            (branch.unknowns[k], branch.frequency[k]),
+            (np.asarray(orbit.unknowns), orbit.frequency),
+        )
+    )
+    short = top + 1e-7 * (here - top)
+    ended = branch._replace(
+        frequency=np.array([branch.frequency[k - 1], here[-1], short[-1]]),
+        unknowns=np.stack([branch.unknowns[k - 1], here[:-1], short[:-1]]),
+        amplitude=np.array([[0.5], [1.0], [0.5]]),
+    )
+    with pytest.raises(SolveError, match="peak: not found near .*step_limit"):
+        peak(system, ended, 0, method)
     # A branch that has stepped over the peak says so, one of small steps finds it.
     z = 1e-4
     system = duffing(*jnp.array([0.0, 2.0 * z, z]))
