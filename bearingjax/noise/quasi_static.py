@@ -104,7 +104,7 @@ def excitation(
         bad = int(jnp.sum(found.result != Result.CONVERGED))
         return f"excitation: {bad} of {found.result.size} instants were not solved."
 
-    return raise_unless_converged(found, found.result, message)
+    return raise_unless_converged(found, found.result, message, "excitation")
 
 
 def at_instant(

@@ -173,7 +173,10 @@ def vibration(
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: _failure(model, int(found.result), found.steps)
+        found,
+        found.result,
+        lambda: _failure(model, int(found.result), found.steps),
+        "vibration",
     )
 
 

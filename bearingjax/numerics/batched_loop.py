@@ -245,7 +245,13 @@ class _Task:
             found = _in_lanes(self, flags, leaves, count)
         found = jax.tree.leaves(found)
         known = [(a.shape, a.dtype) for a in self.avals(count)]
-        assert known == [(a.shape, a.dtype) for a in found], (known, found)
+        if known != [(a.shape, a.dtype) for a in found]:
+            raise TypeError(
+                "bearingjax: the precision was changed inside a function that JAX"
+                " traces (enable_x64 within jit), but it is compiled with the one that"
+                " holds outside. Change it around the call, or before all else:"
+                ' jax.config.update("jax_enable_x64", True)'
+            )
         return found
 
     def avals(self, count: int | None) -> list[ShapedArray]:

@@ -73,7 +73,9 @@ def stiffness_table(
             f" {message(point.solution, point.solution.moving_ring)}"
         )
 
-    stiffness = raise_unless_converged(stiffness, result, first_failure)
+    stiffness = raise_unless_converged(
+        stiffness, result, first_failure, "stiffness_table"
+    )
     if not (is_traced(stiffness) or is_traced(speeds)):
         _warn_of_slack(element, speeds, stiffness)
     return stiffness

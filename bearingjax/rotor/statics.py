@@ -107,7 +107,10 @@ def static_equilibrium(
     found, place = equilibrium_at(rotor, loads, speed)
     if throw:
         found = raise_unless_converged(
-            found, found.result, lambda: unsettled(rotor, found, place)
+            found,
+            found.result,
+            lambda: unsettled(rotor, found, place),
+            "static_equilibrium",
         )
     known = not is_traced(found.motion) and not is_traced(found.result)
     if known and int(found.result) == Result.CONVERGED:

@@ -89,7 +89,10 @@ def static_equilibrium_over(
             " `static_equilibrium` there says more."
         )
 
-    return raise_unless_converged(found, found.result, message) if throw else found
+    if not throw:
+        return found
+    owner = "static_equilibrium_over"
+    return raise_unless_converged(found, found.result, message, owner)
 
 
 def _at_each(rotor, loads, speeds) -> StaticEquilibrium:

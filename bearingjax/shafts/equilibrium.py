@@ -59,7 +59,10 @@ def solve_system(system: ShaftSystem, *, throw: bool = True) -> SystemSolution:
     found, place = searched_system(system)
     if throw:
         found = raise_unless_converged(
-            found, found.result, lambda: unsolved(system, found, place)
+            found,
+            found.result,
+            lambda: unsolved(system, found, place),
+            "solve_system",
         )
     return found
 

@@ -242,10 +242,10 @@ def solve_heat(
         result=result,
     )
 
-    return (
-        raise_unless_converged(found, result, lambda: overheated(found))
-        if throw
-        else found
+    if not throw:
+        return found
+    return raise_unless_converged(
+        found, result, lambda: overheated(found), "solve_heat"
     )
 
 

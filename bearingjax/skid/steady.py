@@ -89,14 +89,16 @@ def steady(
     support = {"prescribed": prescribed, "speed": carried}
     solution = solve(model.element, load, options, **support)
     if throw:
-        solution = raise_if_failed(solution)
+        solution = raise_if_failed(solution, "skid.steady")
     count = _places(model.bearing, solution, places)
     case = load_case(model.bearing, load, options, **support)
     follows = load_speed is None
     found = end_state(model, solution, case, options, speed, count, follows)
     if not throw:
         return found
-    return raise_unless_converged(found, found.result, lambda: _message(found))
+    return raise_unless_converged(
+        found, found.result, lambda: _message(found), "skid.steady"
+    )
 
 
 def check_places(owner: str, bearing: Any, places: int | None) -> None:

@@ -155,7 +155,7 @@ def simulate(
         model.element, first, options, prescribed=prescribed, speed=at
     )
     if throw:
-        solution = raise_if_failed(solution)
+        solution = raise_if_failed(solution, "skid.simulate")
     gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
@@ -177,7 +177,9 @@ def simulate(
     )
     if not throw:
         return found
-    return raise_unless_converged(found, found.result, lambda: _message(found))
+    return raise_unless_converged(
+        found, found.result, lambda: _message(found), "skid.simulate"
+    )
 
 
 def _check(axis, derivatives, places, duration, tolerance, max_steps, n_times):

@@ -135,7 +135,7 @@ def linearise(
     options = SolveOptions(free, fixed_ring, points=2)
     solution = solve(element, load, options, prescribed=prescribed, speed=speed)
     if throw:
-        solution = raise_if_failed(solution)
+        solution = raise_if_failed(solution, "linearise")
     if not any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
         slack = loose(solution)
         if slack:

@@ -29,7 +29,7 @@ from .load_case import LoadCase, Prescribed, Vector, load_case
 from .load_result import solution_of
 from .load_search import search, search_start
 from .options import SolveOptions
-from .solution import BallSolution, RollerSolution, Solution, message
+from .solution import BallSolution, RollerSolution, Solution, message, no_load_path
 
 
 class _Choices(TypedDict, total=False):
@@ -131,7 +131,7 @@ def solve_load(
         speed=speed,
         start=start,
     )
-    return raise_if_failed(solution) if throw else solution
+    return raise_if_failed(solution, "solve_load") if throw else solution
 
 
 def solve(
@@ -194,15 +194,20 @@ def _solve(
     return unless_failed(solution, given, solved)
 
 
-def raise_if_failed(solution: Solution) -> Solution:
+def raise_if_failed(solution: Solution, owner: str) -> Solution:
     """The solution, or an exception that says why it failed, also under `jit`.
 
     Args:
         solution: Solution of one case.
+        owner: Function that was called.
 
     Raises:
         SolveError: If it did not converge.
     """
     return raise_unless_converged(
-        solution, solution.result, lambda: message(solution, solution.moving_ring)
+        solution,
+        solution.result,
+        lambda: message(solution, solution.moving_ring),
+        owner,
+        (solution.unrestrained, [no_load_path(solution, k) for k in range(6)]),
     )

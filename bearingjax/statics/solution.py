@@ -28,6 +28,9 @@ from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results
 from .rollers import RollerResults, roller_results
 
+LARGEST_PRESSURE = 4e9
+"""Contact pressure above which steel is no longer elastic [Pa]."""
+
 _BALANCED, _ROUND_OFF = 1e-10, 1e-7
 """Residuals of a load solve, and of its rolling elements, that are out of balance by no
 more than what round-off leaves of large loads [1]."""
@@ -146,6 +149,27 @@ def check_single(owner: str, solution: Solution) -> None:
         )
 
 
+def no_load_path(solution: Solution, freedom: int) -> str:
+    """Cause and cure of a load that nothing holds, in words; also of traced solutions.
+
+    Args:
+        solution: Solution.
+        freedom: Index of the freedom of the moving ring that it concerns.
+    """
+    name, load = FREEDOMS[freedom], LOADS[freedom]
+    if name in solution.held:
+        return (
+            f"The load has {load}, but {name} of the {solution.moving_ring} ring is"
+            " held (prescribed, or left out of the free ones): its support would take"
+            f" that load. Leave out {load}, or free {name}."
+        )
+    return (
+        f"No load path in {name} of the {solution.moving_ring} ring: the bearing does"
+        " not hold the load in this direction. Add load or preload that closes it,"
+        " turn the load round, or prescribe that freedom."
+    )
+
+
 def message(solution: Solution, moving_ring: str) -> str:
     """Cause and cure of a result, in words; for concrete, single solutions."""
     result = Result(int(solution.result))
@@ -161,19 +185,7 @@ def message(solution: Solution, moving_ring: str) -> str:
                 " too much load or tilt turns over). Add the rib or axial load, or"
                 " lower the speed; check the load and its unit."
             )
-        freedom = FREEDOMS[int(solution.unrestrained)]
-        if freedom in solution.held:
-            load = LOADS[FREEDOMS.index(freedom)]
-            return (
-                f"The load has {load}, but {freedom} of the {moving_ring} ring is held"
-                " (prescribed, or left out of the free ones): its support would take"
-                f" that load. Leave out {load}, or free {freedom}."
-            )
-        return (
-            f"No load path in {freedom} of the {moving_ring} ring: the bearing does"
-            " not hold the load in this direction. Add load or preload that closes"
-            " it, turn the load round, or prescribe that freedom."
-        )
+        return no_load_path(solution, int(solution.unrestrained))
     if result is Result.NON_FINITE:
         return (
             "Numbers that are not finite or far outside the bearing: check loads,"
@@ -187,12 +199,15 @@ def message(solution: Solution, moving_ring: str) -> str:
             " contact."
         )
     residual, local = float(stats.residual), float(stats.roller_residual)
-    if residual < _BALANCED and local < _ROUND_OFF:
+    pressure = float(solution.roller_pressure.max())
+    # Of an element of another kind it is not known.
+    absurd = not pressure <= LARGEST_PRESSURE
+    if residual < _BALANCED and local < _ROUND_OFF and absurd:
         return (
             f"The rolling elements balance to {local:.1e} of their load and no closer,"
             " in round-off: loads so large press steep roller ends or the smallest gaps"
             " beyond what numbers resolve. Check the load and its unit; the contact"
-            f" pressure is {1e-9 * float(solution.roller_pressure.max()):.3g} GPa."
+            f" pressure is {1e-9 * pressure:.3g} GPa."
         )
     cure, newton = "check load, clearance, preload and dimensions", TrustRegionNewton
     usual = isinstance(solution.element.equilibrium, newton)

@@ -138,3 +138,21 @@ def test_packing():
     for name, value in state.items():
         assert back[name].dtype == value.dtype
         np.testing.assert_array_equal(back[name], value)
+
+
+def test_precision_changed_within_jit_is_named():
+    """It is compiled with the precision that holds outside."""
+    ones = SUM._replace(
+        init=lambda count: jnp.zeros((), jnp.int32),
+        step=lambda count, k: k + 1,
+        terminate=lambda count, k: k >= count,
+        finish=lambda count, k: jnp.ones(()),
+    )
+
+    @jax.jit
+    def call(count):
+        with jax.enable_x64(False):
+            return batched_loop.run(ones, count)
+
+    with pytest.raises(TypeError, match="precision was changed inside a function"):
+        call(jnp.asarray(3, jnp.int32))

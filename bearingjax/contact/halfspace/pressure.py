@@ -207,7 +207,9 @@ def solve_pressure(
     solution = _solved(problem, ConjugateGradients() if solver is None else solver)
     if not throw:
         return solution
-    return raise_unless_converged(solution, solution.result, lambda: message(solution))
+    return raise_unless_converged(
+        solution, solution.result, lambda: message(solution), "solve_pressure"
+    )
 
 
 @program

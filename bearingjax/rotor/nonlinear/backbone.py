@@ -148,7 +148,9 @@ def backbone(
     found = _followed(system, as_real(peaks), freedom, method, mode)
     if not throw:
         return found
-    return raise_unless_converged(found, found.result, lambda: _message(found, peaks))
+    return raise_unless_converged(
+        found, found.result, lambda: _message(found, peaks), "backbone"
+    )
 
 
 def _message(found, peaks):

@@ -224,6 +224,7 @@ def solve_orbit(
             f" ({Result(int(orbit.result)).label}). Begin with an orbit nearby"
             " (`start`), or follow a branch to this frequency."
         ),
+        "solve_orbit",
     )
 
 

@@ -83,6 +83,7 @@ def peak(
             " the points of the branch are too far apart for so narrow a peak (follow"
             " it with smaller `Steps`), or the system is not that of the branch."
         ),
+        "peak",
     )
 
 

@@ -125,7 +125,9 @@ def simulate(
     found = _simulated(system, table, begin, force, times, as_real(duration), options)
     if not throw:
         return found
-    return raise_unless_converged(found, found.result, lambda: _message(found))
+    return raise_unless_converged(
+        found, found.result, lambda: _message(found), "simulate"
+    )
 
 
 def poincare(
