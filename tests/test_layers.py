@@ -169,7 +169,7 @@ def fresh():
 def test_import_leaves_settings_and_heavy_packages_alone(fresh):
     assert fresh["settings"] == []
     late = "bearingjax." + " bearingjax.".join(bj._LATE)  # pyright: ignore
-    others = "diffrax matplotlib optax optimistix scipy tqdm"
+    others = "diffrax matplotlib optax optimistix pint scipy tqdm"
     assert {*late.split(), *others.split()}.isdisjoint(fresh["modules"])
 
 

@@ -1,22 +1,37 @@
-"""Quantities as written in scene files: a number and a unit."""
+"""Quantities as written in scene files: a number and a unit, read by pint."""
 
 import decimal
 import functools
 import itertools
 import math
 import re
+import unicodedata
 from fractions import Fraction
-
-from .unit_text import Unit, parse_unit, plain_unit, spellings
+from importlib.resources import files
+from typing import Any
 
 _NUMBER = re.compile(
     r"\s*([-+−]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+−]?[0-9]+)?)(.*)"
 )
+_LETTER = "[A-Za-zµ°]"
+_POWER = r"-?(?=[\d.]*[1-9])1?\d(?:\.\d+)?(?!\d)"
+# What pint may see: m^9^9 would take it for ever, and m//s is m/s to it.
+_UNIT = re.compile(
+    rf"(?:{_LETTER}|1(?= ?/)|[*() ]|/(?!/)"
+    rf"|\^ ?(?:{_POWER}|\( ?{_POWER}(?: ?/ ?[1-9])? ?\))(?! ?\^|{_LETTER}))+",
+    re.ASCII,
+)
+_ALIKE = str.maketrans("º˚″", '°°"')
+_PLAIN = str.maketrans({"μ": "µ", "−": "-", "–": "-", **dict.fromkeys("·⋅∙•×", "*")})
+_TICKS = str.maketrans({"'": "arcmin", "′": "arcmin", '"': "arcsec"})
 _HIDDEN = dict.fromkeys(map(ord, "\u200b\u2060\ufeff"))
 _ZEROS = {"°C": "273.15", "degC": "273.15", "°F": "459.67", "degF": "459.67"}
 """Zero of a temperature, above the absolute one and in its own degrees."""
-_PER_MINUTE = "1/min", "min-1", "min^-1"
+_PER_MINUTE = "1/min", "min-1", "min^-1", "min^(-1)"
 """As a speed 1/min counts revolutions, as in machine standards."""
+_ANGLE = {"frequency": "({}) turn"}
+_ANGLE |= dict.fromkeys(("tilting stiffness", "tilting damping"), "({})/rad")
+"""Units whose radians may be left out; as a frequency, cycles are counted then."""
 
 KINDS = {
     "length": ("m", "mm"),
@@ -153,93 +168,121 @@ def to_si(text: object, kind: str) -> float:
     if match is None:
         raise SceneError(f"{text!r} does not begin with a finite number; {wanted}")
     number, written = match[1].replace("−", "-"), match[2].strip()
-    name = plain_unit(written)
+    name = _plain(written)
     if not name:
         raise SceneError(f"{text!r} has no unit; {wanted}")
     if re.match(r",\d", name):
         raise SceneError(f"{text!r} has a comma; write a decimal point, 5.2, no comma")
     if re.match(r"['’_\d]\s*\d|\d(?!\s*/)", name):
         raise SceneError(f"{text!r} has parted digits; write them together, 1000.5")
-    unit = _unit_of_kind(name, kind)
-    if unit is None:
-        known = parse_unit(name)
-        if kind == "speed" and known and known.dimension == (0, 0, -1, 0, 0):
+    size = _size(name, kind)
+    if size is None:
+        known = _parse(name)
+        if kind == "speed" and known and known[1] == {"[time]": -1}:
             raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
         problem = f"is not {article} {kind}"
-        if known is None or known.dimension == _si(kind).dimension:
+        if known is None or known[1] == _si(kind)[1]:
             problem = f"has the unknown unit {written!r}"
             if kind in _UNITS:
                 wanted += f"; its units: {', '.join(_UNITS[kind].split())}"
         raise SceneError(f"{text!r} {problem}{_cure(name, kind)}; {wanted}")
     value = float(number)
     if math.isfinite(value) and (value != 0.0 or kind == "temperature"):
-        value = _scaled(decimal.Decimal(number), unit, kind)
+        value = _scaled(decimal.Decimal(number), size, name, kind)
     if not math.isfinite(value) or (value == 0.0 and re.match(r"[^eE]*[1-9]", number)):
         raise SceneError(f"{text!r} is out of range; {wanted}")
     return value
 
 
-def _unit_of_kind(name: str, kind: str) -> Unit | None:
-    """Return a unit, or `None` if it is unknown or not of this kind."""
+def _plain(unit: str) -> str:
+    """Return a unit with one character for each of those that look alike: µ, blanks,
+    dots, minus, raised digits."""
+    unit = unicodedata.normalize("NFKC", unit.translate(_ALIKE)).translate(_PLAIN)
+    return " ".join(unit.replace("**", "^").split())
+
+
+@functools.cache
+def _registry() -> Any:
+    """Return the units of `units.txt`, without the cache folder of pint, which programs
+    share, and without prefixes, or 20 Grad would be a billion radians."""
+    import pint
+
+    listed = files("bearingjax.scene") / "units.txt"
+    return pint.UnitRegistry(str(listed), cache_folder=None, on_redefinition="raise")
+
+
+@functools.lru_cache(1024)
+def _parse(text: str) -> tuple[float, dict[str, float]] | None:
+    """Return the size in SI and the dimension of a unit such as "kN/mm", "N-m", "min-1"
+    or "W/(m K)", or `None` if a part of it is not known."""
+    registry = _registry()
+    unit = re.sub(rf"(?<={_LETTER})(-?[1-9])(?!\.?\d)", r"^\1", text.translate(_TICKS))
+    unit = re.sub(rf" ?[.-] ?(?={_LETTER}|\()", "*", unit)
+    names = re.findall(f"{_LETTER}+", unit)
+    if not (_UNIT.fullmatch(unit) and names and {*registry}.issuperset(names)):
+        return None
+    try:
+        parsed = registry.parse_units(unit)
+        size = float(registry.get_root_units(parsed)[0])
+        powers = {k: round(float(p), 9) for k, p in parsed.dimensionality.items()}
+    except Exception:  # of any kind, also of the tokenizer of Python
+        return None
+    known = size, {k: p for k, p in powers.items() if p}
+    return known if 0.0 < size < math.inf else None
+
+
+def _size(name: str, kind: str) -> float | None:
+    """Return the size of a unit in that in which the kind is counted, or `None` if it
+    is unknown or not of this kind."""
     if name.startswith("/"):  # 5e-6/K
         name = f"1{name}"
     if kind in ("speed", "frequency") and name.replace(" ", "") in _PER_MINUTE:
         name = "rpm"
     if kind in ("moment", "tilting stiffness"):  # foot-pounds are those of force
         name = re.sub(r"\blbs?\b", "lbf", name)
-    unit, (si, wanted, _) = parse_unit(name), _si(kind)
-    if unit is None or (kind == "temperature" and not unit.name):
+    given = unit = _parse(name)
+    if given and given[1] != _si(kind)[1]:
+        unit = _parse(_ANGLE.get(kind, "{}").format(name))
+    is_name = re.fullmatch(f"{_LETTER}+", name)
+    listed = [_parse(_plain(known)) for known in _UNITS.get(kind, "").split()]
+    if is_name and listed and given not in listed:
         return None
-    if kind in ("frequency", "tilting stiffness", "tilting damping"):
-        # Radians may be left out; as a frequency, cycles are counted then.
-        if unit.dimension == (*wanted[:-1], 0.0):
-            turn = 2.0 * math.pi if kind == "frequency" else 1.0
-            return Unit(turn * unit.size, wanted)
-    near = zip(unit.dimension, wanted, strict=True)
-    if not all(math.isclose(a, b, abs_tol=1e-9) for a, b in near):
+    if kind == "temperature" and not is_name:
         return None
-    if unit.name and kind in _UNITS and unit.size not in _sizes(kind):
-        return None
-    return unit._replace(size=unit.size / si)
+    return unit[0] / _si(kind)[0] if unit and unit[1] == _si(kind)[1] else None
 
 
-@functools.cache
-def _si(kind: str) -> Unit:
-    """Return the unit in which a kind is counted."""
-    unit = parse_unit(plain_unit(KINDS[kind][0]))
+def _si(kind: str) -> tuple[float, dict[str, float]]:
+    """Return size and dimension of the unit in which a kind is counted."""
+    unit = _parse(_plain(KINDS[kind][0]))
     assert unit is not None
     return unit
-
-
-@functools.cache
-def _sizes(kind: str) -> set[float]:
-    """Return the sizes of the units of a kind that have a name."""
-    units = map(parse_unit, map(plain_unit, _UNITS[kind].split()))
-    return {unit.size for unit in units if unit is not None}
 
 
 def _cure(name: str, kind: str) -> str:
     """Return what to write in place of a wrong unit, in brackets; empty if unknown."""
     slip = _SLIPS.get(kind, {}).get(name)
     if slip is None:
-        words = re.split(r"([A-Za-zµ°]+)", name)
-        spelt = [[*spellings(w), _WEIGHTS.get(w, w)] for w in words]
+        words = re.split(f"({_LETTER}+)", name)
+        known = sorted(_registry(), reverse=True)  # mN before MN
+        spelt = [[k for k in known if k.lower() == w.lower()] for w in words]
+        spelt = [[*k, _WEIGHTS.get(w, w)] for k, w in zip(spelt, words, strict=True)]
         tried = map("".join, itertools.islice(itertools.product(*spelt), 99))
-        found = dict.fromkeys(one for one in tried if _unit_of_kind(one, kind))
+        found = dict.fromkeys(one for one in tried if _size(one, kind))
         slip = " or ".join(found)
     return f" (write {slip})" if slip else ""
 
 
-def _scaled(number: decimal.Decimal, unit: Unit, kind: str) -> float:
+def _scaled(number: decimal.Decimal, size: float, name: str, kind: str) -> float:
     """Convert a number to SI; a power of ten shifts its decimal exponent, so that 10 µm
     are exactly 1e-05 m."""
-    tens = round(math.log10(unit.size))
+    tens = round(math.log10(size))
     if kind == "temperature":
-        degree = Fraction(unit.size).limit_denominator(9)
-        return float((Fraction(number) + Fraction(_ZEROS.get(unit.name, "0"))) * degree)
-    if math.isclose(unit.size, 10.0**tens, rel_tol=1e-14):
+        degree = Fraction(size).limit_denominator(9)
+        return float((Fraction(number) + Fraction(_ZEROS.get(name, "0"))) * degree)
+    if math.isclose(size, 10.0**tens, rel_tol=1e-14):
         return float(number.scaleb(tens))
-    return float(number) * unit.size
+    return float(number) * size
 
 
 def _article(kind: str) -> str:

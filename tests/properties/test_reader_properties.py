@@ -10,7 +10,7 @@ import tomllib
 from pathlib import Path
 
 from holds_for import holds_for, reals
-from hypothesis import assume
+from hypothesis import assume, example
 from hypothesis import strategies as st
 from tolerances import ROUNDING
 
@@ -81,6 +81,21 @@ _WORDS = st.one_of(
     st.lists(_PIECES, max_size=12).map("".join),
     st.lists(_PIECES, max_size=12).map(" ".join),
 )
+
+
+_QUANTITIES = st.one_of(
+    _WORDS,
+    st.tuples(st.sampled_from(["1", "-2.5", "1e3", "0", "1e999", "٣"]), _WORDS).map(
+        " ".join
+    ),
+)
+
+
+@holds_for(text=_QUANTITIES, kind=st.sampled_from(list(KINDS)))
+@example("1 m^9^9^9^9", "length")
+def test_any_text_is_a_quantity_or_refused_in_a_line(text, kind):
+    value = answer(to_si, text, kind)
+    assert value is None or math.isfinite(value)
 
 
 _DEEP_GROOVE = sorted(

@@ -6,9 +6,15 @@ import math
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.scene.quantity import _UNITS, KINDS, SceneError, scene_number, to_si
+from bearingjax.scene.quantity import (
+    _UNITS,
+    KINDS,
+    SceneError,
+    _registry,
+    scene_number,
+    to_si,
+)
 from bearingjax.scene.schema import Key
-from bearingjax.scene.unit_text import _NAMES
 
 G, LB, IN, TURN = 9.80665, 0.45359237, 0.0254, 2.0 * math.pi
 PSI = LB * G / IN**2
@@ -69,10 +75,13 @@ def test_listed_units_have_their_factors():
             assert got == pytest.approx(wanted, rel=ROUNDING), (kind, unit)
 
 
-def test_names_of_units_are_distinct():
-    names = list(itertools.chain(*(row.split() for row in _NAMES)))
-    prefixed = [p + row.split()[0] for row, (all_, *_) in _NAMES.items() for p in all_]
-    assert len(set(names + prefixed)) == len(names) + len(prefixed)
+def test_names_of_units_have_no_prefixes_and_endings_but_those_listed():
+    names = set(_registry())
+    for name, prefix, ending in itertools.product(names, ["", *"µmkMG"], ["", "s"]):
+        other = f"{prefix}{name}{ending}"
+        if other not in names:
+            with pytest.raises(SceneError, match="has the unknown unit"):
+                to_si(f"5 {other}", "unbalance")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -168,6 +177,13 @@ REFUSED = {
     "5 u": ("mass", "unknown unit 'u'"),
     "5 mass": ("angle", "unknown unit 'mass'"),
     "5 %": ("length", "unknown unit '%'"),
+    "5 mms": ("length", "unknown unit 'mms'"),
+    "5 m//s": ("sliding speed", "unknown unit 'm//s'"),
+    "5 m per s": ("sliding speed", "unknown unit 'm per s'"),
+    "5 (mm": ("length", "unknown unit '(mm'"),
+    "5 m²·9": ("length", "unknown unit"),
+    "5 kpsi^19/psi^19 m^(-9)^9^9^9": ("length", "unknown unit"),
+    f"5 m {'kpsi^9 ' * 13}/{'/psi^9' * 13}": ("length", "unknown unit"),
     "5 N rad": ("force", "is not a force"),
     "25 Hz": ("speed", "is a frequency; give rpm, deg/s or rad/s"),
     "1,5 mm": ("length", "has a comma; write a decimal point"),
