@@ -9,7 +9,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
-from .checks import concrete, instance, non_negative, number, positive
+from .checks import concrete, instance, non_negative, number, of_class, positive
 from .checks import count as whole
 from .overlap import overlap
 
@@ -74,11 +74,8 @@ class SetRow(eqx.Module):
     spring: PreloadSpring | None = None
 
     def __check_init__(self):
-        if not isinstance(self.bearing, AbstractBearing):
-            raise TypeError(
-                f"SetRow: `bearing` is a {type(self.bearing).__name__}; it must be a"
-                " single-row roller or ball bearing."
-            )
+        row = "a single-row roller or ball bearing"
+        of_class(self, "bearing", self.bearing, AbstractBearing, row)
         if not isinstance(self.mirrored, bool):
             raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
         number(self, "position")
@@ -204,11 +201,7 @@ class BearingSet(eqx.Module):
         Raises:
             TypeError: If `row` is no `CrossedRollerRow`.
         """
-        if not isinstance(row, CrossedRollerRow):
-            raise TypeError(
-                f"BearingSet: `row` is a {type(row).__name__}; it must be a"
-                " CrossedRollerRow."
-            )
+        of_class(cls, "row", row, CrossedRollerRow, "a CrossedRollerRow")
         return cls._mirrored(row, True)
 
     @classmethod
@@ -231,11 +224,7 @@ class BearingSet(eqx.Module):
         return cls(tuple(rows))
 
     def __check_init__(self):
-        if not isinstance(self.rows, tuple):
-            raise TypeError(
-                f"BearingSet: `rows` is a {type(self.rows).__name__}; it must be a list"
-                " or tuple of SetRows."
-            )
+        of_class(self, "rows", self.rows, tuple, "a list or tuple of SetRows")
         if not self.rows:
             raise ValueError("BearingSet: `rows` is empty; it must hold a SetRow.")
         for row in self.rows:

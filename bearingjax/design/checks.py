@@ -8,7 +8,7 @@ A field of the owner is checked by its name: its value and unit are looked up. O
 anything else, value and unit are `given` after all other arguments.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from numbers import Real
 from typing import Any
 
@@ -76,11 +76,8 @@ def number(owner, name: str, *given: Any) -> None:
             f"{title}: `{name}` is {value!r}; it must be a number"
             f"{f' in {unit}' if unit else ''} (units belong in scene files)."
         )
-    if np.shape(value) != ():
-        raise ValueError(
-            f"{title}: `{name}` has shape {np.shape(value)}; it must be one number"
-            f"{f' in {unit}' if unit else ''}."
-        )
+    allowed = f"one number{f' in {unit}' if unit else ''}"
+    of_shape(owner, name, np.shape(value) == (), allowed, value)
     if not is_traced(value):
         check(owner, name, np.isfinite(value), "a finite number", value, unit)
 
@@ -116,6 +113,13 @@ def real_numbers(owner: str, name: str, value, wanted: str) -> None:
 
 _ODD = "OUSc"
 """Kinds of NumPy's dtypes that are no real numbers: objects, texts, complex ones."""
+
+
+def finite(owner, name: str, *given: Any) -> None:
+    """A finite number, or an array of them; arguments as in `check`."""
+    value, _ = given or _field(owner, name)
+    if not is_traced(value):
+        check(owner, name, np.isfinite(value), "finite", *given)
 
 
 def positive(owner, name: str, *given: Any) -> None:
@@ -175,14 +179,62 @@ def instance(owner, name: str, *kinds: type | None) -> None:
     Raises:
         TypeError: If it holds something else.
     """
-    value = getattr(owner, name)
-    if not any(value is None if k is None else isinstance(value, k) for k in kinds):
-        names = ["None" if k is None else k.__name__ for k in kinds]
-        allowed = " or ".join(n.removeprefix("Abstract") for n in names)
-        raise TypeError(
-            f"{_title(owner)}: `{name}` is a {type(value).__name__}; it must be a"
-            f" {allowed}."
+    names = ["None" if k is None else k.__name__ for k in kinds]
+    allowed = " or ".join(n.removeprefix("Abstract") for n in names)
+    known = tuple(type(None) if k is None else k for k in kinds)
+    of_class(owner, name, getattr(owner, name), known, f"a {allowed}")
+
+
+def of_class(owner, name: str, value, kinds: Any, allowed: str) -> None:
+    """An object of a class, or of one of several.
+
+    Args:
+        owner, name, allowed: As in `check`.
+        value: The object.
+        kinds: As `isinstance` takes them.
+
+    Raises:
+        TypeError: If it is something else.
+    """
+    if not isinstance(value, kinds):
+        kind = type(value).__name__
+        raise TypeError(f"{_title(owner)}: `{name}` is a {kind}; it must be {allowed}.")
+
+
+def of_shape(owner, name: str, fits: bool, allowed: str, *given: Any) -> None:
+    """An array of an allowed shape.
+
+    Args:
+        owner, name, allowed: As in `check`.
+        fits: Whether its shape is allowed.
+        given: The array, if not a field of `owner`.
+
+    Raises:
+        ValueError: If it is not.
+    """
+    if not fits:
+        value = given[0] if given else getattr(owner, name)
+        shape = np.shape(value) if is_real(value) else type(value).__name__
+        raise ValueError(
+            f"{_title(owner)}: `{name}` has shape {shape}; it must be {allowed}."
         )
+
+
+def one_of(owner, name: str, value, names: Collection[str], allowed: str = "") -> None:
+    """One of several names.
+
+    Args:
+        owner, name: As in `check`.
+        value: Name that was given.
+        names: Allowed names.
+        allowed: As in `check`, if they are not simply listed.
+
+    Raises:
+        ValueError: If it is none of them.
+    """
+    if value not in names:
+        words = allowed or f"one of {', '.join(names)}"
+        raise ValueError(f"{_title(owner)}: `{name}` is {value!r}; it must be {words}.")
 
 
 def _field(owner, name):

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.units import unit_of
-from .checks import check, concrete, is_real, is_traced
+from .checks import check, concrete, finite, is_real, is_traced, of_shape
 
 
 class Deviation(NamedTuple):
@@ -91,12 +91,8 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
             f"{kind}: `{name}` is {value!r}; it must be numbers in"
             f" {unit_of(owner, name)}."
         )
-    if np.shape(value) != (count,):
-        raise ValueError(
-            f"{kind}: `{name}` has shape {np.shape(value)}; it must be ({count},),"
-            f" {what}."
-        )
-    check(owner, name, np.isfinite(value), "finite")
+    of_shape(owner, name, np.shape(value) == (count,), f"({count},), {what}")
+    finite(owner, name)
     return np.asarray(value)
 
 
@@ -114,15 +110,14 @@ def check_raceways(owner: Any, count: int, most: float) -> None:
         return
     if not is_real(value):
         raise TypeError(f"{kind}: `{name}` is {value!r}; it must be numbers in m.")
-    if np.shape(value) != (count, 2, 3):
-        raise ValueError(
-            f"{kind}: `{name}` has shape {np.shape(value)}; it must be"
-            f" ({count}, 2, 3): of each rolling element, at the outer and the inner"
-            " raceway, how far that stands along z and outwards, and how far the"
-            " contact is raised, in m."
-        )
+    allowed = (
+        f"({count}, 2, 3): of each rolling element, at the outer and the inner raceway,"
+        " how far that stands along z and outwards, and how far the contact is raised,"
+        " in m"
+    )
+    of_shape(owner, name, np.shape(value) == (count, 2, 3), allowed)
+    finite(owner, name)
     if not is_traced(value):
-        check(owner, name, np.isfinite(value), "finite")
         check(owner, name, np.abs(value) < most, f"below {most:.6g} m in size")
 
 

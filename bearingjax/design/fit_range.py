@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 
-from .checks import concrete, in_range
+from .checks import concrete, in_range, one_of
 from .fits import FitConditions, Mounting, fit_state, positive_part
 from .iso286 import Limits
 
@@ -105,10 +105,7 @@ def mounting_at(
     Raises:
         ValueError: If there is no such place, or a lower limit is above the upper one.
     """
-    if place not in PLACES:
-        raise ValueError(
-            f"mounting_at: `place` is {place!r}; it must be one of {', '.join(PLACES)}."
-        )
+    one_of("mounting_at", "place", place, PLACES)
     given = _given(clearance, shaft, bore, housing, outside_diameter)
     cases, side = _Cases(mounting, given), PLACES[place]
     if not place.startswith("probable"):

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .abstract import AbstractBearing
-from .checks import check, instance, is_real, is_traced
+from .checks import check, finite, instance, is_real, is_traced
 from .deviation import largest_deviation
 
 _NODES = 256
@@ -125,8 +125,7 @@ class Harmonics(AbstractShape):
                     f"Harmonics: `{name}` has shape {value.shape}; its last axis must"
                     f" be that of the {count} orders."
                 )
-            if not is_traced(value):
-                check(self, name, np.isfinite(value), "finite")
+            finite(self, name)
 
     @classmethod
     def spectrum(

@@ -22,7 +22,7 @@ from .ball_types import (
 from .barrel import AbstractBarrelBearing, CrossedRollerRow
 from .bearing import AbstractRollerBearing
 from .bearing_set import AbstractBearing, BearingSet, SetRow, rows_of, shares_rings
-from .checks import check, concrete, number
+from .checks import check, concrete, number, of_class
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
 
@@ -140,10 +140,7 @@ def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting
         TypeError: As `radial_clearance`.
         ValueError: If the rings are not thicker than the raceways.
     """
-    if not isinstance(mounting, Mounting):
-        raise TypeError(
-            f"sized: `mounting` is a {type(mounting).__name__}; it must be a Mounting."
-        )
+    of_class("sized", "mounting", mounting, Mounting, "a Mounting")
     row = rows_of(bearing)[0].bearing
     inner, outer = raceway_diameters(row)
     own = {

@@ -4,7 +4,7 @@ import equinox as eqx
 
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .checks import instance, non_negative, number, positive
+from .checks import instance, non_negative, number, one_of, positive
 
 RIB_NAMES = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
 """Order of the ribs wherever they are an axis: ring, then side (-z, +z)."""
@@ -76,11 +76,7 @@ class Ribs(eqx.Module):
         Raises:
             ValueError: If the name is unknown.
         """
-        if name not in ARRANGEMENTS:
-            raise ValueError(
-                f"Ribs: `arrangement` is {name!r}; it must be one of"
-                f" {', '.join(ARRANGEMENTS)}."
-            )
+        one_of(cls, "arrangement", name, ARRANGEMENTS)
         if axial_internal_clearance is not None:
             gap = as_real(0.25 * axial_internal_clearance)
             rib = Rib(rib.end_radius, rib.contact_height, gap)

@@ -6,7 +6,7 @@ order, are not in these standards: makers agree them with their customers.
 
 from typing import Any, NamedTuple
 
-from .checks import positive
+from .checks import one_of, positive
 
 _MICRON = 1e-6
 
@@ -213,10 +213,7 @@ def _of_range(name, what, diameter, ends, values):
 
 def _named(owner, what, name, table):
     """Row of a table, or an error that names all rows."""
-    if name not in table:
-        raise ValueError(
-            f"{owner}: `{what}` is {name!r}; it must be one of {', '.join(table)}."
-        )
+    one_of(owner, what, name, table)
     return table[name]
 
 

@@ -17,7 +17,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, instance, is_traced, non_negative, positive
+from ..design.checks import (
+    finite,
+    instance,
+    non_negative,
+    of_shape,
+    one_of,
+    positive,
+)
 from ..element.frame import RINGS
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, as_real
@@ -66,18 +73,10 @@ class GuidedCage(eqx.Module):
             positive(self, name)
         for name in ("pocket_clearance", "land_clearance", "friction"):
             non_negative(self, name)
-        if np.shape(self.load) != (2,):
-            raise ValueError(
-                f"GuidedCage: `load` has shape {np.shape(self.load)}; it must be (2,):"
-                " along x and y, in N."
-            )
-        if not is_traced(self.load):
-            check(self, "load", np.isfinite(self.load), "finite")
-        if self.guiding_ring not in RINGS:
-            raise ValueError(
-                f"GuidedCage: `guiding_ring` is {self.guiding_ring!r}; it must be"
-                " 'outer' or 'inner'."
-            )
+        fits = np.shape(self.load) == (2,)
+        of_shape(self, "load", fits, "(2,): along x and y, in N")
+        finite(self, "load")
+        one_of(self, "guiding_ring", self.guiding_ring, RINGS, "'outer' or 'inner'")
 
 
 class CageForces(NamedTuple):

@@ -20,7 +20,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
-from ..design.checks import check, real_numbers
+from ..design.checks import check, of_class, real_numbers
 from ..numerics.lapack import solve_any
 from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
@@ -137,10 +137,7 @@ def transfer(model: NoiseModel, frequencies: Any) -> Transfer:
 
     Source: (K + S + iω (τ K + C) - ω² M) x = f - (1 + iωτ) G e.
     """
-    if not isinstance(model, NoiseModel):
-        raise TypeError(
-            f"transfer: `model` is a {type(model).__name__}; it must be a NoiseModel."
-        )
+    of_class("transfer", "model", model, NoiseModel, "a NoiseModel")
     real_numbers("transfer", "frequencies", frequencies, "numbers in Hz")
     frequency = as_real(frequencies)
     right = frequency.ndim == 1 and frequency.size > 0

@@ -17,10 +17,13 @@ from ..design import (
 from ..design.checks import (
     check,
     concrete,
+    finite,
     instance,
     is_real,
     is_traced,
     non_negative,
+    of_shape,
+    one_of,
     positive,
 )
 from ..design.form_error import FormErrors, Surfaces
@@ -104,19 +107,12 @@ class NoiseModel(eqx.Module):
                     " tilt; leave it out, or `tilts`."
                 )
         non_negative(self, "retardation")
-        if self.moving_ring not in RINGS:
-            raise ValueError(
-                f"NoiseModel: `moving_ring` is {self.moving_ring!r}; it must be 'outer'"
-                " or 'inner'."
-            )
-        if not is_real(self.load) or np.shape(self.load) != (6,):
-            raise ValueError(
-                f"NoiseModel: `load` has shape {np.shape(self.load)}; it must be (6,):"
-                " (Fx, Fy, Fz, Mx, My, Mz)."
-            )
+        one_of(self, "moving_ring", self.moving_ring, RINGS, "'outer' or 'inner'")
+        fits = is_real(self.load) and np.shape(self.load) == (6,)
+        of_shape(self, "load", fits, "(6,): (Fx, Fy, Fz, Mx, My, Mz)")
+        finite(self, "load")
         if is_traced(self.load):
             return
-        check(self, "load", np.isfinite(self.load), "finite")
         held = np.asarray(self.load)[len(self.freedoms) :]
         allowed = "zero for freedoms that the ring does not have: it does not tilt"
         check(self, "load", held[: 5 - len(self.freedoms)] == 0.0, allowed)

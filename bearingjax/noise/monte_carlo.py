@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..design import BearingSet, rows_of
-from ..design.checks import check, count, is_traced
+from ..design.checks import check, count, is_traced, of_class
 from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.programs import program
 from ..numerics.result import Result
@@ -199,16 +199,8 @@ class Records:
 
     def __init__(self, model, tolerances, n, turns, settle, samples, steps, owner):
         """Check the arguments, which are those of `monte_carlo`."""
-        if not isinstance(model, NoiseModel):
-            raise TypeError(
-                f"{owner}: `model` is a {type(model).__name__}; it must be a"
-                " NoiseModel."
-            )
-        if not isinstance(tolerances, Tolerances):
-            raise TypeError(
-                f"{owner}: `tolerances` is a {type(tolerances).__name__}; it must be"
-                " Tolerances."
-            )
+        of_class(owner, "model", model, NoiseModel, "a NoiseModel")
+        of_class(owner, "tolerances", tolerances, Tolerances, "Tolerances")
         if any(is_traced(leaf) for leaf in jax.tree.leaves((model, tolerances))):
             raise TypeError(f"{owner}: it is a loop over batches, not for `jit`.")
         for row in rows_of(model.element.bearing):

@@ -14,7 +14,7 @@ from ..design import (
     AbstractBearing,
     BearingSet,
 )
-from ..design.checks import count, number
+from ..design.checks import count, number, of_class, one_of
 from ..element.azimuth import orbit_ratio
 from ..element.frame import orbit, roll_ratio, rotation
 from ..element.inertia import Speed
@@ -133,10 +133,7 @@ def waviness_force(
         n = kz; Σ exp(i (n ± 1) θ_j) for n = kz ∓ 1.
     """
     speeds = _speeds("waviness_force", bearing, speed, contact_angle)
-    if part not in PARTS:
-        raise ValueError(
-            f"waviness_force: `part` is {part!r}; it must be {', '.join(PARTS)}."
-        )
+    one_of("waviness_force", "part", part, PARTS, ", ".join(PARTS))
     count("waviness_force", "order", order)
     cage, axial, radial = speeds.cage, [], []
     if part == "element":
@@ -174,16 +171,8 @@ def _speeds(owner, bearing, speed, contact_angle) -> _Speeds:
             f"{owner}: `bearing` is a BearingSet; give one of its rows,"
             " `bearing.rows[0].bearing`."
         )
-    if not isinstance(bearing, AbstractBearing):
-        raise TypeError(
-            f"{owner}: `bearing` is a {type(bearing).__name__}; it must be the design"
-            " of a bearing."
-        )
-    if not isinstance(speed, Speed):
-        raise TypeError(
-            f"{owner}: `speed` is a {type(speed).__name__}; it must be"
-            " Speed(inner, outer) in rad/s."
-        )
+    of_class(owner, "bearing", bearing, AbstractBearing, "the design of a bearing")
+    of_class(owner, "speed", speed, Speed, "Speed(inner, outer) in rad/s")
     diameter, ratio = bearing.element_diameter, orbit_ratio(bearing)
     if contact_angle is not None:
         if not bearing.is_ball:

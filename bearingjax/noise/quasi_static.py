@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design import BearingSet, bearings_of
-from ..design.checks import check, count
+from ..design.checks import check, count, of_class
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
 from ..element.rolling_element import split
@@ -88,10 +88,7 @@ def excitation(
 
     Fails: as `solve_load`.
     """
-    if not isinstance(model, NoiseModel):
-        raise TypeError(
-            f"excitation: `model` is a {type(model).__name__}; it must be a NoiseModel."
-        )
+    of_class("excitation", "model", model, NoiseModel, "a NoiseModel")
     for name, value in (("turns", turns), ("samples", samples)):
         count("excitation", name, value)
     shaft = model.shaft_speed

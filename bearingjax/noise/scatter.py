@@ -21,7 +21,7 @@ from ..design import (
     BearingSet,
     rows_of,
 )
-from ..design.checks import check, concrete, instance, non_negative
+from ..design.checks import check, concrete, instance, non_negative, of_class
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
 from ..design.tolerance import RunningAccuracy, ball_grade, roller_grade
 from ..numerics.types import Scalar, as_real
@@ -216,11 +216,8 @@ class Tolerances(eqx.Module):
             TypeError: For another bearing.
             ValueError: If there is no such grade.
         """
-        if not isinstance(bearing, AbstractBearing | BearingSet):
-            raise TypeError(
-                f"Tolerances.of_grade: `bearing` is a {type(bearing).__name__}; it must"
-                " be of balls or rollers."
-            )
+        owner, kinds = "Tolerances.of_grade", AbstractBearing | BearingSet
+        of_class(owner, "bearing", bearing, kinds, "of balls or rollers")
         row = rows_of(bearing)[0].bearing
         if row.is_ball:
             found = ball_grade(grade)

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced, non_negative
+from ..design.checks import check, is_traced, non_negative, of_shape
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
@@ -32,11 +32,8 @@ class Sensor(eqx.Module):
     def __check_init__(self):
         non_negative(self, "stiffness")
         non_negative(self, "damping")
-        if np.shape(self.direction) != (3,):
-            raise ValueError(
-                f"Sensor: `direction` has shape {np.shape(self.direction)}; it must be"
-                " (3,): (x, y, z)."
-            )
+        fits = np.shape(self.direction) == (3,)
+        of_shape(self, "direction", fits, "(3,): (x, y, z)")
         if not is_traced(self.direction):
             some = np.any(np.asarray(self.direction) != 0.0)
             check(self, "direction", some, "another than (0, 0, 0)")

@@ -1,13 +1,11 @@
 """Rotor support by a bearing of the library."""
 
-from typing import Any
-
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..design.checks import check, instance, is_traced
+from ..design.checks import finite, instance, of_shape
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
@@ -89,14 +87,9 @@ class BearingSupport(AbstractSupport):
     def __check_init__(self):
         check_support(self)
         check_element("BearingSupport", self.element)
-        shape: Any = getattr(self.offset, "shape", None)
-        if shape != (5,):
-            raise ValueError(
-                f"BearingSupport: `offset` has shape {shape}; it must be (5,): ux, uy,"
-                " uz in m, gx, gy in rad."
-            )
-        if not is_traced(self.offset):
-            check(self, "offset", np.isfinite(self.offset).all(), "finite")
+        allowed = "(5,): ux, uy, uz in m, gx, gy in rad"
+        of_shape(self, "offset", np.shape(self.offset) == (5,), allowed)
+        finite(self, "offset")
         for name in ("inertia", "passage"):
             instance(self, name, bool)
         kind = getattr(self.turned, "dtype", None)

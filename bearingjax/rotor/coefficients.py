@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced, real_numbers
+from ..design.checks import finite, is_traced, of_shape, one_of, real_numbers
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
@@ -20,6 +20,7 @@ from ..statics.options import SolveOptions
 from ..statics.solution import message
 from ..statics.support import restrained_freedoms
 from ..statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
+from .modes import speed_list
 
 TILTS = ("held", "free")
 
@@ -126,27 +127,16 @@ def _checked(element, speeds, load, tilts, fixed_ring):
     """Return checked speeds (speed,) and loads (speed, 6)."""
     name = "stiffness_table"
     SolveOptions(fixed_ring=fixed_ring).check(name)
-    if tilts not in TILTS:
-        raise ValueError(
-            f"{name}: `tilts` is {tilts!r}; it must be {' or '.join(map(repr, TILTS))}."
-        )
+    one_of(name, "tilts", tilts, TILTS, " or ".join(map(repr, TILTS)))
     check_element(name, element)
     for what, value in (("speeds", speeds), ("load", load)):
         real_numbers(name, what, value, "numbers (units belong in scene files)")
-    speeds, load = as_real(speeds), as_real(load)
-    if speeds.ndim != 1 or speeds.shape[0] == 0:
-        raise ValueError(
-            f"{name}: `speeds` has shape {speeds.shape}; it must be (speed,) in rad/s."
-        )
-    if load.shape not in ((6,), (*speeds.shape, 6)):
-        raise ValueError(
-            f"{name}: `load` has shape {load.shape}; it must be (6,) or"
-            f" {(*speeds.shape, 6)}: {' '.join(LOADS)}, in N and N m."
-        )
-    if not is_traced(speeds):
-        check(name, "speeds", jnp.isfinite(speeds), "finite", speeds, "rad/s")
+    speeds, load = speed_list(name, speeds), as_real(load)
+    allowed = f"(6,) or {(*speeds.shape, 6)}: {' '.join(LOADS)}, in N and N m"
+    fits = load.shape in ((6,), (*speeds.shape, 6))
+    of_shape(name, "load", fits, allowed, load)
+    finite(name, "load", load, "N, N m")
     if not is_traced(load):
-        check(name, "load", jnp.isfinite(load), "finite", load, "N, N m")
         moments = load[..., 3:5]
         if tilts == "held" and bool(jnp.any(moments != 0)):
             raise ValueError(

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced
+from ..design.checks import finite, of_shape
 from ..numerics.types import as_count, as_real
 from ..numerics.units import unit
 from .parts import check_station
@@ -18,14 +18,8 @@ Motions = Float[Array, " motion"]
 
 
 def _vector(owner, name, size):
-    value = getattr(owner, name)
-    if getattr(value, "shape", None) != (size,):
-        raise ValueError(
-            f"{type(owner).__name__}: `{name}` has shape"
-            f" {getattr(value, 'shape', type(value).__name__)}; it must be ({size},)."
-        )
-    if not is_traced(value):
-        check(owner, name, np.isfinite(value).all(), "finite")
+    of_shape(owner, name, np.shape(getattr(owner, name)) == (size,), f"({size},)")
+    finite(owner, name)
 
 
 class StationForce(eqx.Module):

@@ -20,8 +20,8 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Complex, Float, Int
 
-from ..design.checks import check, is_traced, number, real_numbers
 from ..design.checks import count as whole
+from ..design.checks import finite, is_traced, number, of_shape, real_numbers
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
 from ..numerics.programs import program
@@ -518,12 +518,9 @@ def speed_list(owner: str, speeds: Any) -> Float[Array, " speed"]:
     """Return speeds as a checked array."""
     real_numbers(owner, "speeds", speeds, "speeds in rad/s")
     speeds = as_real(speeds)
-    if speeds.ndim != 1 or speeds.shape[0] == 0:
-        raise ValueError(
-            f"{owner}: `speeds` has shape {speeds.shape}; it must be (speed,) in rad/s."
-        )
-    if not is_traced(speeds):
-        check(owner, "speeds", jnp.isfinite(speeds), "finite", speeds, "rad/s")
+    several = speeds.ndim == 1 and speeds.size > 0
+    of_shape(owner, "speeds", several, "(speed,) in rad/s", speeds)
+    finite(owner, "speeds", speeds, "rad/s")
     return speeds
 
 

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, instance, is_traced, non_negative, positive
+from ..design.checks import check, instance, is_traced, non_negative, of_shape, positive
 from ..design.material import Material
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
@@ -163,12 +163,8 @@ def square_matrix(value):
 def check_matrix(owner, name, size):
     """Raise unless a field is a square matrix of stiffness or damping."""
     value = getattr(owner, name)
-    if getattr(value, "shape", None) != (size, size):
-        raise ValueError(
-            f"{type(owner).__name__}: `{name}` has shape"
-            f" {getattr(value, 'shape', type(value).__name__)}; it must be"
-            f" {(size, size)}, or {size} numbers, those of the diagonal."
-        )
+    allowed = f"{(size, size)}, or {size} numbers, those of the diagonal"
+    of_shape(owner, name, np.shape(value) == (size, size), allowed)
     if not is_traced(value):
         fine = np.isfinite(value).all() and (np.diagonal(value) >= 0).all()
         check(owner, name, fine, "finite, and at least 0 on its diagonal")

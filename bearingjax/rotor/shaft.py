@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced, real_numbers
+from ..design.checks import check, finite, is_traced, of_shape, real_numbers
 from ..design.checks import count as whole
 from ..design.material import Material
 from ..element.frame import FREEDOMS
@@ -72,11 +72,9 @@ class Shaft(eqx.Module):
         ):
             real_numbers("Shaft", name, value, "numbers in m")
         self.stations = as_real(stations)
-        if self.stations.ndim != 1 or self.stations.shape[0] < 2:
-            raise ValueError(
-                f"Shaft: `stations` has shape {self.stations.shape}; it must be a list"
-                " of two or more positions in m."
-            )
+        several = self.stations.ndim == 1 and self.stations.size > 1
+        allowed = "a list of two or more positions in m"
+        of_shape("Shaft", "stations", several, allowed, self.stations)
         self.outer_diameter = self._of_segments("outer_diameter", outer_diameter)
         self.bore = self._of_segments("bore", bore)
         self.material = Material() if material is None else material
@@ -86,19 +84,15 @@ class Shaft(eqx.Module):
 
     def _of_segments(self, name, value):
         value = as_real(value)
-        if value.shape not in ((), (self.n_segments,)):
-            raise ValueError(
-                f"Shaft: `{name}` has shape {value.shape}; it must be one number or"
-                f" {self.n_segments}, one for each segment between two stations, in m."
-            )
-        return jnp.broadcast_to(value, (self.n_segments,))
+        n = self.n_segments
+        allowed = f"one number or {n}, one for each segment between two stations, in m"
+        of_shape("Shaft", name, value.shape in ((), (n,)), allowed, value)
+        return jnp.broadcast_to(value, (n,))
 
     def __check_init__(self):
         n = self.n_segments
         for name in ("stations", "outer_diameter", "bore"):
-            value = getattr(self, name)
-            if not is_traced(value):
-                check(self, name, np.isfinite(value), "finite")
+            finite(self, name)
         if not is_traced(self.stations):
             rising = np.diff(self.stations) > 0
             check(self, "stations", rising, "rising from each to the next")

@@ -6,7 +6,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..design.checks import positive
+from ..design.checks import of_shape, positive
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .parts import (
@@ -47,12 +47,9 @@ class SpeedSupport(AbstractSupport):
     def __check_init__(self):
         check_support(self)
         positive(self, "top_speed")
-        shape = getattr(self.stiffness, "shape", ())
-        if len(shape) != 3 or shape[1:] != (5, 5) or not shape[0]:
-            raise ValueError(
-                f"SpeedSupport: `stiffness` has shape {shape}; it must be"
-                " (order, 5, 5)."
-            )
+        shape = np.shape(self.stiffness)
+        fits = len(shape) == 3 and shape[1:] == (5, 5) and shape[0] > 0
+        of_shape(self, "stiffness", fits, "(order, 5, 5)")
 
     def force(
         self,

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import is_traced, number
+from ..design.checks import is_traced, number, of_class
 from ..numerics.implicit import attach_by, recall, stop, unless_failed
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
@@ -130,11 +130,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
     """
     loads = RotorLoads() if loads is None else loads
     for name, value, kind in (("rotor", rotor, Rotor), ("loads", loads, RotorLoads)):
-        if not isinstance(value, kind):
-            raise TypeError(
-                f"{owner}: `{name}` is a {type(value).__name__}; it must be a"
-                f" {kind.__name__}."
-            )
+        of_class(owner, name, value, kind, f"a {kind.__name__}")
     if not rotor.supports:
         raise ValueError(f"{owner}: `rotor` has no supports; nothing holds it.")
     loads.check(rotor)

@@ -3,6 +3,7 @@
 import dataclasses
 from functools import partial
 
+from ..design.checks import of_class
 from ..numerics.programs import called
 from ..numerics.types import as_array
 from ..optimise.life import OfLife, RatingLife
@@ -33,11 +34,7 @@ def run_scene(scene: Scene) -> Solution:
 
     Fails: as `solve_load`.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(
-            f"run_scene: `scene` is a {type(scene).__name__}; it must be a Scene, as of"
-            " read_scene."
-        )
+    of_class("run_scene", "scene", scene, Scene, "a Scene, as of read_scene")
     return called(
         _solved,
         scene.running(),

@@ -12,7 +12,7 @@ import jax.scipy as jsp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import is_traced
+from ..design.checks import is_traced, of_class
 from ..numerics.implicit import stop, unless_failed
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
@@ -51,11 +51,7 @@ def solve_system(system: ShaftSystem, *, throw: bool = True) -> SystemSolution:
         SolveError: If no equilibrium was found and `throw`; it names the part that
             nothing holds.
     """
-    if not isinstance(system, ShaftSystem):
-        raise TypeError(
-            f"solve_system: `system` is a {type(system).__name__}; it must be a"
-            " ShaftSystem."
-        )
+    of_class("solve_system", "system", system, ShaftSystem, "a ShaftSystem")
     found, place = searched_system(system)
     if throw:
         found = raise_unless_converged(

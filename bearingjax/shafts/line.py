@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, is_traced
+from ..design.checks import check, is_traced, of_shape
 from ..design.material import Material
 from ..numerics.types import as_real
 from ..numerics.units import unit
@@ -84,18 +84,11 @@ class ShaftLine(eqx.Module):
     rigid: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self):
-        if jnp.ndim(self.length) != 1:
-            raise ValueError(
-                f"ShaftLine: `length` has shape {jnp.shape(self.length)}; it must be"
-                " (segment,), the length of each segment in m."
-            )
-        for name, shape in (("axis", (3,)), ("origin", (3,))):
-            value = getattr(self, name)
-            if value is not None and jnp.shape(value) != shape:
-                raise ValueError(
-                    f"ShaftLine: `{name}` has shape {jnp.shape(value)}; it must be"
-                    f" {shape}."
-                )
+        allowed = "(segment,), the length of each segment in m"
+        of_shape(self, "length", jnp.ndim(self.length) == 1, allowed)
+        for name, value in (("axis", self.axis), ("origin", self.origin)):
+            fits = value is None or jnp.shape(value) == (3,)
+            of_shape(self, name, fits, "(3,)")
         if not is_traced(self.axis):
             long = np.linalg.norm(np.asarray(self.axis)) > 0
             check(self, "axis", long, "a direction, not three zeros")

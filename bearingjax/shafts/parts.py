@@ -21,7 +21,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, in_range, instance, is_traced, number, positive
+from ..design.checks import (
+    check,
+    finite,
+    in_range,
+    instance,
+    is_traced,
+    number,
+    positive,
+)
 from ..design.checks import count as whole
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
@@ -332,8 +340,7 @@ class ShaftLoad(AbstractPlaced):
                     f"ShaftLoad: `{name}` of {self.name} has shape {jnp.shape(value)};"
                     " it must be (3,), in global axes."
                 )
-            if not is_traced(value):
-                check(self, name, np.isfinite(value).all(), "finite")
+            finite(self, name)
 
 
 class Seat(AbstractPlaced):

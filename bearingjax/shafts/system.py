@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import pitch_radius
-from ..design.checks import check, concrete, is_traced
+from ..design.checks import check, concrete, instance, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit
 from ..rotor import Shaft
@@ -248,12 +248,7 @@ class ShaftSystem(eqx.Module):
                         f"ShaftSystem: `{name}` holds a {type(part).__name__}."
                     )
         for name, kind in (("drive", Drive), ("housing", HousingStiffness)):
-            value = getattr(self, name)
-            if not isinstance(value, kind | None):
-                raise TypeError(
-                    f"ShaftSystem: `{name}` is a {type(value).__name__}; it must be a"
-                    f" {kind.__name__}."
-                )
+            instance(self, name, kind, None)
 
     def _check_names(self):
         placed = *self.seats, *self.wheels, *self.loads

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import pitch_radius
-from ..design.checks import count, is_traced, positive
+from ..design.checks import count, is_traced, one_of, positive
 from ..element.inertia import Speed
 from ..numerics.gravity import GRAVITY
 from ..numerics.implicit import stop
@@ -187,11 +187,7 @@ def _check(axis, derivatives, places, duration, tolerance, max_steps, n_times):
         ("axis", axis, ("vertical", "horizontal")),
         ("derivatives", derivatives, ("reverse", "forward")),
     ):
-        if value not in allowed:
-            raise ValueError(
-                f"skid.simulate: `{name}` is {value!r};"
-                f" it must be {' or '.join(allowed)}."
-            )
+        one_of("skid.simulate", name, value, allowed, " or ".join(allowed))
     if places is not None:
         count("skid.simulate", "places", places)
         if 1 < places < 6:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, contact_modulus, rows_of
-from ..design.checks import positive
+from ..design.checks import of_class, positive
 from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.types import Scalar, as_real
@@ -89,11 +89,7 @@ def _check_call(solution, lubricant, temperature, roughness):
         ("solution", solution, Solution),
         ("lubricant", lubricant, Lubricant),
     ):
-        if not isinstance(value, kind):
-            raise TypeError(
-                f"films: `{name}` is a {type(value).__name__}; it must be a"
-                f" {kind.__name__}."
-            )
+        of_class("films", name, value, kind, f"a {kind.__name__}")
     check_single("films", solution)
     if solution.speed is None:
         raise ValueError("films: `solution` is at rest; solve it with `speed`.")

@@ -31,7 +31,7 @@ from ..design import (
     is_self_aligning,
     rows_of,
 )
-from ..design.checks import check, positive
+from ..design.checks import check, of_class, one_of, positive
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .equivalent_load import equivalent_load
@@ -168,18 +168,12 @@ def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
     Raises:
         TypeError, ValueError: As `friction_torque`.
     """
-    if not isinstance(solution, Solution):
-        raise TypeError(
-            f"{owner}: `solution` is a {type(solution).__name__}; it must be a"
-            " Solution, as returned by solve_load."
-        )
+    allowed = "a Solution, as returned by solve_load"
+    of_class(owner, "solution", solution, Solution, allowed)
     check_single(owner, solution)
     if solution.speed is None:
         raise ValueError(f"{owner}: `solution` is at rest; solve it with `speed`.")
-    if supply not in SUPPLIES:
-        raise ValueError(
-            f"{owner}: `supply` is {supply!r}; it must be one of {', '.join(SUPPLIES)}."
-        )
+    one_of(owner, "supply", supply, SUPPLIES)
     viscosity = as_real(viscosity)
     positive(owner, "viscosity", viscosity, "m²/s")
     # A viscosity in mm²/s would be a million times too large.

@@ -8,7 +8,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Int
 
-from ..design.checks import in_range
+from ..design.checks import in_range, one_of
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.types import Scalar, as_array, as_real
 from ..numerics.units import unit
@@ -75,11 +75,7 @@ class SolveOptions(eqx.Module):
             TypeError: For a text in place of names, or of a number.
             ValueError: For unknown names, or a tolerance that is not between 0 and 1.
         """
-        if self.fixed_ring not in RINGS:
-            raise ValueError(
-                f"{owner}: `fixed_ring` is {self.fixed_ring!r}; it must be 'outer' or"
-                " 'inner'."
-            )
+        one_of(owner, "fixed_ring", self.fixed_ring, RINGS, "'outer' or 'inner'")
         if isinstance(self.free, str):
             raise TypeError(
                 f"{owner}: `free` is {self.free!r}; it must be a list of names."

@@ -17,6 +17,7 @@ from ..contact.line import peak_pressure
 from ..contact.line_contact import AbstractLineContact
 from ..contact.slices import Compared, Slices
 from ..design import AbstractRollerBearing, rows_of
+from ..design.checks import one_of
 from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
@@ -95,10 +96,7 @@ def refine(
     check_element("refine", element)
     if not isinstance(solution, RollerSolution):
         raise TypeError("refine: the bearing has balls; it takes one with rollers.")
-    if raceway not in RINGS:
-        raise ValueError(
-            f"refine: `raceway` is {raceway!r}; it must be 'outer' or 'inner'."
-        )
+    one_of("refine", "raceway", raceway, RINGS, "'outer' or 'inner'")
     if jnp.ndim(solution.result) or not bool(solution.converged):
         raise ValueError("refine: `solution` must be a single one that converged.")
     ring = RINGS.index(raceway)

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design.checks import of_shape
 from ..numerics.types import namespace
 from ..numerics.units import unit
 from .cases import Cases
@@ -46,11 +47,9 @@ def spectrum_life(
 
     Source: Palmgren (1924), Miner (1945); ISO 281 with several loads.
     """
-    if np.shape(damage) != (cases.count,):
-        raise ValueError(
-            f"spectrum_life: `damage` has shape {np.shape(damage)}; it must be"
-            f" ({cases.count},), a number for each case."
-        )
+    allowed = f"({cases.count},), a number for each case"
+    fits = np.shape(damage) == (cases.count,)
+    of_shape("spectrum_life", "damage", fits, allowed, damage)
     xp: Any = namespace(damage)
     hours = xp.ones_like(damage) if cases.hours is None else cases.hours
     turns = revolutions_per_hour(cases, xp)

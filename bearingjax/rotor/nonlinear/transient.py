@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ...design.checks import check, count, is_traced, positive
+from ...design.checks import check, count, is_traced, one_of, positive
 from ...numerics.implicit import stop
 from ...numerics.in_time import Options
 from ...numerics.in_time import integrated as in_time
@@ -178,10 +178,8 @@ def checked(owner: str, tolerance, max_steps, derivatives) -> Options:
     """Return checked settings of an integration."""
     positive(owner, "tolerance", tolerance, "")
     count(owner, "max_steps", max_steps)
-    if derivatives not in ("reverse", "forward"):
-        raise ValueError(
-            f"{owner}: `derivatives` is {derivatives!r}; it must be reverse or forward."
-        )
+    ways = "reverse", "forward"
+    one_of(owner, "derivatives", derivatives, ways, " or ".join(ways))
     return Options(as_real(tolerance), max_steps, derivatives)
 
 
