@@ -32,15 +32,30 @@ class Kind(NamedTuple):
         applies: (element, speed) -> whether it can arise at all. Static.
         size: Solution -> size of the warning, a scalar.
         limit: Largest size that gives no warning, in the unit of `size`.
-        words: (size, where) -> the sentence; where is "" for many cases.
+        text: The sentence with `{size}`, `{limit}` and `{where}`.
         where: Concrete solution -> the rows, elements or numbers concerned, in words.
+        many: Size -> the words in place of those of `where` for many cases.
+        factor: Of size and limit in the text.
     """
 
     applies: Callable[[BearingElement, Speed | None], bool]
     size: Callable[[Solution], Any]
     limit: float
-    words: Callable[[float, str], str]
+    text: str
     where: Callable[[Solution], str] = lambda solution: ""
+    many: Callable[[float], str] = lambda size: ""
+    factor: float = 1.0
+
+    def words(self, size: float, where: str) -> str:
+        """Return the sentence about a size.
+
+        Args:
+            size: Size of the warning.
+            where: From `where`; "" for many cases.
+        """
+        size, limit = self.factor * size, self.factor * self.limit
+        where = where or self.many(size)
+        return self.text.format(size=size, limit=limit, where=where)
 
 
 def _always(element, speed):
@@ -85,232 +100,134 @@ def _is_spherical_thrust(element, speed):
     return all(isinstance(row, SphericalThrustRollerBearing) for row in rows)
 
 
-def _in_brackets(where):
+def _balls(count: float) -> str:
+    return shown_count(round(count), "ball")
+
+
+def _of_raceways(solution: Solution, concerned: Any) -> str:
+    """Rolling elements and raceways in brackets; empty if there are none."""
+    where = sizes.of_raceways(solution, concerned)
     return f" ({where})" if where else ""
-
-
-def _odd_words(size, where):
-    what = where or f"{size:.0f} numbers of the design"
-    return f"far outside the sizes of rolling bearings: {what}; are these SI units?"
-
-
-def _loose_words(size, where):
-    what = where or f"{size:.0f} free directions"
-    return f"no stiffness in {what}: nothing holds it there, and its place is arbitrary"
-
-
-def _idle_words(size, where):
-    what = where or f"{size:.0f} of the rows"
-    return f"{what} is unloaded: the other rows or their springs hold all"
-
-
-def _spring_words(size, where):
-    return f"the spring of {where or f'{size:.0f} of the rows'} is slack"
-
-
-def _pressure_words(size, where):
-    return (
-        f"contact pressure of {1e-6 * size:.5g} MPa: beyond"
-        f" {1e-6 * sizes.LARGEST_PRESSURE:.0f} MPa steel is no longer elastic"
-        f"{_in_brackets(where)}"
-    )
-
-
-def _static_words(size, where):
-    return (
-        f"contact pressure {size:.4g} times that of the static load rating of ISO 76"
-        f"{_in_brackets(where)}"
-    )
-
-
-def _width_words(size, where):
-    return (
-        f"half width of a contact {size:.2g} of its radius: Hertz's theory is for small"
-        f" strains, up to about {sizes.LARGEST_WIDTH:g}"
-    )
-
-
-def _ellipse_words(size, where):
-    return (
-        f"semi-axis of a contact ellipse {size:.2g} of the ball's radius: beyond"
-        f" {sizes.LARGEST_ELLIPSE:g} Hertz's parabolas are a tenth off ball and groove"
-    )
-
-
-def _groove_words(size, where):
-    return (
-        f"contact angle {np.rad2deg(size):.3g} deg from the middle of the raceway: no"
-        " groove goes so far; the ball would ride on the edge of its shoulder"
-    )
-
-
-def _tilt_words(size, where):
-    what = where or "the approach of the contacts, or of free motion"
-    return (
-        "tilt beyond small rotations: linearised kinematics leave out"
-        f" {100.0 * size:.2g} % of {what} (Finite() kinematics do not)"
-    )
-
-
-def _travel_words(size, where):
-    return (
-        "travel along barrel rollers: linearised kinematics leave out"
-        f" {100 * size:.2g} % of the axial force (Finite() kinematics do not)"
-    )
-
-
-def _free_tilt_words(size, where):
-    what = where or f"{size:.3g} times what makers allow for"
-    return (
-        f"the ring tilts freely, {what}: if shaft and housing hold it straighter,"
-        ' prescribe gx and gy (in a scene\'s [operating]: prescribed = { gx = "0 mrad",'
-        ' gy = "0 mrad" }), or leave them out of `free`'
-    )
-
-
-def _prescribed_tilt_words(size, where):
-    return f"tilt of {where or f'{size:.3g} times what makers allow for'}"
-
-
-def _radial_words(size, where):
-    return (
-        f"radial load of {size:.3g} times the axial one: beyond"
-        f" {sizes.LARGEST_RADIAL_SHARE:g} makers of spherical roller thrust bearings"
-        " ask for another bearing that carries it"
-    )
-
-
-def _clearance_words(size, where):
-    return (
-        f"runs with a radial clearance of {-1e6 * size:.3g} µm: its rolling elements"
-        " are pressed whatever the load, and harder as the inner ring warms"
-    )
-
-
-def _speed_words(size, where):
-    return (
-        f"n·dm of {size:.3g} mm/min: most greases and oil baths end at"
-        f" {sizes.LARGEST_SPEED:.0e} mm/min; it takes oil jet or oil-air, and a cage"
-        " made for it"
-    )
-
-
-def _rib_words(size, where):
-    return (
-        f"ribs press on the roller ends: {1e6 * size:.4g} µm of interference, unloaded"
-        " and centred"
-    )
-
-
-def _truncated_words(size, where):
-    return (
-        "truncated contact ellipse: it reaches over the shoulder by up to"
-        f" {1e6 * size:.4g} µm; pressure and stiffness there are not Hertz's"
-        f"{_in_brackets(where)}"
-    )
-
-
-def _land_words(size, where):
-    return (
-        "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
-        f" more than {100.0 * sizes.LAND_SHARE:g} % of a contact's load:"
-        f" {where or shown_count(round(size), 'ball')}; pressure and stiffness there"
-        " are worked out with the curvature of the groove, a land presses harder and is"
-        " softer"
-    )
-
-
-def _lifted_words(size, where):
-    return (
-        "lifted off the inner raceway by centrifugal force, more than"
-        f" {100.0 * sizes.SMALLEST_LOAD:g} % of the largest load: "
-        f"{where or shown_count(round(size), 'ball')}"
-    )
-
-
-def _edge_words(size, where):
-    return (
-        f"edge-loaded roller: {1e-6 * size:.4g} MPa at the roller end, where the"
-        f" line-contact laws know no pressure peak{_in_brackets(where)}"
-    )
 
 
 KINDS: dict[str, Kind] = {
     "implausible_number": Kind(
-        _always, sizes.oddities, 0.0, _odd_words, sizes.odd_names
+        _always,
+        sizes.oddities,
+        0.0,
+        "far outside the sizes of rolling bearings: {where}; are these SI units?",
+        sizes.odd_names,
+        "{:.0f} numbers of the design".format,
     ),
-    "no_stiffness": Kind(_always, sizes.loose, 0.0, _loose_words, sizes.loose_names),
+    "no_stiffness": Kind(
+        _always,
+        sizes.loose,
+        0.0,
+        "no stiffness in {where}: nothing holds it there, and its place is arbitrary",
+        sizes.loose_names,
+        "{:.0f} free directions".format,
+    ),
     "unloaded_row": Kind(
         lambda element, _: len(rows_of(element.bearing)) > 1,
         sizes.idle_rows,
         0.0,
-        _idle_words,
+        "{where} is unloaded: the other rows or their springs hold all",
         sizes.idle_numbers,
+        "{:.0f} of the rows".format,
     ),
     "slack_spring": Kind(
         lambda element, _: any(r.spring is not None for r in rows_of(element.bearing)),
         sizes.slack_springs,
         0.0,
-        _spring_words,
+        "the spring of {where} is slack",
         sizes.slack_numbers,
+        "{:.0f} of the rows".format,
     ),
     "contact_pressure": Kind(
         _always,
         lambda solution: solution.roller_pressure.max(),
         sizes.LARGEST_PRESSURE,
-        _pressure_words,
-        lambda s: sizes.of_raceways(s, s.roller_pressure > sizes.LARGEST_PRESSURE),
+        "contact pressure of {size:.5g} MPa: beyond {limit:.0f} MPa steel is no longer"
+        " elastic{where}",
+        lambda s: _of_raceways(s, s.roller_pressure > sizes.LARGEST_PRESSURE),
+        factor=1e-6,
     ),
     "static_limit": Kind(
         _always,
         lambda s: s.roller_pressure.max() / sizes.static_limit(s.element.bearing),
         1.0,
-        _static_words,
-        lambda s: f"{1e-6 * sizes.static_limit(s.element.bearing):.0f} MPa",
+        "contact pressure {size:.4g} times that of the static load rating of ISO 76"
+        "{where}",
+        lambda s: f" ({1e-6 * sizes.static_limit(s.element.bearing):.0f} MPa)",
     ),
-    "contact_width": Kind(_of_rollers, sizes.widths, sizes.LARGEST_WIDTH, _width_words),
+    "contact_width": Kind(
+        _of_rollers,
+        sizes.widths,
+        sizes.LARGEST_WIDTH,
+        "half width of a contact {size:.2g} of its radius: Hertz's theory is for small"
+        " strains, up to about {limit:g}",
+    ),
     "contact_ellipse": Kind(
-        _of_balls, sizes.ellipses, sizes.LARGEST_ELLIPSE, _ellipse_words
+        _of_balls,
+        sizes.ellipses,
+        sizes.LARGEST_ELLIPSE,
+        "semi-axis of a contact ellipse {size:.2g} of the ball's radius: beyond"
+        " {limit:g} Hertz's parabolas are a tenth off ball and groove",
     ),
     "contact_angle": Kind(
-        _of_balls, sizes.groove_angles, sizes.LARGEST_ANGLE, _groove_words
+        _of_balls,
+        sizes.groove_angles,
+        sizes.LARGEST_ANGLE,
+        "contact angle {size:.3g} deg from the middle of the raceway: no groove goes so"
+        " far; the ball would ride on the edge of its shoulder",
+        factor=180.0 / np.pi,
     ),
     "tilt": Kind(
         _is_linearised,
         sizes.tilt_error,
         sizes.LARGEST_TILT_ERROR,
-        _tilt_words,
+        "tilt beyond small rotations: linearised kinematics leave out {size:.2g} % of"
+        " {where} (Finite() kinematics do not)",
         lambda s: (
             "the motion"
             if {"gx", "gy"} <= set(s.free)
             else "the approach of the contacts, and loads err by about as much"
         ),
+        lambda size: "the approach of the contacts, or of free motion",
+        factor=100.0,
     ),
     "arc_travel": Kind(
         _is_linearised_barrel,
         sizes.travel_error,
         sizes.LARGEST_TILT_ERROR,
-        _travel_words,
+        "travel along barrel rollers: linearised kinematics leave out {size:.2g} % of"
+        " the axial force (Finite() kinematics do not)",
+        factor=100.0,
     ),
     "free_tilt": Kind(
         _always,
         sizes.free_tilt,
         1.0,
-        _free_tilt_words,
+        "the ring tilts freely, {where}: if shaft and housing hold it straighter,"
+        " prescribe gx and gy (in a scene's [operating]: prescribed = {{ gx ="
+        ' "0 mrad", gy = "0 mrad" }}), or leave them out of `free`',
         lambda s: sizes.tilt_in_words(s, sizes.free_tilt(s)),
+        "{:.3g} times what makers allow for".format,
     ),
     "prescribed_tilt": Kind(
         _always,
         sizes.prescribed_tilt,
         1.0,
-        _prescribed_tilt_words,
+        "tilt of {where}",
         lambda s: sizes.tilt_in_words(s, sizes.prescribed_tilt(s)),
+        "{:.3g} times what makers allow for".format,
     ),
     "speed": Kind(
         lambda _, speed: speed is not None,
         sizes.speed_factor,
         sizes.LARGEST_SPEED,
-        _speed_words,
+        "n·dm of {size:.3g} mm/min: most greases and oil baths end at {limit:.0e}"
+        " mm/min; it takes oil jet or oil-air, and a cage made for it",
     ),
     "negative_clearance": Kind(
         lambda element, speed: (
@@ -318,21 +235,33 @@ KINDS: dict[str, Kind] = {
         ),
         sizes.clearance_lost,
         0.0,
-        _clearance_words,
+        "runs with a radial clearance of {size:.3g} µm: its rolling elements are"
+        " pressed whatever the load, and harder as the inner ring warms",
+        factor=-1e6,
     ),
     "radial_share": Kind(
         _is_spherical_thrust,
         sizes.radial_share,
         sizes.LARGEST_RADIAL_SHARE,
-        _radial_words,
+        "radial load of {size:.3g} times the axial one: beyond {limit:g} makers of"
+        " spherical roller thrust bearings ask for another bearing that carries it",
     ),
-    "rib_interference": Kind(_has_ribs, sizes.interference, 0.0, _rib_words),
+    "rib_interference": Kind(
+        _has_ribs,
+        sizes.interference,
+        0.0,
+        "ribs press on the roller ends: {size:.4g} µm of interference, unloaded and"
+        " centred",
+        factor=1e6,
+    ),
     "truncated_ellipse": Kind(
         _has_shoulder,
         sizes.truncation,
         0.0,
-        _truncated_words,
-        sizes.truncated_balls,
+        "truncated contact ellipse: it reaches over the shoulder by up to {size:.4g}"
+        " µm; pressure and stiffness there are not Hertz's{where}",
+        lambda s: f" ({sizes.truncated_balls(s)})",
+        factor=1e6,
     ),
     "beyond_groove": Kind(
         lambda element, _: any(
@@ -341,22 +270,31 @@ KINDS: dict[str, Kind] = {
         ),
         sizes.on_land_count,
         0.0,
-        _land_words,
+        "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
+        f" more than {100.0 * sizes.LAND_SHARE:g} % of"
+        " a contact's load: {where}; pressure and stiffness there are worked out with"
+        " the curvature of the groove, a land presses harder and is softer",
         lambda s: sizes.of_raceways(s, sizes.on_land(s)),
+        _balls,
     ),
     "lifted_ball": Kind(
         lambda element, speed: _of_balls(element, speed) and speed is not None,
         sizes.lifted_count,
         0.0,
-        _lifted_words,
+        "lifted off the inner raceway by centrifugal force, more than"
+        f" {100.0 * sizes.SMALLEST_LOAD:g} %"
+        " of the largest load: {where}",
         lambda s: sizes.numbered("ball", np.flatnonzero(sizes.lifted(s))),
+        _balls,
     ),
     "edge_loaded": Kind(
         _of_rollers,
         sizes.edge_pressure,
         EDGE_PRESSURE,
-        _edge_words,
-        lambda s: sizes.of_raceways(s, sizes.ends_over(s)),
+        "edge-loaded roller: {size:.4g} MPa at the roller end, where the line-contact"
+        " laws know no pressure peak{where}",
+        lambda s: _of_raceways(s, sizes.ends_over(s)),
+        factor=1e-6,
     ),
 }
 """Every kind of warning, by name, in the order in which they are reported."""
