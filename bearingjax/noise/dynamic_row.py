@@ -152,12 +152,10 @@ def _unlike(row: Row) -> Row:
     if row.per_element:
         return row
     count = row.azimuth.shape[0]
-    element = jax.tree.map(lambda a: _repeated(a, count), row.element)
+    element = jax.tree.map(
+        lambda a: jnp.broadcast_to(a, (count, *jnp.shape(a))), row.element
+    )
     return eqx.tree_at(lambda r: r.element, row, element)
-
-
-def _repeated(numbers, count):
-    return jnp.broadcast_to(numbers, (count, *jnp.shape(numbers)))
 
 
 def _structure(element):

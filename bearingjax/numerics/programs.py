@@ -213,7 +213,8 @@ def _first_run(
             with contextlib.suppress(jax.errors.JaxRuntimeError):
                 return kept, kept(arrays)
         lowered = jax.jit(function).lower(*arrays)
-        libraries = _libraries(lowered)
+        # Functions outside of XLA: LAPACK, or back into Python.
+        libraries = re.findall(r"custom_call @(\w+)", lowered.as_text())
         keep = place is not None and all(x.startswith("lapack_") for x in libraries)
         compiled = _compiled(lowered, options, keep)
         if keep:
@@ -259,11 +260,6 @@ def _flattened(
         return values
 
     return flat, arrays, outputs
-
-
-def _libraries(lowered) -> set[str]:
-    """Functions outside of XLA that a program calls: LAPACK, or back into Python."""
-    return set(re.findall(r"custom_call @(\w+)", lowered.as_text()))
 
 
 def _filled(outputs: Any, values: list) -> Any:

@@ -81,7 +81,8 @@ def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
         if bearing.is_ball:
             part = row.bearing
             assert isinstance(part, AbstractBallBearing)
-            centre = np.array([z + turned * row_position(row), _pitch_radius(part)])
+            radius = 0.5e3 * float(part.pitch_diameter)
+            centre = np.array([z + turned * row_position(row), radius])
             for side in (1.0, -1.0):
                 ball_row(ax, part, _placed(sense, centre, side))
             outside = max(outside, centre[1] + 0.9e3 * float(part.ball_diameter))
@@ -99,10 +100,6 @@ def _placed(sense, centre, side):
         return there * np.array([1.0, side])
 
     return place
-
-
-def _pitch_radius(bearing):
-    return 0.5e3 * float(bearing.pitch_diameter)
 
 
 def _draw_rollers(ax, bearing, sense, at):

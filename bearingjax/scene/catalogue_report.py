@@ -128,7 +128,7 @@ def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
         sizes = (e.bore, e.outside_diameter, e.width)
         d, outside, width = (f"{1e3 * size:.5g}" for size in sizes)
         loads = (e.dynamic_capacity, e.static_capacity, e.fatigue_load_limit)
-        c, c0, pu = (_number(load, 1e-3) for load in loads)
+        c, c0, pu = ("-" if x is None else f"{1e-3 * x:.4g}" for x in loads)
         lines.append(
             f"{e.designation:<13}{e.type:<26}{d:>6}{outside:>7}{width:>9}{c:>8}{c0:>8}"
             f"{pu:>8}  {e.geometry}"
@@ -138,10 +138,6 @@ def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
         " self-aligning and spherical roller ones)"
     )
     return "\n".join(lines)
-
-
-def _number(value, scale):
-    return "-" if value is None else f"{scale * value:.4g}"
 
 
 def catalogue_title(entry: CatalogueEntry) -> str:

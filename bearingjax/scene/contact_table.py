@@ -245,21 +245,21 @@ class ContactScene:
 
     name: str
     contact: RollerContact
-    loads: tuple[float, ...]
-    approach: float | None
-    moment: float | None
-    tilt: float | None
-    listed: bool
     law: AbstractLineLaw
     across: int
     along: int
     grading: float
-    half_width: float | None
-    tolerance: float | None
     max_steps: int
-    field: bool
     warnings: tuple[str, ...]
-    inputs: dict[str, Any]
+    loads: tuple[float, ...] = ()
+    approach: float | None = None
+    moment: float | None = None
+    tilt: float | None = None
+    listed: bool = False
+    half_width: float | None = None
+    tolerance: float | None = None
+    field: bool = False
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def cases(self) -> list[dict[str, float]]:
@@ -345,15 +345,9 @@ def _scene(top: Table, name, contact: RollerContact, warned) -> ContactScene:
         tilt=operating.tilt,
         listed=isinstance(operating.load, tuple),
         law=read_keys(SliceLawKeys, top.table("contact")).law,
-        across=numerics.across,
-        along=numerics.along,
-        grading=numerics.grading,
-        half_width=numerics.half_width,
-        tolerance=numerics.tolerance,
-        max_steps=numerics.max_steps,
         field=read_keys(ContactOutputKeys, top.table("output")).field,
         warnings=warned,
-        inputs={},
+        **numerics.given,
     )
 
 

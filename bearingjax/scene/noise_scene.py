@@ -56,7 +56,7 @@ class NoiseScene:
     seed: int
     bearings: int
     warnings: tuple[str, ...]
-    inputs: dict[str, Any]
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def name(self) -> str:

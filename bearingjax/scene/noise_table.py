@@ -220,7 +220,6 @@ def read_noise(
         seed=0 if random is None else random.seed,
         bearings=bearings,
         warnings=scene.warnings,
-        inputs={},
     )
     vibration.table.finish()
     inertia = model.inertia
@@ -305,14 +304,10 @@ def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
 def _direction(table: Table, name: str) -> list[float]:
     given = table.raw(name, "y")
     if isinstance(given, list):
-        numbers = [one for one in given if isinstance(one, int | float)]
-        if len(numbers) == 3 and len(given) == 3 and not any(map(_is_bool, given)):
-            return [float(one) for one in numbers]
+        real = [isinstance(x, int | float) and not isinstance(x, bool) for x in given]
+        if real == [True] * 3:
+            return [float(one) for one in given]
     elif given in AXES:
         return [float(given == axis) for axis in AXES]
     problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
     raise table.error(name, problem)
-
-
-def _is_bool(value: object) -> bool:
-    return isinstance(value, bool)

@@ -197,9 +197,9 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     friction, skf, found = facts
     names = ["entrainment", "central", "minimum"]
     names += ["ratio"] if found.ratio is not None else []
-    by_palmgren = {}
+    numbers: dict[str, Any] = {}
     if friction is not None:
-        by_palmgren = {
+        numbers = {
             "friction_torque": friction.torque,
             "friction": {
                 "load": friction.load_torque,
@@ -208,20 +208,14 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
                 "power": friction.power,
             },
         }
-    numbers = {
-        **by_palmgren,
-        **({} if skf is None else {"friction_skf": _skf_as_dict(skf)}),
-        "film": {name: getattr(found, name) for name in names},
-    }
-    return plain(numbers)
-
-
-def _skf_as_dict(skf):
-    return {
-        "torque": skf.torque,
-        "rolling": skf.rolling_torque,
-        "sliding": skf.sliding_torque,
-        "power": skf.power,
-        "series": skf.series,
-        "assumed": skf.assumed,
-    }
+    if skf is not None:
+        numbers["friction_skf"] = {
+            "torque": skf.torque,
+            "rolling": skf.rolling_torque,
+            "sliding": skf.sliding_torque,
+            "power": skf.power,
+            "series": skf.series,
+            "assumed": skf.assumed,
+        }
+    film = {name: getattr(found, name) for name in names}
+    return plain({**numbers, "film": film})

@@ -89,8 +89,8 @@ class RotorScene:
     campbell: np.ndarray | None
     response: ResponseKeys | None
     transient: TransientKeys | None
-    warnings: tuple[str, ...]
-    inputs: dict[str, Any]
+    warnings: tuple[str, ...] = ()
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:

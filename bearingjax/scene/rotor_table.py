@@ -313,8 +313,6 @@ def _scene(top: Table, path: Path) -> RotorScene:
         campbell=None if keys.campbell is None else keys.campbell.speeds,
         response=response,
         transient=transient,
-        warnings=(),
-        inputs={},
     )
 
 

@@ -113,18 +113,10 @@ class ShaftKeys(Keys):
     def line(self, name: str) -> ShaftLine:
         """Build the shaft."""
         rows = [(s.length, s.outer_diameter, s.bore, s.material) for s in self.segments]
-        length, outer, bore, material = zip(*rows, strict=True)
+        columns = zip(*rows, strict=True)
         with self.table.building():
-            return ShaftLine(
-                name,
-                length,
-                outer,
-                bore,
-                material,
-                self.axis,
-                self.position,
-                self.rigid,
-            )
+            ends = dict(axis=self.axis, origin=self.position)
+            return ShaftLine(name, *columns, **ends, rigid=self.rigid)
 
 
 PARTS: dict[str, tuple[type[Any], dict[str, tuple[str, ...]]]] = {
@@ -308,16 +300,16 @@ class ShaftScene:
     name: str
     system: ShaftSystem
     bearings: tuple[Scene | None, ...]
-    lives: tuple[LifeConditions | None, ...]
     heat: HeatNetwork | None
     times: np.ndarray | None
     pauses: str
-    hours: float | None
-    cases: tuple["ShaftScene", ...]
-    varied: tuple[str, ...]
-    settings: tuple[dict[str, Any], ...]
     warnings: tuple[str, ...]
-    inputs: dict[str, Any]
+    lives: tuple[LifeConditions | None, ...] = ()
+    hours: float | None = None
+    cases: tuple["ShaftScene", ...] = ()
+    varied: tuple[str, ...] = ()
+    settings: tuple[dict[str, Any], ...] = ()
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
 
 def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
@@ -477,21 +469,15 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
         name=path.stem,
         system=whole,
         bearings=tuple(alone.values()),
-        lives=(),
         heat=heat,
         times=None if keys is None else keys.instants,
         pauses="ambient" if keys is None else keys.pauses,
-        hours=None,
-        cases=(),
-        varied=(),
-        settings=(),
         warnings=tuple(
             f"{name}: {text}"
             for name, scene in alone.items()
             if scene is not None
             for text in scene.warnings
         ),
-        inputs={},
     )
 
 

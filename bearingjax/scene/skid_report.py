@@ -155,10 +155,13 @@ def _balls(run):
         Column("azimuth", azimuth % (2.0 * np.pi), "rad", ".1f", DEGREES),
         *by_ring("load", np.where(load > small, load, 0.0), "N", ".4g", NEWTONS),
         Column("slip", each["slip"], "1", ".3g", (100.0, "%")),
-        Column("pitch", np.round(_pitch(each), 4), "rad", ".1f", DEGREES)
-        if balls
-        else Column("cage", np.round(each["cage_force"], 1), "N", ".1f", NEWTONS),
     ]
+    if balls:
+        pitch = np.arctan2(each["spin"][:, 1], -each["spin"][:, 2])  # spin, bearing
+        columns.append(Column("pitch", np.round(pitch, 4), "rad", ".1f", DEGREES))
+    else:
+        cage = np.round(each["cage_force"], 1)
+        columns.append(Column("cage", cage, "N", ".1f", NEWTONS))
     for name, what, *scale in (
         ("film", "film", "m", ".3g"),
         ("sliding", "sliding_speed", "m/s", ".4g", (1e3, "mm/s")),
@@ -173,11 +176,6 @@ def _balls(run):
             for c, w in zip(columns, (*words, *[None] * len(columns)), strict=False)
         ]
     return Grid(columns)
-
-
-def _pitch(each):
-    """Return the angles between spin and bearing axis [rad]."""
-    return np.arctan2(each["spin"][:, 1], -each["spin"][:, 2])
 
 
 def _films(run):

@@ -60,7 +60,7 @@ class SkidScene:
     tolerance: float
     max_steps: int
     warnings: tuple[str, ...]
-    inputs: dict[str, Any]
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -144,7 +144,6 @@ def read_skid(
         max_steps=dynamics.max_steps,
         places=dynamics.places,
         warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
-        inputs={},
     )
     for keys in (lubricant, cage, dynamics):
         keys.table.finish()

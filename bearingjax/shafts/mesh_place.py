@@ -54,10 +54,8 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
         apart = centres[1] - centres[0]
     radii, overlap = (one.radius, other.radius), None
     if isinstance(one, Gear) and one.pitch_angle is not None:
-        outward = [
-            -APEXES[str(g.apex)] * s.frame[2] for g, s in ((one, shaft), (other, far))
-        ]
-        first, second = (unit_vector(across(b, a)) for a, b in (outward, outward[::-1]))
+        a, b = outward(one, shaft), outward(other, far)
+        first, second = unit_vector(across(b, a)), unit_vector(across(a, b))
     elif apart is None:
         return None
     elif isinstance(one, Pulley):
@@ -82,6 +80,11 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
             shift, overlap = 0.5 * (low + high) * z, high - low
     points = points[0] + shift, points[1] + shift - gap
     return MeshPlace((first, second), radii, points, gap, size, overlap)
+
+
+def outward(gear: Gear, shaft: Any) -> Array:
+    """Return the direction along its shaft from the apex of a bevel gear to it."""
+    return -APEXES[str(gear.apex)] * shaft.frame[2]
 
 
 def across(vector: Array, axis: Array) -> Array:

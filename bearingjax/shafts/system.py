@@ -15,8 +15,9 @@ from ..design.checks import check, concrete, instance, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit
 from ..rotor import Shaft
+from ..rotor.rotor import listed
 from .line import Plan, ShaftLine
-from .mesh_place import mesh_place
+from .mesh_place import mesh_place, outward
 from .parts import (
     AbstractPlaced,
     Coupling,
@@ -36,11 +37,6 @@ _ANGLE = np.deg2rad(0.5)
 """Largest difference of a given angle of a mesh from that of the places [rad]."""
 _ACROSS = 1e-6
 """Sine of the angle between two axes from which they are not parallel [1]."""
-
-
-def _all(parts: Any) -> tuple:
-    """Converter: one part, or several, as a tuple."""
-    return tuple(parts) if isinstance(parts, Iterable) else (parts,)
 
 
 def _order(plan: Plan) -> str:
@@ -180,10 +176,10 @@ class ShaftSystem(eqx.Module):
         housing: HousingStiffness | None = None,
         gravity: Any = (0.0, 0.0, 0.0),
     ):
-        self.shafts, self.seats = _all(shafts), _all(seats)
+        self.shafts, self.seats = listed(shafts), listed(seats)
         self.drive, self.housing = drive, housing
-        self.wheels, self.couplings = _all(wheels), _all(couplings)
-        self.loads, self.gravity = _all(loads), as_real(gravity)
+        self.wheels, self.couplings = listed(wheels), listed(couplings)
+        self.loads, self.gravity = listed(loads), as_real(gravity)
         self._check_kinds()
         self._check_names()
         self.plans = tuple(
@@ -202,17 +198,15 @@ class ShaftSystem(eqx.Module):
         """Whether a bearing turns fast enough for inertia; `None` at rest."""
         if self.drive is None or not self.turns:
             return None
-        if is_traced(self.drive.speed):
-            return True
         sizes = [
             (seat.shaft, pitch_radius(seat.installed.drawing.bearing))
             for seat in self.seats
             if seat.installed is not None
         ]
-        if any(map(is_traced, jax.tree.leaves((self.wheels, [r for _, r in sizes])))):
+        numbers = self.drive.speed, self.wheels, [radius for _, radius in sizes]
+        if any(map(is_traced, jax.tree.leaves(numbers))):
             return True
-        ratio = self._speed_ratios()
-        speed = abs(float(self.drive.speed))
+        ratio, speed = self._speed_ratios(), abs(float(self.drive.speed))
         return any(
             speed * ratio.get(shaft, 1.0) * 2.0 * float(radius) >= _FAST
             for shaft, radius in sizes
@@ -302,14 +296,20 @@ class ShaftSystem(eqx.Module):
                     " follows; leave out its `torque` or `power`."
                 )
         shafts = [self.shaft(w.shaft) for w in (one, other)]
-        first, second = (np.asarray(s.frame[2]) for s in shafts)
-        across = np.cross(first, second)
-        parallel = np.linalg.norm(across) < _ACROSS
-        if isinstance(one, Pulley):
-            if not parallel:
-                raise ValueError(f"ShaftSystem: the shafts of {pair} are not parallel.")
-            self._check_place(one, other)
-            return
+        a, b = (np.asarray(shaft.frame[2]) for shaft in shafts)
+        parallel = np.linalg.norm(np.cross(a, b)) < _ACROSS
+        gears = isinstance(one, Gear)
+        if gears:
+            self._check_teeth(one, other)
+        if not parallel and not (gears and one.pitch_angle is not None):
+            more = "; crossed helical gears and worms are not modelled" if gears else ""
+            problem = f"the shafts of {pair} are not parallel{more}"
+            raise ValueError(f"ShaftSystem: {problem}.")
+        self._check_place(one, other)
+
+    def _check_teeth(self, one, other):
+        """Raise unless the teeth of two gears fit each other."""
+        pair = f"{one.name} and {other.name}"
         for name in ("normal_module", "pressure_angle", "helix_angle"):
             known = concrete(getattr(one, name), getattr(other, name))
             if known and abs(known[0] - known[1]) > 1e-6 * max(map(abs, known)):
@@ -325,18 +325,8 @@ class ShaftSystem(eqx.Module):
         if (one.pitch_angle is None) != (other.pitch_angle is None):
             raise ValueError(f"ShaftSystem: one of {pair} is bevel, one cylindrical.")
         if one.pitch_angle is None:
-            if not parallel:
-                raise ValueError(
-                    f"ShaftSystem: the shafts of {pair} are not parallel; crossed"
-                    " helical gears and worms are not modelled."
-                )
-            self._check_place(one, other)
             return
-        sides = (1.0 if g.apex == "+z" else -1.0 for g in (one, other))
-        a, b = (
-            -side * np.asarray(s.frame[2])
-            for side, s in zip(sides, shafts, strict=True)
-        )
+        a, b = (np.asarray(outward(g, self.shaft(g.shaft))) for g in (one, other))
         between = np.arccos(np.clip(a @ b, -1.0, 1.0))
         known = concrete(one.pitch_angle, other.pitch_angle)
         if known and abs(between - sum(known)) > 1e-3:
@@ -345,7 +335,6 @@ class ShaftSystem(eqx.Module):
                 f" {np.degrees(sum(known)):.5g} deg; between the shafts, from the apex"
                 f" to the gears, are {np.degrees(between):.5g} deg."
             )
-        self._check_place(one, other)
 
     def _check_place(self, one, other):
         """Raise if it is not known where two wheels touch, or they do not."""

@@ -165,7 +165,7 @@ def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:
     radius = 0.5 * ball.diameter
     # Speeds along x in the orbiting frame: of the ball's surface, of the raceway's.
     surface = side * radius * (wy * sin - wz * cos)
-    passing = state.orbit - _ring_speed(ball, speed)
+    passing = state.orbit - jnp.where(ball.side > 0, speed.outer, speed.inner)
     raceway = passing * ball.lever
     across = jnp.broadcast_to(side * radius * wx, surface.shape)
     return Sliding(
@@ -246,7 +246,3 @@ def kinetic_energy(ball: LoadedBall, state: BallState) -> Scalar:
     turning = wx * wx + wy * wy + (wz + state.orbit) ** 2
     orbiting = ball.mass * (ball.pitch_radius * state.orbit) ** 2
     return 0.5 * (orbiting + ball.moment * turning)
-
-
-def _ring_speed(ball, speed):
-    return jnp.where(ball.side > 0, speed.outer, speed.inner)

@@ -182,7 +182,10 @@ class Program:
                     out, known = _solve_block(*given)
                     if not found:
                         _check_size(out, n)
-                        found = _room(out, n)
+                        found = {
+                            name: np.empty((n, *v.shape[1:]), v.dtype)
+                            for name, v in out.items()
+                        }
                     submitted = (out, begin, end)
                 else:
                     submitted = None
@@ -288,11 +291,6 @@ def _check_size(out, n):
             f" {LARGEST / 2**30:g}; name those that you need in `outputs`, or use fewer"
             " `points`."
         )
-
-
-def _room(out, n):
-    """Empty arrays for the outputs of all cases."""
-    return {name: np.empty((n, *v.shape[1:]), v.dtype) for name, v in out.items()}
 
 
 class _bar:

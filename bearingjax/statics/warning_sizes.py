@@ -514,14 +514,11 @@ def odd_names(solution: Solution) -> str:
     )
 
 
-def _rib_gaps(bearing):
-    return [getattr(bearing.ribs, name).axial_gap for name in bearing.ribs.present]
-
-
 def interference(solution: Solution) -> Any:
     """Largest interference of a rib and the roller ends, unloaded [m]."""
-    rows = rows_of(solution.element.bearing)
-    return _largest(solution, [-gap for row in rows for gap in _rib_gaps(row.bearing)])
+    every: Any = [row.bearing for row in rows_of(solution.element.bearing)]
+    gaps = [getattr(b.ribs, n).axial_gap for b in every for n in b.ribs.present]
+    return _largest(solution, [-gap for gap in gaps])
 
 
 def truncation(solution: Solution) -> Any:

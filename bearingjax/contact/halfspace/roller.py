@@ -294,7 +294,8 @@ class RollerContact(eqx.Module):
         }
         if grid is None:
             grid = self.grid(self.grid_half_width(given))
-        fits, width = _widest(self, grid), grid.half_width
+        width = grid.half_width
+        fits = width < jnp.min(_reach(self, grid.y))
         check(self, "half_width", fits, "less than the roller's", width, "m")
         return solve_pressure(
             self.influence(grid),
@@ -362,7 +363,3 @@ def _reach(contact, y):
     angle = contact.angle
     roller = contact.roller_radius(y) * jnp.cos(angle) / jnp.sqrt(jnp.cos(2.0 * angle))
     return jnp.minimum(roller, 1.0 / jnp.abs(contact._raceway_curvature(y)))
-
-
-def _widest(contact, grid):
-    return grid.half_width < jnp.min(_reach(contact, grid.y))

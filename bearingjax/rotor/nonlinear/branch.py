@@ -171,14 +171,6 @@ def _along(system, method, x, tangent, length):
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
-def _fold(point: BranchPoint) -> float:
-    return float(point.tangent[-1])
-
-
-def _flip(point: BranchPoint) -> float:
-    return _least(np.linalg.eigvals(point.monodromy) + 1.0)
-
-
 def _pairs(point: BranchPoint) -> float:
     """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
@@ -201,8 +193,8 @@ def _side(point: BranchPoint) -> float:
 
 
 _TESTS: dict[str, Callable[[BranchPoint], float]] = {
-    "fold": _fold,
-    "flip": _flip,
+    "fold": lambda point: float(point.tangent[-1]),
+    "flip": lambda point: _least(np.linalg.eigvals(point.monodromy) + 1.0),
     "neimark_sacker": _pairs,
     "branch_point": _side,
 }
