@@ -177,7 +177,9 @@ def source_contributions(
         factor,
         "",
     )
-    keys = key if _is_many(key) else jax.random.split(key, n)
+    # A plain key has an axis of its own.
+    many = key.ndim > (not jnp.issubdtype(key.dtype, jax.dtypes.prng_key))
+    keys = key if many else jax.random.split(key, n)
     if len(keys) != n:
         raise ValueError(
             f"source_contributions: `key` has {len(keys)} keys; it must have {n}."
@@ -289,11 +291,6 @@ def _directions(direction: Any) -> np.ndarray:
         "",
     )
     return (vector / np.linalg.norm(vector))[:, None]
-
-
-def _is_many(key: Array) -> bool:
-    """Whether these are several keys; a plain one has an axis of its own."""
-    return key.ndim > (not jnp.issubdtype(key.dtype, jax.dtypes.prng_key))
 
 
 def _mean_square(acceleration, along):

@@ -213,8 +213,7 @@ def _first_run(
             with contextlib.suppress(jax.errors.JaxRuntimeError):
                 return kept, kept(arrays)
         lowered = jax.jit(function).lower(*arrays)
-        # Functions outside of XLA: LAPACK, or back into Python.
-        libraries = re.findall(r"custom_call @(\w+)", lowered.as_text())
+        libraries = _libraries(lowered)
         keep = place is not None and all(x.startswith("lapack_") for x in libraries)
         compiled = _compiled(lowered, options, keep)
         if keep:
@@ -260,6 +259,11 @@ def _flattened(
         return values
 
     return flat, arrays, outputs
+
+
+def _libraries(lowered) -> set[str]:
+    """Functions outside of XLA that a program calls: LAPACK, or back into Python."""
+    return set(re.findall(r"custom_call @(\w+)", lowered.as_text()))
 
 
 def _filled(outputs: Any, values: list) -> Any:

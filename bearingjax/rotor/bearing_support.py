@@ -16,6 +16,7 @@ from ..statics.warning_sizes import stiffness_scale
 from .parts import (
     DAMPING_UNITS,
     AbstractSupport,
+    Five,
     Housing,
     check_support,
     square_matrix,
@@ -100,12 +101,8 @@ class BearingSupport(AbstractSupport):
             )
 
     def force(
-        self,
-        motion: Float[Array, "5"],
-        velocity: Float[Array, "5"],
-        speed: Scalar,
-        angle: Scalar | float = 0.0,
-    ) -> Float[Array, "5"]:
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+    ) -> Five:
         """Return the force that moves the station against the bearing (5,) [N, N m].
 
         With the preload's share: it is not zero where nothing has moved. NaN where a
@@ -123,8 +120,8 @@ class BearingSupport(AbstractSupport):
         return sense * held[_INNER] + self.damping @ velocity
 
     def pushed(
-        self, motion: Float[Array, "5"], speed: Scalar
-    ) -> tuple[Float[Array, "5"], Float[Array, "5 5"], Float[Array, "5 5"]]:
+        self, motion: Five, speed: Scalar
+    ) -> tuple[Five, Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Return `AbstractSupport.pushed` from one solve of the rolling elements."""
         sense, _ = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)
@@ -147,7 +144,7 @@ class BearingSupport(AbstractSupport):
         turning = Speed(inner=sign * speed) if self.inertia else None
         return self.element.model(turning), self.rings(motion)
 
-    def rings(self, motion: Float[Array, "5"]) -> Float[Array, "12"]:
+    def rings(self, motion: Five) -> Float[Array, "12"]:
         """Return the freedoms of both rings at a motion of the station [m, rad].
 
         Args:

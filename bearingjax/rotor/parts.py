@@ -16,6 +16,8 @@ from ..design.material import Material
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 
+Five = Float[Array, "5"]
+"""Along (ux uy uz gx gy) of a station: a motion, its rate, or a force."""
 _FLAT = 2.0 * (1.0 + 1e-6)
 """Polar over diametral moment of inertia of a flat disc, with round-off [1]."""
 STIFFNESS_UNITS = (
@@ -221,12 +223,8 @@ class AbstractSupport(eqx.Module):
 
     @abstractmethod
     def force(
-        self,
-        motion: Float[Array, "5"],
-        velocity: Float[Array, "5"],
-        speed: Scalar,
-        angle: Scalar | float = 0.0,
-    ) -> Float[Array, "5"]:
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+    ) -> Five:
         """Force that moves the station against the support (5,) [N, N m].
 
         Args:
@@ -237,8 +235,8 @@ class AbstractSupport(eqx.Module):
         """
 
     def pushed(
-        self, motion: Float[Array, "5"], speed: Scalar
-    ) -> tuple[Float[Array, "5"], Float[Array, "5 5"], Float[Array, "5 5"]]:
+        self, motion: Five, speed: Scalar
+    ) -> tuple[Five, Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Force (5,), stiffness and damping (5, 5) at a motion and a speed, at rest.
 
         Args:
@@ -254,7 +252,7 @@ class AbstractSupport(eqx.Module):
         return force, *slopes
 
     def linearised(
-        self, motion: Float[Array, "5"], speed: Scalar
+        self, motion: Five, speed: Scalar
     ) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Stiffness and damping (5, 5) at a motion and a speed, at rest there.
 
@@ -330,11 +328,7 @@ class LinearSupport(AbstractSupport):
         )
 
     def force(
-        self,
-        motion: Float[Array, "5"],
-        velocity: Float[Array, "5"],
-        speed: Scalar,
-        angle: Scalar | float = 0.0,
-    ) -> Float[Array, "5"]:
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+    ) -> Five:
         """Force that moves the station against the support (5,) [N, N m]."""
         return self.stiffness @ motion + self.damping @ velocity

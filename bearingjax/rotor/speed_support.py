@@ -13,6 +13,7 @@ from .parts import (
     DAMPING_UNITS,
     STIFFNESS_UNITS,
     AbstractSupport,
+    Five,
     Housing,
     check_support,
     square_matrix,
@@ -52,12 +53,8 @@ class SpeedSupport(AbstractSupport):
         of_shape(self, "stiffness", fits, "(order, 5, 5)")
 
     def force(
-        self,
-        motion: Float[Array, "5"],
-        velocity: Float[Array, "5"],
-        speed: Scalar,
-        angle: Scalar | float = 0.0,
-    ) -> Float[Array, "5"]:
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+    ) -> Five:
         """Return `AbstractSupport.force` without the load at rest [N, N m]."""
         share = jnp.minimum(2.0 * jnp.abs(speed) / self.top_speed - 1.0, 1.0)
 

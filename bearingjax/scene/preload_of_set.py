@@ -69,7 +69,9 @@ def preload_of_set(
         "mounted": (_on(fits.mounting, None, ground), None),
         "operating": (_on(fits.mounting, fits.conditions, ground), speed),
     }
-    scatters = _scatters(fits)
+    # The clearance is that as ground.
+    seats = [ends for name, ends in fits.limits.items() if name != "clearance"]
+    scatters = any(float(ends.lower) != float(ends.upper) for ends in seats)
     for place in ("tightest", "loosest") if scatters else ():
         seats = _seats(fits, ground, place)
         states[f"{place} mounted"] = _on(seats, None, ground), None
@@ -104,15 +106,6 @@ def _preloads(elements, speeds):
         return remaining_preload(element, speed, throw=False)
 
     return eqx.filter_vmap(one)(elements, speeds)
-
-
-def _scatters(fits: Fits) -> bool:
-    """Whether the seat sizes have tolerances; the clearance is that as ground."""
-    return any(
-        float(ends.lower) != float(ends.upper)
-        for name, ends in fits.limits.items()
-        if name != "clearance"
-    )
 
 
 def _seats(fits, ground, place) -> Mounting:

@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design.checks import one_of
 from ..numerics.units import unit
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
@@ -311,11 +312,7 @@ class Worst(AbstractSmooth):
 
     def __check_init__(self):
         super().__check_init__()
-        if self.kind not in _WORST:
-            kinds = ", ".join(_WORST)
-            raise ValueError(
-                f"Worst: `kind` is {self.kind!r}; it must be one of {kinds}."
-            )
+        one_of(self, "kind", self.kind, _WORST)
 
     def samples(self, element: ShaftDesign, cases: ShaftCases, solution: Any) -> Array:
         """The numbers of which it is the worst (sample,).

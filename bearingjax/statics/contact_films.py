@@ -85,11 +85,8 @@ def films(
 
 
 def _check_call(solution, lubricant, temperature, roughness):
-    for name, value, kind in (
-        ("solution", solution, Solution),
-        ("lubricant", lubricant, Lubricant),
-    ):
-        of_class("films", name, value, kind, f"a {kind.__name__}")
+    of_class("films", "solution", solution, Solution, "a Solution")
+    of_class("films", "lubricant", lubricant, Lubricant, "a Lubricant")
     check_single("films", solution)
     if solution.speed is None:
         raise ValueError("films: `solution` is at rest; solve it with `speed`.")

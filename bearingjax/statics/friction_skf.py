@@ -28,7 +28,7 @@ from ..design import (
     rows_of,
 )
 from ..design.catalogue_entry import CatalogueEntry
-from ..design.checks import check
+from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -303,8 +303,8 @@ def skf_friction_torque(
     names = tuple(kind.series)
     assumed = series is None and len(kind.series) > 1
     series = names[0] if series is None else series
-    _one_of("series", series, names)
-    _one_of("oil", oil, OILS)
+    one_of("skf_friction_torque", "series", series, names)
+    one_of("skf_friction_torque", "oil", oil, OILS)
     d_mean, span = _diameters(first, kind, diameters)
     assert solution.speed is not None
     speed = solution.speed.inner - solution.speed.outer
@@ -414,14 +414,6 @@ def _diameters(bearing, kind, given):
     fits = (bore > 0.0) & (bore < outside)
     check("skf_friction_torque", "diameters", fits, allowed, outside, "m")
     return 0.5e3 * (bore + outside), 1e3 * (outside - bore)
-
-
-def _one_of(name, value, allowed):
-    if value not in allowed:
-        raise ValueError(
-            f"skf_friction_torque: `{name}` is {value!r}; it must be one of"
-            f" {', '.join(allowed)}."
-        )
 
 
 def _power(x, exponent):

@@ -37,15 +37,24 @@ class LifeKind(NamedTuple):
 
     Attributes:
         limit: Largest size that gives no warning.
-        words: (size, where) -> the sentence; where is "" for many cases.
+        text: The sentence with `{size}` and `{where}`.
         where: (bearing, ratings, numbers) of one life -> numbers of it, in words.
+        many: Size -> the words in place of those of `where` for many cases.
+        shown: Size -> what the sentence has of it.
         of_all: Whether it is reported only if it applies to all cases.
     """
 
     limit: float
-    words: Callable[[float, str], str]
+    text: str
     where: Callable[[Any, Any, Any], str] = lambda bearing, ratings, numbers: ""
+    many: Callable[[float], str] = lambda size: ""
+    shown: Callable[[float], float] = lambda size: size
     of_all: bool = False
+
+    def words(self, size: float, where: str) -> str:
+        """Return the sentence about a size; `where` is "" for many cases."""
+        where = where or self.many(size)
+        return self.text.format(size=self.shown(size), where=where)
 
 
 def life_warnings(
@@ -136,25 +145,9 @@ def _least(bearing, ratings):
     return share * ratings.dynamic_capacity
 
 
-def _heavy_words(size, where):
-    return (
-        f"equivalent load {where or f'{size:.4g} times'} the lesser of C0 and C/2: ISO"
-        " 281 does not vouch for lives of such loads"
-    )
-
-
 def _heavy_numbers(bearing, ratings, numbers):
     load, most = (1e-3 * float(x) for x in (_load(numbers), _most(ratings)))
     return f"of {load:.4g} kN, above {most:.4g} kN,"
-
-
-def _light_words(size, where):
-    what = where or (
-        f"of {100.0 * (1.0 - size):.3g} % of the least one that makers ask for,"
-        f" {LEAST_LOAD_OF_BALLS:g} C of ball and {LEAST_LOAD_OF_ROLLERS:g} C of roller"
-        " bearings: the rolling elements"
-    )
-    return f"equivalent load {what} may skid"
 
 
 def _light_numbers(bearing, ratings, numbers):
@@ -167,65 +160,63 @@ def _light_numbers(bearing, ratings, numbers):
     )
 
 
-def _thin_words(size, where):
-    return (
-        f"viscosity ratio of {KAPPA[0] / size:.3g}: ISO 281 has no a_ISO below"
-        f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken"
-    )
-
-
-def _thick_words(size, where):
-    return (
-        f"viscosity ratio of {size:.3g}: the diagrams of ISO 281 end at {KAPPA[1]:g};"
-        f" a_ISO and the e_C of a class of cleanliness are those at {KAPPA[1]:g}"
-    )
-
-
-def _ends_words(size, where):
-    return (
-        f"{100 * size:.3g} % of the fatigue is in the laminae at the ends of the"
-        f" rollers: at sharp ends the life depends on the number of laminae{where};"
-        " with a profile that runs out it does not"
-    )
-
-
 LIFE_KINDS: dict[str, LifeKind] = {
-    "heavy_load": LifeKind(1.0, _heavy_words, _heavy_numbers),
-    "light_load": LifeKind(0.0, _light_words, _light_numbers),
+    "heavy_load": LifeKind(
+        1.0,
+        "equivalent load {where} the lesser of C0 and C/2: ISO 281 does not vouch for"
+        " lives of such loads",
+        _heavy_numbers,
+        "{:.4g} times".format,
+    ),
+    "light_load": LifeKind(
+        0.0,
+        "equivalent load {where} may skid",
+        _light_numbers,
+        lambda size: (
+            f"of {100.0 * (1.0 - size):.3g} % of the least one that makers ask for,"
+            f" {LEAST_LOAD_OF_BALLS:g} C of ball and {LEAST_LOAD_OF_ROLLERS:g} C of"
+            " roller bearings: the rolling elements"
+        ),
+    ),
     "radial_left_out": LifeKind(
         0.0,
-        lambda size, where: (
-            f"radial load of {size:.4g} N, for which ISO 281 has no factor at 90°: P"
-            " and P0 have no part of it"
-        ),
+        "radial load of {size:.4g} N, for which ISO 281 has no factor at 90°: P and P0"
+        " have no part of it",
     ),
     "axial_left_out": LifeKind(
         0.0,
-        lambda size, where: (
-            f"axial load of {size:.4g} N, for which ISO 281 has no factor at 0°: P and"
-            " P0 have no part of it"
-        ),
+        "axial load of {size:.4g} N, for which ISO 281 has no factor at 0°: P and P0"
+        " have no part of it",
     ),
     "moment_left_out": LifeKind(
         0.0,
-        lambda size, where: (
-            f"moment of {size:.4g} N m about the pressure centre: P and P0, and with"
-            " them the basic life and the static safety, have no part of it; the"
-            " reference life of ISO/TS 16281 has"
-        ),
+        "moment of {size:.4g} N m about the pressure centre: P and P0, and with them"
+        " the basic life and the static safety, have no part of it; the reference life"
+        " of ISO/TS 16281 has",
     ),
-    "thin_film": LifeKind(1.0, _thin_words),
-    "thick_film": LifeKind(KAPPA[1], _thick_words),
+    "thin_film": LifeKind(
+        1.0,
+        "viscosity ratio of {size:.3g}: ISO 281 has no a_ISO below"
+        f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken",
+        shown=lambda size: KAPPA[0] / size,
+    ),
+    "thick_film": LifeKind(
+        KAPPA[1],
+        "viscosity ratio of {size:.3g}: the diagrams of ISO 281 end at"
+        f" {KAPPA[1]:g}; a_ISO and the e_C of a class of cleanliness are those at"
+        f" {KAPPA[1]:g}",
+    ),
     "loaded_ends": LifeKind(
         MOST_AT_ENDS,
-        _ends_words,
+        "{size:.3g} % of the fatigue is in the laminae at the ends of the rollers: at"
+        " sharp ends the life depends on the number of laminae{where}; with a profile"
+        " that runs out it does not",
         lambda b, r, numbers: f", {np.shape(numbers['damage_share'])[2]} here",
+        shown=lambda size: 100 * size,
     ),
     "no_hours": LifeKind(
         0.0,
-        lambda size, where: (
-            "the rings do not turn against each other: there is no life in hours"
-        ),
+        "the rings do not turn against each other: there is no life in hours",
         of_all=True,
     ),
 }

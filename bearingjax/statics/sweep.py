@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design import AbstractBearing, BearingSet, rows_of
-from ..design.checks import is_traced
+from ..design.checks import is_traced, of_class
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from .cases import Cases
@@ -218,10 +218,7 @@ def sweep(
     if not isinstance(size, int) or size < 1:
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     check_held("sweep", every.load, every.prescribed, options.free)
-    if life is not None and not isinstance(life, LifeConditions):
-        raise TypeError(
-            f"sweep: `life` is a {type(life).__name__}; it must be LifeConditions."
-        )
+    of_class("sweep", "life", life, LifeConditions | None, "LifeConditions")
     keep, lives = _kept(outputs)
     life = LifeConditions() if lives and life is None else life
     if life is not None:

@@ -171,6 +171,10 @@ def _along(system, method, x, tangent, length):
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
+def _flip(point: BranchPoint) -> float:
+    return _least(np.linalg.eigvals(point.monodromy) + 1.0)
+
+
 def _pairs(point: BranchPoint) -> float:
     """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
@@ -194,7 +198,7 @@ def _side(point: BranchPoint) -> float:
 
 _TESTS: dict[str, Callable[[BranchPoint], float]] = {
     "fold": lambda point: float(point.tangent[-1]),
-    "flip": lambda point: _least(np.linalg.eigvals(point.monodromy) + 1.0),
+    "flip": _flip,
     "neimark_sacker": _pairs,
     "branch_point": _side,
 }

@@ -10,6 +10,7 @@ from ...numerics.units import unit
 from ..parts import (
     DAMPING_UNITS,
     AbstractSupport,
+    Five,
     Housing,
     check_support,
     square_matrix,
@@ -46,12 +47,8 @@ class LawSupport(AbstractSupport):
         instance(self, "turned", bool)
 
     def force(
-        self,
-        motion: Float[Array, "5"],
-        velocity: Float[Array, "5"],
-        speed: Scalar,
-        angle: Scalar | float = 0.0,
-    ) -> Float[Array, "5"]:
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+    ) -> Five:
         """Return `AbstractSupport.force` [N, N m]; the balls do not orbit."""
         side = as_real((1.0, 1.0, -1.0 if self.turned else 1.0)).astype(motion.dtype)
         held = side * self.law.force(side * motion[:3])
