@@ -148,14 +148,7 @@ def run_noise(
         task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
     _tell(on_stage, "vibration")
-    record = vibration(
-        model,
-        turns=task.turns,
-        settle=task.settle,
-        samples=task.samples,
-        steps=task.steps,
-        throw=False,
-    )
+    record = vibration(model, **task.counts, steps=task.steps, throw=False)
     result, steps = Result(int(record.result)), record.steps
     asked = model_warnings(model, task.samples, steps, tolerances)
     warned = (*task.warnings, *asked)
@@ -189,12 +182,7 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
-    counts = {
-        "turns": task.turns,
-        "settle": task.settle,
-        "samples": task.samples,
-        "steps": steps,
-    }
+    counts = task.counts | {"steps": steps}
     given = task.line, tolerances
     key = jax.random.key(task.seed)
     batch = min(16, task.bearings)

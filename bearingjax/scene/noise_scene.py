@@ -62,3 +62,8 @@ class NoiseScene:
     def name(self) -> str:
         """Name of the file without its ending."""
         return self.scene.name
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Sizes of a record, by the names of the arguments of `vibration`."""
+        return {"turns": self.turns, "settle": self.settle, "samples": self.samples}

@@ -4,9 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from ..element.frame import LOAD_UNITS, LOADS
 from ..numerics.result import Result
 from ..shafts import DutyResult
 from ..shafts.doubts import axial_load
+from ..shafts.duty import LIVES
 from .files import plain_run
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
@@ -73,10 +75,9 @@ def _thermal(run: ShaftRun) -> dict[str, Any]:
     }
     if warming is not None and run.task.times is not None:
         found["time"] = run.task.times
-        for k, name in enumerate(names):
-            both = zip(("inner_ring", "outer_ring"), (2 * k, 2 * k + 1), strict=True)
-            for ring, node in both:
-                found.setdefault(f"{ring}_over_time", {})[name] = warming[:, node]
+        rings = warming[:, : 2 * len(names)].T
+        found["inner_ring_over_time"] = dict(zip(names, rings[::2], strict=True))
+        found["outer_ring_over_time"] = dict(zip(names, rings[1::2], strict=True))
         if warming.shape[1] > 2 * len(names):
             found["housing_over_time"] = warming[:, -1]
     return {"heat": found}
@@ -189,8 +190,6 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         run: Solved run.
     """
     names = [seat.name for seat in run.task.system.seats]
-    forces = "Fx Fy Fz Mx My Mz".split()
-    units = ["N"] * 3 + ["N m"] * 3
     if run.duty is None:
         found: dict[str, Any] = {"bearing": names}
         load = run.solution.load
@@ -203,13 +202,7 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
                 np.nan if getattr(b.life, key, None) is None else getattr(b.life, key)
                 for b in run.bearings
             ]
-            for key in (
-                "static_safety",
-                "basic_rating_life",
-                "reference_rating_life",
-                "modified_rating_life",
-                "life_hours",
-            )
+            for key in (*LIVES[:-1], "life_hours")
         }
     else:
         count = len(run.task.cases)
@@ -224,7 +217,7 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         pressure = run.duty.peak_pressure.ravel()
         lives = {key: of.ravel() for key, of in run.duty.lives.items()}
         lives |= {key: of.ravel() for key, of in _warmth(run).items()}
-    for k, (name, unit) in enumerate(zip(forces, units, strict=True)):
+    for k, (name, unit) in enumerate(zip(LOADS, LOAD_UNITS, strict=True)):
         found[f"{name} [{unit}]"] = load[:, k]
     found["peak_pressure [Pa]"] = np.asarray(pressure, float)
     for key, values in lives.items():

@@ -41,7 +41,7 @@ LIVES = (
     "modified_rating_life",
     "damage",
 )
-"""Numbers of a `Life` that a `DutyResult` has."""
+"""Numbers of a `Life` that a `DutyResult` has; the damage is last."""
 
 
 class DutyResult(eqx.Module):
