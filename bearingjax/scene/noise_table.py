@@ -29,7 +29,7 @@ from .deviations_table import read_deviations
 from .noise_scene import AXES, NoiseScene
 from .read import Scene, scene_of, with_speed_warnings
 from .scene_file import find_scene, parse_bearing
-from .schema import Keys, read_keys, scene_key
+from .schema import Keys, direction_json, read_keys, scene_key
 from .table import Table
 from .tolerance_table import ToleranceKeys, read_tolerance
 
@@ -80,17 +80,7 @@ class VibrationKeys(Keys):
         needs=("sensor_stiffness", "sensor_damping"),
         otherwise="y",
         reader=lambda table, name: _direction(table, name),
-        json={
-            "anyOf": [
-                {"enum": list(AXES)},
-                {
-                    "type": "array",
-                    "items": {"type": "number"},
-                    "minItems": 3,
-                    "maxItems": 3,
-                },
-            ]
-        },
+        json=direction_json(AXES),
     )
     turns: int = scene_key("turns of the record", default=8)
     settle: int = scene_key("turns that settle before it", default=2, least=0)

@@ -9,7 +9,7 @@ import dataclasses
 import functools
 import types
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import (
     Any,
     ClassVar,
@@ -158,6 +158,13 @@ def scene_key(
     """
     metadata = {"key": Key(about, kind, **rest)}
     return dataclasses.field(default=default, metadata=metadata)
+
+
+def direction_json(names: Iterable[str]) -> dict[str, Any]:
+    """Return the schema of a direction: one of several names, or three numbers."""
+    three = {"minItems": 3, "maxItems": 3}
+    numbers = {"type": "array", "items": {"type": "number"}, **three}
+    return {"anyOf": [{"enum": [*names]}, numbers]}
 
 
 class Field(NamedTuple):

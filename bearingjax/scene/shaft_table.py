@@ -38,7 +38,7 @@ from .read import Scene
 from .rotor_mounts import SpringKeys
 from .rotor_table import MATERIAL
 from .scene_file import assign, find_scene, is_shafts, parse_scene
-from .schema import Keys, read_keys, scene_key
+from .schema import Keys, direction_json, read_keys, scene_key
 from .table import Table
 
 AXES = {
@@ -71,8 +71,7 @@ def _vector(table: Table, key: str) -> tuple[float, ...]:
 
 
 def _axis(about: str) -> Any:
-    numbers = {"type": "array", "items": {"type": "number"}}
-    json = {"anyOf": [{"enum": [*AXES]}, {**numbers, "minItems": 3, "maxItems": 3}]}
+    json = direction_json(AXES)
     return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
 
 

@@ -124,10 +124,8 @@ def read_skid(
     dynamics.check_places(steady, model.bearing.n_elements)
     loads = None if dynamics.load is None else dynamics.load.loads(scene.load)
     assert scene.speed is not None  # checked before
-    speeds, duration = (
-        dynamics.speeds(scene.speed),
-        None if steady else dynamics.duration,
-    )
+    speeds = dynamics.speeds(scene.speed)
+    duration = None if steady else dynamics.duration
     scene = with_speed_warnings(scene, _fastest(speeds, duration))
     found = SkidScene(
         scene=scene,
