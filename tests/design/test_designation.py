@@ -222,7 +222,7 @@ def test_clearances_of_every_listed_bore_are_those_of_its_range(kind, taper):
     reached = {next(end for end in rows if 1e3 * b <= end + 1e-9) for b in bores}
     assert set(rows) - reached == {e for e in rows if not low <= e <= high}
     for bore in (b for b in bores if not taper or b > 0.03):
-        limits = np.ravel([find(c, bore) for c in ("CN", "C3")])
+        limits = np.array([find(c, bore) for c in ("CN", "C3")], float).ravel()
         end = next(end for end in rows if 1e3 * bore <= end + 1e-9)
         np.testing.assert_allclose(1e6 * limits, rows[end][2:6], rtol=1e-9)
 
