@@ -187,7 +187,7 @@ def test_bad_input_is_named():
     for bad, shown in (
         (-1.0, "-1 N s/m"),
         (np.nan, "nan N s/m"),
-        (np.diag([-1.0] * 12), r"\[\[-1"),
+        (np.diag([-1.0] * 12), r"shape \(12, 12\)"),
         (np.eye(3), r"\(3, 3\)"),
     ):
         with pytest.raises(ValueError, match=f"`damping`.*{shown}"):
