@@ -189,9 +189,10 @@ def of_class(owner, name: str, value, kinds: Any, allowed: str) -> None:
     """An object of a class, or of one of several.
 
     Args:
-        owner, name, allowed: As in `check`.
+        owner, name: Class or function, and the field or argument checked.
+        allowed: What is allowed, in words.
         value: The object.
-        kinds: As `isinstance` takes them.
+        kinds: Classes that are allowed.
 
     Raises:
         TypeError: If it is something else.
@@ -205,7 +206,8 @@ def of_shape(owner, name: str, fits: bool, allowed: str, *given: Any) -> None:
     """An array of an allowed shape.
 
     Args:
-        owner, name, allowed: As in `check`.
+        owner, name: Class or function, and the field or argument checked.
+        allowed: What is allowed, in words.
         fits: Whether its shape is allowed.
         given: The array, if not a field of `owner`.
 
@@ -224,10 +226,10 @@ def one_of(owner, name: str, value, names: Collection[str], allowed: str = "") -
     """One of several names.
 
     Args:
-        owner, name: As in `check`.
+        owner, name: Class or function, and the field or argument checked.
         value: Name that was given.
         names: Allowed names.
-        allowed: As in `check`, if they are not simply listed.
+        allowed: What is allowed, in words; by default the choices are listed.
 
     Raises:
         ValueError: If it is none of them.

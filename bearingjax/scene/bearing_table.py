@@ -62,7 +62,7 @@ def _read_row(
 ) -> AbstractBearing:
     """Read a row, with the published ratings of its designation."""
     row = read_row(table)
-    return row if found is None else found[1].carried(row)
+    return row if found is None else found[1].add_published(row)
 
 
 def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:

@@ -68,7 +68,7 @@ class FromCatalogue:
         fields = {**ROLLERS, **BALLS}[self.entry.type].rated_fields
         return tuple(key for key in self.overridden if key in fields)
 
-    def carried(self, row: Any) -> Any:
+    def add_published(self, row: Any) -> Any:
         """Return a row of the scene with the published ratings, unless they are void.
 
         Args:

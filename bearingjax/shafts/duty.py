@@ -283,7 +283,9 @@ def case_damage(
     """Return the damage of each case in an hour of the spectrum (case, bearing) [1/h].
 
     Args:
-        damage, speed, hours: As in `bearing_hours`.
+        damage: Damage, as in `DutyResult` [1/rev].
+        speed: Speed of the shaft of each bearing [rad/s].
+        hours: Time in each case [h]; `None`: the same in all.
 
     Raises:
         ValueError: For hours that are negative, or all zero.

@@ -338,7 +338,7 @@ def _combined(parts: tuple[_Part, ...]) -> tuple[Scalar, Scalar]:
 @program(quick=True)
 def _rate(parts, given, factors):
     """C, C0, C_u, whether they are axial, and whether all is published (4,)."""
-    each = [_rated(part) for part in parts]
+    each = [_rate_part(part) for part in parts]
     c, c0 = _together(parts, [values[:2] for values, _ in each])
     published = jnp.all(jnp.stack([flags for _, flags in each]), axis=0)
     # What is given does not rate a set of unlike rows either.
@@ -365,7 +365,7 @@ def _together(parts, each) -> tuple[Scalar, Scalar]:
     return jnp.sum(weight) * tired ** (-2 / 9), jnp.sum(c0)
 
 
-def _rated(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
+def _rate_part(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
     """C, C0 and C_u of alike rows, and whether each is published; else C_u is 0."""
     now = jnp.stack(by_row.capacities(part.rows, part.is_thrust))
     plain = jnp.append(now, 0.0)
@@ -403,7 +403,7 @@ def row_ratings(
     parts = _parts(bearing)
     first = parts[0]
     if len(parts) > 1:
-        each = [_rated(part)[0] for part in parts]
+        each = [_rate_part(part)[0] for part in parts]
         c, c0 = _together(parts, [values[:2] for values in each])
         shares = [(one[0] / c, one[1] / c0) for one in each]
     else:
