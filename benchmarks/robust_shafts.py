@@ -226,8 +226,8 @@ def three(draw):
             efficiency=eta,
         ),
     ]
-    places = {"a": (0.0, 0.0), "b": (0.12, 0.0), "c": (0.3, 0.3)}
-    lines = [line(draw, n, origin=(*at, 0.0)) for n, at in places.items()]
+    places = {"a": (0.0, 0.0, 0.0), "b": (0.12, 0.0, 0.0), "c": (0.3, 0.3, 0.26)}
+    lines = [line(draw, n, origin=at) for n, at in places.items()]
     seats = [draw.seat(ball, f"{n}1", n, draw.within(0.03, 0.09)) for n in places]
     seats += [draw.seat(ball, f"{n}2", n, 0.2, floating=True) for n in places]
     seats += [draw.seat(cylindrical, "c3", "c", draw.within(0.25, 0.3))]
