@@ -108,6 +108,9 @@ def solve_duty(
             " one case at least, and both for each."
         )
     systems = alike(systems)
+    for seat in systems[0].seats:
+        if seat.installed is not None:
+            check_alike(seat.installed.drawing.bearing)
     fast = systems[0].inertia
     offsets: dict[Any, Any] = {}
     whole = [adjusted(system, offsets) for system in systems]
@@ -120,7 +123,6 @@ def solve_duty(
             none = np.full(len(systems), np.nan)
             lives.append((none, dict.fromkeys(LIVES, none), {}))
             continue
-        check_alike(seat.installed.drawing.bearing)
         speeds = [speed_of(first, k, speed)[0] for speed in np.asarray(found["speed"])]
         given = [
             (system.seats[k].installed, motion, speed, of_case[k])

@@ -127,6 +127,34 @@ def test_skf_constants_of_a_type_are_alike(kind):
     assert (apart[:, [0]] < np.log(2.0)).all() and (apart < np.log(40.0)).all()
 
 
+SKF_SUMS = {
+    "DeepGrooveBallBearing": (-293.012, 9.47, -111.078, 47.707),
+    "AngularContactBallBearing": (-73.474, 4.668, -134.238, -21.554, -0.194, -134.232),
+    "FourPointBallBearing": (-14.554, 0.884, -27.295, -4.423, -0.105, -27.295),
+    "SelfAligningBallRow": (-105.296, 12.342, -188.016, -36.111, 14.378, -188.016),
+    "ThrustBallBearing": (-13.786, -4.135),
+    "CylindricalRollerBearing": (-109.096, -14.6, -52.018),
+    "TaperedRollerBearing": (-168.789, 31.09, -52.087, 9.011),
+    "SphericalRollerRow": (
+        -181.621, 24.578, -174.808, 24.452, -75.059, 86.812, -60.5, 66.432,
+    ),
+    "ToroidalRollerBearing": (-161.125, -152.398, -78.567, -52.019),
+    "CylindricalThrustRollerBearing": (-13.005, -1.871),
+    "SphericalThrustRollerBearing": (
+        -67.821, 2.466, -65.531, 5.573, -26.223, -7.233, -18.238, -9.884, -2.762,
+    ),
+}  # fmt: skip
+"""Sums of the logarithms of each constant over the series of a type, from another
+transcription of SKF's tables than ours: a wrong digit moves one by 0.001 or more."""
+
+
+@pytest.mark.parametrize("kind", friction_skf._TYPES)
+def test_skf_constants_agree_with_another_transcription(kind):
+    rows = np.array(list(friction_skf._TYPES[kind].series.values()))
+    sums = np.log(rows).sum(axis=0)
+    np.testing.assert_allclose(sums, SKF_SUMS[kind.__name__], rtol=0, atol=6e-4)
+
+
 def test_skf_rolling_and_sliding_variables_by_hand():
     """G_rr and G_sl of SKF's tables for the constants 2, 3, 5 ..., in mm and N."""
     d, fr, fa, rpm, c0 = 40.0, 300.0, 200.0, 1500.0, 9e3
