@@ -171,6 +171,11 @@ def alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
         other = copy.copy(system)
         object.__setattr__(other, "inertia", fast)
         object.__setattr__(other, "plans", first.plans)
+        if jax.tree.structure(other) != jax.tree.structure((found or [other])[0]):
+            raise ValueError(
+                f"solve_duty: the system of case {k} has other parts than that of case"
+                " 0, such as another bearing; only numbers may differ between cases."
+            )
         found.append(other)
     return found
 

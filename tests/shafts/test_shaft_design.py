@@ -25,7 +25,7 @@ from bearingjax.shafts import (
     solve_duty,
     system_life,
 )
-from bearingjax.shafts.duty import bearing_hours
+from bearingjax.shafts.duty import alike, bearing_hours
 from bearingjax.statics.life import LifeConditions
 from bearingjax.statics.options import SolveOptions
 
@@ -105,6 +105,11 @@ def test_lives_of_a_duty_by_hand():
     wanted = np.sum(hours ** (-10 / 9)) ** -0.9
     np.testing.assert_allclose(system_life(stage(ball), hours), wanted, rtol=1e-9)
     assert system_life(stage(ball), np.full(4, np.inf)) == np.inf
+
+
+def test_cases_with_other_parts_are_refused():
+    with pytest.raises(ValueError, match="of case 1 has other parts than that of case"):
+        alike([stage(ball), stage(springs)])
 
 
 @pytest.mark.slow
