@@ -36,6 +36,7 @@ from .deviation import deviation_of as deviation_of
 from .deviation import with_raceways as with_raceways
 from .fit_limits import CLEARANCE_CLASSES as CLEARANCE_CLASSES
 from .fit_limits import CLEARANCE_PARTS as CLEARANCE_PARTS
+from .fit_limits import MOTOR_CLASS as MOTOR_CLASS
 from .fit_limits import ball_clearance as ball_clearance
 from .fit_limits import bore_limits as bore_limits
 from .fit_limits import outside_limits as outside_limits

@@ -9,6 +9,7 @@ from ..design import (
     CLEARANCE_CLASSES,
     CLEARANCE_PARTS,
     LIMIT_CLASSES,
+    MOTOR_CLASS,
     PLACES,
     WARM_MATERIALS,
     AbstractBearing,
@@ -152,7 +153,10 @@ class FitKeys(Keys):
     shaft_bore: float = scene_key("bore of a hollow shaft", "length", default=0.0)
     clearance: str | None = scene_key(
         "class of the clearance before mounting",
-        choices=[c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES],
+        choices=[
+            *(c + part for part in CLEARANCE_PARTS for c in CLEARANCE_CLASSES),
+            MOTOR_CLASS,
+        ],
         otherwise="that of the `designation`, or the bearing's own number",
     )
     at: str = scene_key(

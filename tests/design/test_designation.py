@@ -130,6 +130,7 @@ def test_letters_of_a_contact_angle_are_never_taken_for_others(prefix):
                     continue
                 first = max((k for k in known if name.startswith(k)), key=len)
                 angle = bj.catalogue_entry(found).design["contact_angle"]
+                # The AC bearings of EPK have 26 degrees, by the older GOST 831.
                 assert np.rad2deg(angle) == pytest.approx(known[first], abs=1.01), name
     for name in ("7205CA", "7205E", "7205F", "7205", "7205AB", "7205DB", "B7205A"):
         assert designated(name) == "-"

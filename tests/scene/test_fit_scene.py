@@ -121,6 +121,11 @@ def test_fit_of_catalogue_bearing(scene):
     assert bj.read_scene(path, ["fit.clearance=C4"]).fits.limits[
         "clearance"
     ] == pytest.approx((23e-6, 41e-6))
+    motor = scene(path.read_text().replace("6205/C3", "6205/CM"))
+    read = bj.read_scene(motor)
+    assert read.fits.limits["clearance"] == bj.design.ball_clearance("CM", 0.025)
+    # What is echoed can be read again.
+    assert bj.read_scene(motor, [f"fit.clearance={read.inputs['fit']['clearance']}"])
     with pytest.raises(SceneError, match="`fit.housing_diameter`: is missing"):
         bj.read_scene(scene(path.read_text().replace('housing_diameter = "80 mm"', "")))
 
