@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..statics.solution import RollerSolution
+from ..statics.warning_sizes import ends_over
 from .panel import ALONG, PRESSURE, finish
 from .style import (
     COLOURS,
@@ -55,7 +56,7 @@ def pressure_profiles(
     pressure = PRESSURE.scale * np.asarray(solution.contact_pressure)[mine]
     load = np.asarray(solution.roller_load)[mine]
     angle = degrees(solution.azimuth)[mine]
-    edges = np.asarray(solution.edge_loaded)[mine]
+    edges = np.asarray(ends_over(solution))[mine]
     # Equal loads (to 1 ppm) by azimuth.
     total = load[:, rings].sum(axis=1)
     scale = np.max(total, initial=0.0) or 1.0

@@ -319,7 +319,7 @@ def _rollers(solution):
     touching = largest > 1e-9 * largest.max()
     shown = np.flatnonzero(touching)
     pressure = np.asarray(solution.roller_pressure)[shown]
-    edge = np.any(np.asarray(ends_over(solution)), axis=1)[shown]
+    edge = np.any(np.asarray(ends_over(solution)), axis=(1, 2))[shown]
     columns = [
         *_numbered("roller", solution, shown),
         *by_ring("load", load[shown], "N", ".4f"),

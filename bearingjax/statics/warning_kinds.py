@@ -293,7 +293,7 @@ KINDS: dict[str, Kind] = {
         EDGE_PRESSURE,
         "edge-loaded roller: {size:.4g} MPa at the roller end, where the line-contact"
         " laws know no pressure peak{where}",
-        lambda s: _of_raceways(s, sizes.ends_over(s)),
+        lambda s: _of_raceways(s, sizes.ends_over(s).any(axis=2)),
         factor=1e-6,
     ),
 }

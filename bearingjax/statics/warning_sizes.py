@@ -619,6 +619,6 @@ def _passed(rollers, pressure):
 
 
 def ends_over(solution: Solution) -> Any:
-    """Whether each roller is edge-loaded on each raceway (roller, 2)."""
+    """Whether each end of a roller that passes a load is edge-loaded (roller, 2, end)."""
     rollers = _of_rollers(solution)
-    return (_passed(rollers, rollers.edge_pressure) > EDGE_PRESSURE).any(axis=2)
+    return _passed(rollers, rollers.edge_pressure) > EDGE_PRESSURE

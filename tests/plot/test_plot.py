@@ -154,6 +154,11 @@ def test_pressure_profiles_mark_loaded_ends(solution):
     ax = plot.pressure_profiles(edge, count=1)
     marks = [line for line in ax.lines if line.get_marker() == "^"]
     np.testing.assert_allclose(data(marks[0])[0], MM * solution.position[::20])
+    # A roller that lies on one raceway passes no load and lies there as it likes.
+    load = edge.roller_load.at[:, 1].set(0.0)
+    thrown = plot.pressure_profiles(eqx.tree_at(lambda s: s.roller_load, edge, load))
+    marks = [line for line in thrown.lines if line.get_marker() == "^"]
+    assert all(data(mark)[0].size == 0 for mark in marks)
 
 
 def test_pressure_map_runs_once_around_and_leaves_zero_white(solution):
