@@ -246,13 +246,15 @@ def _thermal(task: ShaftScene) -> list[ThermalState]:
     hours = [case.hours for case in cases]
     weights = None if None in hours else np.array(hours, float)
     warm = {
-        name: np.average([getattr(s, name) for s in states], axis=0, weights=weights)
+        name: jnp.asarray(
+            np.average([getattr(s, name) for s in states], axis=0, weights=weights)
+        )
         for name in ("inner_ring", "outer_ring", "housing")
     }
-    rings = np.stack([warm["inner_ring"], warm["outer_ring"]], axis=1).ravel()
+    rings = jnp.stack([warm["inner_ring"], warm["outer_ring"]], axis=1).ravel()
     for k, case in enumerate(cases):
         if not case.system.turns and case.heat is not None:
-            rises = jnp.asarray(rings) - case.heat.ambient
+            rises = rings - case.heat.ambient
             system = with_temperatures(states[k].system, case.heat, rises)
             found, _ = system_state(adjusted(system))
             more = {"system": system, "solution": found, "result": found.result}

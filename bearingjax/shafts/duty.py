@@ -171,11 +171,6 @@ def alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
         other = copy.copy(system)
         object.__setattr__(other, "inertia", fast)
         object.__setattr__(other, "plans", first.plans)
-        if jax.tree.structure(other) != jax.tree.structure((found or [other])[0]):
-            raise ValueError(
-                f"solve_duty: the system of case {k} has other parts than that of case"
-                " 0, such as another bearing; only numbers may differ between cases."
-            )
         found.append(other)
     return found
 
@@ -195,8 +190,12 @@ def _check_balances(systems: Sequence[ShaftSystem], found: dict[str, Any]) -> No
 def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
     """Return function(one) of all, stacked in NumPy; shared leaves are not copied."""
     trees = [jax.tree.structure(one) for one in given]
-    if any(tree != trees[0] for tree in trees):
-        raise ValueError("solve_duty: the cases differ in more than numbers.")
+    for k, tree in enumerate(trees):
+        if tree != trees[0]:
+            raise ValueError(
+                f"solve_duty: case {k} has other parts or conditions than case 0, such"
+                " as another bearing; only numbers may differ between cases."
+            )
     leaves = [jax.tree.leaves(one) for one in given]
     varying, shared = [], []
     for column in zip(*leaves, strict=True):

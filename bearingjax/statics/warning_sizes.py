@@ -619,6 +619,6 @@ def _passed(rollers, pressure):
 
 
 def ends_over(solution: Solution) -> Any:
-    """Whether each end of a roller that passes a load is edge-loaded (roller, 2, end)."""
+    """Whether ends of rollers that pass a load are edge-loaded (roller, 2, end)."""
     rollers = _of_rollers(solution)
     return _passed(rollers, rollers.edge_pressure) > EDGE_PRESSURE

@@ -25,7 +25,7 @@ from bearingjax.shafts import (
     solve_duty,
     system_life,
 )
-from bearingjax.shafts.duty import alike, bearing_hours
+from bearingjax.shafts.duty import bearing_hours
 from bearingjax.statics.life import LifeConditions
 from bearingjax.statics.options import SolveOptions
 
@@ -108,8 +108,9 @@ def test_lives_of_a_duty_by_hand():
 
 
 def test_cases_with_other_parts_are_refused():
-    with pytest.raises(ValueError, match="of case 1 has other parts than that of case"):
-        alike([stage(ball), stage(springs)])
+    systems = [stage(springs), stage(springs, housing=np.full(3, 1e8))]
+    with pytest.raises(ValueError, match="case 1 has other parts or conditions than"):
+        solve_duty(systems, [(None,) * 4] * 2)
 
 
 @pytest.mark.slow
