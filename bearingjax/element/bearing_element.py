@@ -17,7 +17,7 @@ from ..design import (
     deviation_of,
     rows_of,
 )
-from ..design.checks import is_traced
+from ..design.checks import is_traced, of_class
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Ring, Scalar
@@ -130,11 +130,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 as a text or the class itself.
             ValueError: For a choice that the rolling elements have no use for.
         """
-        if not isinstance(bearing, AbstractBearing | BearingSet):
-            raise TypeError(
-                f"BearingElement: `bearing` is a {type(bearing).__name__}; it must be"
-                " a roller bearing, a ball bearing or a BearingSet."
-            )
+        kinds, allowed = AbstractBearing | BearingSet, "a bearing or a BearingSet"
+        of_class(self, "bearing", bearing, kinds, allowed)
         check_kinds(
             {
                 "line_law": line_law,
@@ -211,11 +208,8 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             ValueError: If `speed` is given to balls of constant contact angle, or it
                 holds many designs (`stack_designs`).
         """
-        if speed is not None and not isinstance(speed, Speed):
-            raise TypeError(
-                f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
-                " Speed(inner, outer) in rad/s, or None."
-            )
+        allowed = "a Speed(inner, outer) in rad/s, or None"
+        of_class(self, "speed", speed, Speed | None, allowed)
         self._check(speed)
         designs = jnp.shape(bearings_of(self.bearing)[0].pitch_diameter)
         if designs:

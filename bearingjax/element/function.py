@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check
+from ..design.checks import check, of_class
 from ..numerics.types import Scalar, as_real
 from .inertia import Speed
 
@@ -122,11 +122,8 @@ def as_function(
     element: Any, speed: Speed | None, damping: Any, orbit: bool
 ) -> tuple[RingFunction, FunctionParameters]:
     """Return the function and parameters of `BearingElement.as_function`; see there."""
-    if speed is not None and not isinstance(speed, Speed):
-        raise TypeError(
-            f"BearingElement: `speed` is a {type(speed).__name__}; it must be a"
-            " Speed(inner, outer) in rad/s, or None."
-        )
+    allowed = "a Speed(inner, outer) in rad/s, or None"
+    of_class("BearingElement", "speed", speed, Speed | None, allowed)
     if damping is not None:
         damping = as_real(damping)
         check_damping("BearingElement", damping, ((), (12, 12)))

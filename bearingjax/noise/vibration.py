@@ -15,7 +15,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import check, count, is_traced
+from ..design.checks import check, count, is_traced, of_class
 from ..numerics.implicit import stop
 from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
@@ -156,10 +156,7 @@ def vibration(
 
     Fails: `STEP_LIMIT`, `NON_FINITE`, and as `solve_load`.
     """
-    if not isinstance(model, NoiseModel):
-        raise TypeError(
-            f"vibration: `model` is a {type(model).__name__}; it must be a NoiseModel."
-        )
+    of_class("vibration", "model", model, NoiseModel, "a NoiseModel")
     for name, value in (("turns", turns), ("samples", samples)):
         count("vibration", name, value)
     check("vibration", "settle", settle >= 0, "at least 0", settle, "turns")

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
 from ..statics.cases import Cases
 from ..statics.life import LifeConditions, life_of
@@ -32,15 +33,9 @@ class OfLife(AbstractMeasure):
     hours: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self):
-        if not isinstance(self.conditions, LifeConditions):
-            raise TypeError(
-                f"{type(self).__name__}: `conditions` is a"
-                f" {type(self.conditions).__name__}; it must be LifeConditions."
-            )
-        if not isinstance(self.hours, bool):
-            raise TypeError(
-                f"{type(self).__name__}: `hours` is {self.hours!r}; True or False."
-            )
+        given = self.conditions
+        of_class(self, "conditions", given, LifeConditions, "LifeConditions")
+        of_class(self, "hours", self.hours, bool, "True or False")
 
     def life(self, element: BearingElement, cases: Cases, solution: Any) -> Any:
         """Life under all cases [1, h].

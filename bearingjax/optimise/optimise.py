@@ -6,11 +6,12 @@ gradient costs little more than the solves.
 """
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..design.checks import of_class
 from ..numerics.units import shown_number
 from ..statics.cases import Cases
 from ..statics.installed import Installed
@@ -345,21 +346,14 @@ def _check_method(method, constraints):
 
 
 def _check_cases(cases, kind):
-    if not isinstance(cases, kind):
-        raise TypeError(
-            f"optimise: `cases` is a {type(cases).__name__}; it must be a"
-            f" {kind.__name__}."
-        )
+    of_class("optimise", "cases", cases, kind, f"a {kind.__name__}")
     if isinstance(cases, Cases) and cases.design is not None:
         raise ValueError("optimise: `cases` have several designs; give one element.")
 
 
 def _check_call(objective, constraints, max_steps, tolerance):
-    if not callable(objective):
-        raise TypeError(
-            f"optimise: `objective` is a {type(objective).__name__}; it must be a"
-            " function (element, cases, solution) -> scalar, such as PeakPressure()."
-        )
+    allowed = "a function (element, cases, solution) -> scalar, such as PeakPressure()"
+    of_class("optimise", "objective", objective, Callable, allowed)
     for constraint in constraints:
         if not isinstance(constraint, Constraint):
             raise TypeError(

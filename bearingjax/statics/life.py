@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import bearings_of, pitch_radius, rows_of
-from ..design.checks import check, in_range, positive
+from ..design.checks import check, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
@@ -315,11 +315,9 @@ def life_of(
         element, solution, speed, lamina_load: As in `rating_life`.
         conditions: The keywords of `rating_life` as an object.
     """
-    if not isinstance(solution, BallSolution | RollerSolution):
-        raise TypeError(
-            f"rating_life: `solution` is a {type(solution).__name__}; it must be what"
-            " `solve_load` returns of a ball or roller bearing."
-        )
+    kinds = BallSolution | RollerSolution
+    allowed = "what `solve_load` returns of a ball or roller bearing"
+    of_class("rating_life", "solution", solution, kinds, allowed)
     if jnp.ndim(solution.result):
         raise ValueError(
             "rating_life: `solution` holds several cases; map over them with jax.vmap,"
@@ -331,10 +329,7 @@ def life_of(
             f"rating_life: `element` has {asked}, but the solution is of {solved}; it"
             " must be the bearing that was solved."
         )
-    if not isinstance(speed, Speed | None):
-        raise TypeError(
-            f"rating_life: `speed` is a {type(speed).__name__}; it must be a Speed."
-        )
+    of_class("rating_life", "speed", speed, Speed | None, "a Speed")
     if lamina_load is not None:
         shape = np.shape(lamina_load)
         wanted = (*solution.roller_load.shape, *shape[2:3])

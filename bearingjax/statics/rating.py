@@ -29,7 +29,7 @@ from ..design import (
     rows_of,
     shares_rings,
 )
-from ..design.checks import is_traced, positive
+from ..design.checks import is_traced, of_class, positive
 from ..design.published import close, is_as_published
 from ..numerics.programs import program
 from ..numerics.types import Flag, Scalar, as_real
@@ -533,11 +533,8 @@ def _parts(bearing) -> tuple[_Part, ...]:
 
 def _rated_together(bearing) -> list[tuple[SetRow, ...]]:
     """All rows; of cylindrical thrust rollers that face the same way each row."""
-    if not isinstance(bearing, AbstractBearing | BearingSet):
-        raise TypeError(
-            f"load rating: `bearing` is a {type(bearing).__name__}; it must be a"
-            " bearing or a BearingSet."
-        )
+    kinds, allowed = AbstractBearing | BearingSet, "a bearing or a BearingSet"
+    of_class("load rating", "bearing", bearing, kinds, allowed)
     rows = rows_of(bearing)
     flat = all(isinstance(r.bearing, CylindricalThrustRollerBearing) for r in rows)
     if flat and len({row.mirrored for row in rows}) == 1:
