@@ -16,6 +16,10 @@ round-off of inertia forces of kilonewtons. Turning thrust bearings throw off ba
 one washer has left, and say so; a version that took such balls for held was up to 2e-4
 off at 0.1 to 10 N. In an earlier run of the rest 7 loads of the turning pair in O, of
 10 to 100 kN, end at the step limit, where a ball does not settle.
+
+Since balls that do not reach the inner ring start in the outer groove, 40 loads a
+decade of all ten designs, 7200: 1 of 1 to 10 mN ends at the step limit, none of the
+pair; 78 are off by more than 1e-8, all below 0.1 N, by at most 3e-7.
 """
 
 import equinox as eqx
