@@ -253,3 +253,8 @@ def test_clearance_classes_reject_unknown_names_and_bores():
         roller_clearance("CN", 0.6)
     with pytest.raises(ValueError, match="`bore` is 0.02 m.*above 0.024 m"):
         _SPHERICAL_K("CN", 0.02)
+
+
+def test_classes_of_a_cylindrical_roller_bearing_are_equally_wide():
+    for bore, ends in fit_limits._CYLINDERS.items():
+        assert len(set(np.subtract(ends[1::2], ends[::2]))) == 1, bore
