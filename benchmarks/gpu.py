@@ -5,8 +5,8 @@ float64: force and stiffness at random ring motions; displacement under random r
 loads with moments, from first contact; the sag under such a load and its gradient by
 clearance, roller length and crown radius. The processor runs chunks of 64 cases in one
 call, which uses few of its cores; the GPU runs all cases at once, and where the steps
-that they need differ, `bearingjax.numerics.batched_loop.WIDER` times as many at a time
-as the processor. Times are those of hot calls, medians of three, results left on the
+that they need differ, `numerics.compiled.batched_loop.WIDER` times as many at a time as
+the processor. Times are those of hot calls, medians of three, results left on the
 device. Errors are relative to the largest result of the processor.
 
 README: H100: force and stiffness 0.28 µs a case, load solves 4.2, with gradient 4.2;

@@ -21,7 +21,7 @@ def configure(options) -> None:
 
     import jax
 
-    from ..numerics.programs import keep_programs, user_cache
+    from ..numerics.compiled.programs import keep_programs, user_cache
 
     # XLA prints false warnings about CPU features when it loads a cached program.
     jax.config.update("jax_logging_level", "CRITICAL")
@@ -62,7 +62,7 @@ def devices(options) -> int:
 
 def _is_shared(folder: Path) -> bool:
     """Whether others can write to the program cache; prints a warning if so."""
-    from ..numerics.programs import is_private
+    from ..numerics.compiled.programs import is_private
 
     shared = hasattr(os, "geteuid") and not is_private(folder.lstat())
     if shared:

@@ -6,8 +6,8 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop
-from ..numerics.programs import program
 from ..numerics.quadrature import ContactMapped
 from ..numerics.types import Scalar, as_real
 from .halfspace.pressure import ContactSolution

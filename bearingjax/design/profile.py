@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .checks import check, in_range, is_traced, positive

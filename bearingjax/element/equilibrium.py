@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..numerics import batched_loop
+from ..numerics.compiled import batched_loop
 from ..numerics.expansion import Expansion
 from ..numerics.implicit import attach, stop
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace

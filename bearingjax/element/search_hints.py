@@ -10,7 +10,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ..numerics import batched_loop
+from ..numerics.compiled import batched_loop
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
 

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design.checks import positive
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
-from ..numerics.programs import program
 from ..numerics.types import as_real
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum

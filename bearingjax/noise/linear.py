@@ -21,8 +21,8 @@ from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import check, of_class, real_numbers
+from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
-from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .model import NoiseModel
 from .natural import contact_stiffness

@@ -30,7 +30,7 @@ from ..design.form_error import FormErrors, Surfaces
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions

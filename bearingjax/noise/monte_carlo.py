@@ -16,7 +16,7 @@ from jaxtyping import Array, Float, Int
 from ..design import BearingSet, rows_of
 from ..design.checks import check, count, is_traced, of_class
 from ..design.form_error import FormErrors, RacewayErrors
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level

@@ -19,9 +19,9 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..design import rows_of
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
 from ..numerics.lapack import eigh
-from ..numerics.programs import program
 from .model import NoiseModel
 from .static_start import static_start
 from .system import NoiseSystem

@@ -19,7 +19,7 @@ from ..design.checks import check, count, of_class
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
 from ..element.rolling_element import split
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve

@@ -23,7 +23,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from .bands import LEAST_SHIFT, Bands, band_power, shift

@@ -22,7 +22,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import check, concrete, positive
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real, namespace
 
 WHOLE_TURNS = 1e-3

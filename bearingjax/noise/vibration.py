@@ -16,8 +16,8 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, count, is_traced, of_class
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
-from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.options import DEFAULT_TOLERANCE

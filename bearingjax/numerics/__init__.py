@@ -2,6 +2,7 @@
 
 from .bfgs import BFGS as BFGS
 from .bfgs import inverse_update as inverse_update
+from .compiled.programs import keep_programs as keep_programs
 from .elliptic import carlson_rd as carlson_rd
 from .elliptic import complete as complete
 from .implicit import attach as attach
@@ -15,7 +16,6 @@ from .minimise import TrustRegionNewton as TrustRegionNewton
 from .power import ninth_root as ninth_root
 from .power import positive_power as positive_power
 from .power import smooth_power as smooth_power
-from .programs import keep_programs as keep_programs
 from .quadrature import AbstractQuadrature as AbstractQuadrature
 from .quadrature import ContactMapped as ContactMapped
 from .quadrature import Midpoint as Midpoint

@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .batched_loop import Either
+from .compiled.batched_loop import Either
 from .linear import norm
 from .minimise import AbstractMinimiser, first_state
 

@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from .batched_loop import Either, Loop
+from .compiled.batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
 

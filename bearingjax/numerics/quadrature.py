@@ -22,7 +22,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from .elementwise import elementwise
+from .compiled.elementwise import elementwise
 from .implicit import attach_roots, stop
 
 Offset = Callable[[Array], Array]

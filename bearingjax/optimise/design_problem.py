@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..statics.cases import Cases
 from ..statics.options import SolveOptions

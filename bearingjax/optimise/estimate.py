@@ -37,7 +37,7 @@ from ..design import (
     rows_of,
 )
 from ..design.checks import check, in_range, is_traced, positive
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import as_real
 from ..statics import row_rating
 from ..statics.rating import nominal_contact_angle

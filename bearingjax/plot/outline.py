@@ -11,7 +11,7 @@ from ..design.bearing import AbstractRollerBearing
 from ..design.profile import drops
 from ..element.constants import contact_constants
 from ..numerics import Midpoint
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from .style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters

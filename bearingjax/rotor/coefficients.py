@@ -12,7 +12,7 @@ from ..design.checks import finite, is_traced, of_shape, one_of, real_numbers
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_real
 from ..statics.linearise import OperatingPoint, linearise

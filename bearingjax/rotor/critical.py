@@ -12,9 +12,9 @@ from jaxtyping import Array, Complex, Float, Int
 
 from ..design.checks import count as whole
 from ..design.checks import is_traced, number
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eigh, solve_any
-from ..numerics.programs import program
 from ..numerics.types import as_count
 from .modes import (
     direction,

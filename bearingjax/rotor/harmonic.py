@@ -6,8 +6,8 @@ import jax.numpy as jnp
 from jax import lax
 
 from ..design.checks import number
+from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
-from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from .loads import RotorLoads
 from .modes import speed_list, to_complex

@@ -22,9 +22,9 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 
 from ..design.checks import count as whole
 from ..design.checks import finite, is_traced, number, of_shape, real_numbers
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
 from ..numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
-from ..numerics.programs import program
 from ..numerics.types import as_count, as_real, namespace
 from .rotor import Rotor, RotorMatrices
 

@@ -7,8 +7,8 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics.compiled.programs import program
 from ..numerics.lapack import cholesky, congruent, eigh, solve_any
-from ..numerics.programs import program
 from ..numerics.types import as_count
 from .rotor import N_HOUSING, N_STATION, Rotor
 

@@ -9,8 +9,8 @@ from jax import lax
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import non_negative, number
+from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
-from ..numerics.programs import program
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from .modes import major_axis, speed_list, to_complex

@@ -10,7 +10,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float
 
 from ..design.checks import instance
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from .damping import AbstractDamping
 from .held import of_each

@@ -13,11 +13,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, number, of_class
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, recall, stop, unless_failed
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
-from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from .condensed import Condensed, Supported, condensed

@@ -15,7 +15,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, is_traced, positive
 from ..design.checks import count as whole
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
 from .rotor import Rotor

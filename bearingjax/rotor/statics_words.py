@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design.checks import is_traced
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from .parts import LinearSupport
 from .rotor import N_STATION

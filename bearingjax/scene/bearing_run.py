@@ -4,7 +4,7 @@ import dataclasses
 from functools import partial
 
 from ..design.checks import of_class
-from ..numerics.programs import called
+from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..optimise.life import OfLife, RatingLife
 from ..optimise.optimise import Optimised, optimise

@@ -10,7 +10,7 @@ from ..contact.halfspace import ConjugateGradients, FreeEnds
 from ..contact.line import Palmgren
 from ..contact.slices import Compared, slices
 from ..element import RINGS
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..statics.refine import refine
 from ..statics.solution import Solution
 from ..statics.warning import warnings

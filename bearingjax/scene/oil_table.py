@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..lubrication import Lubricant
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import as_array
 from ..statics.contact_films import Films, films
 from ..statics.friction import Friction, friction_torque

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..design import Limits, Mounting, mounting_at, sized
 from ..element import BearingElement, Speed
-from ..numerics.programs import called
+from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload

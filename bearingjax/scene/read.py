@@ -14,7 +14,7 @@ from ..element import (
     ConstantAngle,
     Speed,
 )
-from ..numerics.programs import called
+from ..numerics.compiled.programs import called
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE

@@ -6,7 +6,7 @@ import warnings
 import jax
 import numpy as np
 
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from ..numerics.types import as_array
 from ..rotor import (

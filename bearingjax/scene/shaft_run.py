@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import radial_clearance, rows_of
-from ..numerics.programs import called
+from ..numerics.compiled.programs import called
 from ..numerics.result import Result
 from ..shafts import (
     DutyResult,

@@ -14,7 +14,7 @@ from jaxtyping import Array, Float, Int
 from ..design import rows_of
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..statics.cases import check_hours

@@ -13,8 +13,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import is_traced, of_class
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop, unless_failed
-from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..rotor import Rotor

@@ -20,7 +20,7 @@ from jaxtyping import Array, Float, Int
 from ..design import FitConditions
 from ..design.checks import check, in_range, is_traced, number, positive
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit

@@ -13,9 +13,9 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, stop
 from ..numerics.lapack import eigvals, solve_any
-from ..numerics.programs import program
 
 HOTTEST = 300.0
 """Rise above the ambience from which there is no thermal equilibrium [K]."""

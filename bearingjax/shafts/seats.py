@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ..design.checks import is_traced
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar
 from ..rotor import BearingSupport, LinearSupport, preload_offset
 from ..rotor.rotor import N_STATION

@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
-from ..numerics.programs import program
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from ..statics.solution import BallSolution, RollerSolution

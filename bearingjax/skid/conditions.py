@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..contact.point_law import ball_ellipses, balls_of
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from .ball_motion import BallState, sliding, tractions
 from .loaded import loaded_ball
 from .model import SkidModel

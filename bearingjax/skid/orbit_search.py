@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int
 from ..design import pitch_radius
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults, SolvedRow
-from ..numerics import batched_loop
+from ..numerics.compiled import batched_loop
 from ..numerics.implicit import attach_by, stop, unless_failed
 from ..numerics.lapack import solve_any
 from ..numerics.linear import solve

@@ -15,7 +15,7 @@ import numpy as np
 from ..design import pitch_radius
 from ..design.checks import is_traced
 from ..element.inertia import Speed
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..statics.balance import balance_of
 from ..statics.load import raise_if_failed, solve

@@ -18,9 +18,9 @@ from jaxtyping import Array, Float
 from ..design import pitch_radius
 from ..design.checks import count, is_traced, one_of, positive
 from ..element.inertia import Speed
+from ..numerics.compiled.programs import program
 from ..numerics.gravity import GRAVITY
 from ..numerics.implicit import stop
-from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..statics.balance import balance_of

@@ -19,9 +19,9 @@ from ..design.checks import check, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
 from ..numerics.power import positive_power
-from ..numerics.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out

@@ -20,8 +20,8 @@ from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop, unless_failed
-from ..numerics.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .balance import balance_of

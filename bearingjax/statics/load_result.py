@@ -13,9 +13,9 @@ from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
 from ..numerics.minimise import Minimum
-from ..numerics.programs import program
 from ..numerics.result import Result
 from ..numerics.types import Ring
 from .balance import Balance

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
-from ..numerics import batched_loop
+from ..numerics.compiled import batched_loop
 from ..numerics.implicit import attach_by, stop
 from ..numerics.linear import null_space, solve
 from ..numerics.minimise import (

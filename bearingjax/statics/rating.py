@@ -31,7 +31,7 @@ from ..design import (
 )
 from ..design.checks import is_traced, of_class, positive
 from ..design.published import close, is_as_published
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.types import Flag, Scalar, as_real
 from ..numerics.units import unit
 from . import row_rating as by_row

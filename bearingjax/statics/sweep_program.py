@@ -15,7 +15,7 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
 from ..design import rows_of
-from ..numerics.programs import program
+from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from .cases import solve_case
 from .life import LifeConditions, life_of, life_outputs

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from bearingjax.numerics import batched_loop
+from bearingjax.numerics.compiled import batched_loop
 
 ROWS, COLUMNS = 7, 100  # 700 problems: more than there are slots
 

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from bearingjax.numerics.elementwise import elementwise
+from bearingjax.numerics.compiled.elementwise import elementwise
 
 
 def function(x, y, args):

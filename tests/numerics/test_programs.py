@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.numerics import programs
-from bearingjax.numerics.structure import UnknownStructure, structure
+from bearingjax.numerics.compiled import programs
+from bearingjax.numerics.compiled.structure import UnknownStructure, structure
 
 # Every choice of a scene that is not a number, beside the choice that it replaces.
 OF_ROLLERS = (

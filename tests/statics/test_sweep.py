@@ -17,7 +17,7 @@ import pytest
 from sweep_in_process import loads, small_element
 
 import bearingjax as bj
-from bearingjax.numerics import batched_loop
+from bearingjax.numerics.compiled import batched_loop
 from bearingjax.statics import (
     SolveOptions,
     load_search,

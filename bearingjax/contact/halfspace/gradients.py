@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float
 
-from ...numerics.batched_loop import Loop
+from ...numerics.compiled.batched_loop import Loop
 from ...numerics.linear import dot, solve_symmetric
 from ...numerics.result import Result
 from .problem import Pressed, Problem

@@ -13,10 +13,10 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from ...design.checks import check
-from ...numerics import batched_loop
+from ...numerics.compiled import batched_loop
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop
 from ...numerics.linear import solve_symmetric
-from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Count, Flag, Scalar, as_real
 from .gradients import (

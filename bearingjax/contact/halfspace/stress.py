@@ -16,8 +16,8 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ...design.checks import check
+from ...numerics.compiled.programs import program
 from ...numerics.lapack import eigh
-from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
 from .grid import Grid
 from .pressure import ContactSolution

@@ -23,9 +23,9 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ...design.checks import real_numbers
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import eig, pseudoinverse, solve_any
-from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .method import AbstractMethod

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
-from ...numerics.programs import program
+from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from .continuation import (

@@ -9,9 +9,9 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import eigvals, solve_any
-from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Flag, Scalar, as_real
 from .method import AbstractMethod, Motion

@@ -5,9 +5,9 @@ import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop, unless_failed
 from ...numerics.lapack import solve_any
-from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from .branch import Branch
 from .continuation import place

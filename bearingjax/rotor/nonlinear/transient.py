@@ -17,11 +17,11 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ...design.checks import check, count, is_traced, one_of, positive
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop
 from ...numerics.in_time import Options
 from ...numerics.in_time import integrated as in_time
 from ...numerics.lapack import solve_any
-from ...numerics.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from .run_up import FrequencyTable, as_frequency_table

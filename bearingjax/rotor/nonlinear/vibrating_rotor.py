@@ -11,9 +11,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ...numerics.compiled.programs import program
 from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
-from ...numerics.programs import program
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..held import of_each

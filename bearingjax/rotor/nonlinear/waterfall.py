@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ...design.checks import check, count, real_numbers
-from ...numerics.programs import program
+from ...numerics.compiled.programs import program
 from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.types import Scalar, as_real
 from .run_up import as_frequency_table

@@ -29,7 +29,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.core import Tracer
 
-from . import lapack
+from .. import lapack
 from .structure import UnknownStructure, structure
 
 OPTIONS = tuple(
@@ -330,7 +330,7 @@ def _versions() -> str:
 @functools.cache
 def _sources() -> str:
     """Digest of the sources of this package."""
-    top = Path(__file__).parents[1]
+    top = Path(__file__).parents[2]
     digest = hashlib.sha256()
     for path in sorted(top.rglob("*.py")):
         text = path.read_bytes()

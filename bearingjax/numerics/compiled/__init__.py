@@ -1,0 +1,1 @@
+"""Stored programs and batched loops: what is compiled, and how often."""
