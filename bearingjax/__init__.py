@@ -133,7 +133,7 @@ if _TYPE_CHECKING:
     from . import scene as scene
     from . import shafts as shafts
     from . import skid as skid
-    from .scene import SceneError as SceneError
+    from .files import SceneError as SceneError
     from .scene import load_bearing as load_bearing
     from .scene import read_scene as read_scene
     from .scene import run as run

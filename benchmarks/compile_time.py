@@ -255,7 +255,7 @@ def bearings():
     """Names of the shipped scenes of bearings."""
     import bearingjax as bj
 
-    scenes = bj.scene.shipped_scenes()
+    scenes = bj.files.shipped_scenes()
     texts = {name: path.read_text() for name, path in scenes.items()}
     return [name for name, text in texts.items() if "\n[bearing]\n" in text]
 

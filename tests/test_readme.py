@@ -72,7 +72,7 @@ def test_commands_and_scenes_of_the_guide_exist():
     assert "solve" in commands
     for command in commands:
         assert importlib.import_module(f"bearingjax.cli.{command}").run, command
-    shipped = bj.scene.shipped_scenes()
+    shipped = bj.files.shipped_scenes()
     for scene in re.findall(r"`bearingjax (?!new)[a-z]+ ([a-z_]+)\b(?!\.)", GUIDE):
         assert scene in shipped, scene
 

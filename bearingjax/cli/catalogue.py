@@ -37,15 +37,14 @@ def add(commands):
 def run(options) -> int:
     """List bearings of the catalogue."""
     from ..design import catalogue
+    from ..files import SceneError, write_numbers
     from ..scene import (
-        SceneError,
         catalogue_as_dict,
         catalogue_details,
         catalogue_table,
         catalogue_title,
         listed_bearing,
         select,
-        write_numbers,
     )
 
     named = tuple(listed_bearing(name) for name in options.designation)

@@ -25,8 +25,8 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Solve and compare scenes."""
+    from ..files import SceneError
     from ..scene import (
-        SceneError,
         compare_as_dict,
         compare_columns,
         compare_report,

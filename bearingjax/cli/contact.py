@@ -35,8 +35,8 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Solve a single contact, or one of a bearing."""
+    from ..files import SceneError
     from ..scene import (
-        SceneError,
         SolvedScene,
         as_dict,
         contact_as_dict,

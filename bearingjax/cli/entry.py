@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
             stream.reconfigure(errors="backslashreplace")
-    from ..scene import SceneError
+    from ..files import SceneError
 
     # Tracing makes many small objects; searching them for cycles takes a seventh of the
     # time of a command that ends before memory matters.

@@ -17,7 +17,8 @@ def add(commands):
 
 def run(options) -> int:
     """List the shipped scenes, or print one."""
-    from ..scene import SceneError, not_among, scene_list, shipped_scenes
+    from ..files import SceneError, not_among, shipped_scenes
+    from ..scene import scene_list
 
     if options.name is None:
         print(scene_list(), flush=True)

@@ -137,7 +137,7 @@ def execute(command: Any, options: Any) -> int:
 
 def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
-    from ..scene import write_numbers
+    from ..files import write_numbers
     from ..statics.sweep_table import write_columns
 
     def tabulate(path):
@@ -173,7 +173,7 @@ def write_outputs(outputs) -> bool:
     Returns:
         Whether one of them failed.
     """
-    from ..scene import write_outputs
+    from ..files import write_outputs
 
     written = write_outputs(outputs)
     for path in written.removed:
@@ -189,7 +189,8 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
     Raises:
         Incomplete: If a picture failed; a line is shown in its place.
     """
-    from ..scene import Incomplete, report_page
+    from ..files import Incomplete
+    from ..scene import report_page
 
     missing: list[str] = []
 
@@ -229,7 +230,7 @@ def save(figure, path, **format) -> None:
 
 def _in_words(error: Exception) -> str:
     """Describe why an output, or a part of one, is missing."""
-    from ..scene import Incomplete
+    from ..files import Incomplete
 
     if isinstance(error, Incomplete):
         return str(error)
@@ -243,7 +244,7 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
         options: Command line options.
         inputs: Files that are read; default: those of the scene.
     """
-    from ..scene import SceneError, check_outputs, scene_files
+    from ..files import SceneError, check_outputs, scene_files
 
     outputs = {name: getattr(options, name, None) for name in OUTPUTS}
     for name, (endings, words) in _ENDINGS.items():
@@ -264,7 +265,7 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
 
 def check_table(options, rows: int = 0) -> None:
     """Fail before solving if a table with this number of rows cannot be written."""
-    from ..scene import SceneError
+    from ..files import SceneError
     from ..statics.sweep_table import check_writable
 
     table = getattr(options, "table", None)
@@ -278,7 +279,7 @@ def check_table(options, rows: int = 0) -> None:
 
 def check_matplotlib() -> None:
     """Fail if pictures cannot be drawn."""
-    from ..scene import SceneError
+    from ..files import SceneError
 
     try:
         import matplotlib
@@ -293,9 +294,9 @@ def _origin(options):
     read."""
     import datetime
 
+    from ..files.scene_file import find_scene
+    from ..files.text_file import read_text
     from ..scene import Origin
-    from ..scene.scene_file import find_scene
-    from ..scene.text_file import read_text
 
     now = datetime.datetime.now().astimezone()
     texts = []

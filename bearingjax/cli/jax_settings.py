@@ -49,7 +49,7 @@ def configure(options) -> None:
 
 def devices(options) -> int:
     """Return the number of CPU devices of a sweep: as requested, or all cores."""
-    from ..scene import SceneError
+    from ..files import SceneError
 
     linux = sys.platform == "linux"
     cores = len(os.sched_getaffinity(0)) if linux else os.cpu_count() or 1

@@ -35,7 +35,8 @@ def run(options, tools: Tools) -> Outcome:
 
 
 def _life_of_load(options) -> Outcome:
-    from ..scene import SceneError, read_scene, solved_life_as_dict
+    from ..files import SceneError
+    from ..scene import read_scene, solved_life_as_dict
     from ..statics import LifeConditions
 
     if options.table is not None:

@@ -33,13 +33,8 @@ def add(commands):
 
 def run(options) -> int:
     """Print a scene of a bearing, of the catalogue or estimated, or of shafts."""
-    from ..scene import (
-        SceneError,
-        estimated_entry,
-        listed_bearing,
-        new_scene,
-        shipped_scenes,
-    )
+    from ..files import SceneError, shipped_scenes
+    from ..scene import estimated_entry, listed_bearing, new_scene
     from ..scene.estimated_entry import SIZES
 
     given = {name: getattr(options, name) for name in SIZES}

@@ -38,8 +38,8 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Simulate the vibration of a bearing with form errors."""
+    from ..files import SceneError
     from ..scene import (
-        SceneError,
         noise_as_dict,
         noise_columns,
         noise_report,

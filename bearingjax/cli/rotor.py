@@ -30,8 +30,8 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Analyse a shaft on its bearings."""
+    from ..files import SceneError
     from ..scene import (
-        SceneError,
         read_rotor,
         rotor_as_dict,
         rotor_columns,

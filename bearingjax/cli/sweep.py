@@ -43,10 +43,10 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Solve the cases of a scene."""
+    from ..files import SceneError
     from ..numerics import Result
     from ..scene import (
         Interrupt,
-        SceneError,
         cases_with_set_preload,
         design_columns,
         read_cases,

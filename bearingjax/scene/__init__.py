@@ -27,11 +27,6 @@ from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
 from .estimated_entry import estimated_entry as estimated_entry
-from .files import Incomplete as Incomplete
-from .files import check_outputs as check_outputs
-from .files import scene_files as scene_files
-from .files import write_numbers as write_numbers
-from .files import write_outputs as write_outputs
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
@@ -63,7 +58,6 @@ from .output import fits_as_dict as fits_as_dict
 from .output import solved_as_dict as solved_as_dict
 from .output import solved_life_as_dict as solved_life_as_dict
 from .output import write_json as write_json
-from .quantity import SceneError as SceneError
 from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
@@ -81,7 +75,6 @@ from .rotor_run import RotorRun as RotorRun
 from .rotor_run import run_rotor as run_rotor
 from .rotor_scene import RotorScene as RotorScene
 from .rotor_table import read_rotor as read_rotor
-from .scene_file import shipped_scenes as shipped_scenes
 from .shaft_optimise import ShaftOptimisation as ShaftOptimisation
 from .shaft_optimise import read_optimisation as read_optimisation
 from .shaft_output import shaft_columns as shaft_columns
@@ -110,4 +103,3 @@ from .sweep_run import design_columns as design_columns
 from .sweep_run import run_cases as run_cases
 from .sweep_run import sweep_as_dict as sweep_as_dict
 from .sweep_run import sweep_report as sweep_report
-from .table import not_among as not_among

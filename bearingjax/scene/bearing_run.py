@@ -4,6 +4,7 @@ import dataclasses
 from functools import partial
 
 from ..design.checks import of_class
+from ..files.quantity import SceneError
 from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..optimise.life import OfLife, RatingLife
@@ -14,7 +15,6 @@ from .cases_table import turns_of
 from .life_ratings import life_conditions
 from .optimise_table import Optimisation
 from .preload_of_set import preload_of_set, preload_warnings
-from .quantity import SceneError
 from .read import Scene
 from .shaft_optimise import ShaftOptimisation
 from .solved import SolvedScene

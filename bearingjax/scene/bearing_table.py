@@ -11,11 +11,11 @@ from ..design import (
     shares_rings,
 )
 from ..design.catalogue_entry import catalogue_entry
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, text_of
 from ..statics.preload import check_preload
 from .catalogue_keys import FromCatalogue, taken_from
 from .design_keys import BALLS, ROLLERS, read_row, two_row_name, with_both_rows
-from .schema import Keys, read_keys, scene_key
-from .table import Table, text_of
 
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
 

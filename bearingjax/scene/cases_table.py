@@ -19,18 +19,18 @@ import numpy as np
 from ..design import rows_of
 from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
+from ..files.column_list import LARGEST, read_list
+from ..files.quantity import KINDS, SceneError, kind_of, to_si
+from ..files.scene_file import assign, find_scene, parse_bearing
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, axes_of, text_of
 from ..numerics.units import unit_of
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import Solution
 from ..statics.spectrum import revolutions_per_hour
 from ..statics.sweep import SUMMARIES, stack_designs
-from .cases_list import LARGEST, read_list
-from .quantity import KINDS, SceneError, kind_of, to_si
 from .read import Scene, scene_of
-from .scene_file import assign, find_scene, parse_bearing
-from .schema import Keys, read_keys, scene_key
-from .table import Table, axes_of, text_of
 
 OPERATING = {
     **{

@@ -13,9 +13,9 @@ from ..design.catalogue_entry import (
     in_catalogue_unit,
 )
 from ..design.published import with_published
+from ..files.quantity import SceneError, to_si
+from ..files.table import Table
 from .design_keys import BALLS, ROLLERS, read_design
-from .quantity import SceneError, to_si
-from .table import Table
 
 
 def listed_bearing(designation: str) -> CatalogueEntry:

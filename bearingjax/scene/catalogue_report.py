@@ -10,11 +10,11 @@ import numpy as np
 from ..design import rows_of
 from ..design.catalogue_entry import CatalogueEntry
 from ..design.keywords import BALLS, ROLLERS
+from ..files.quantity import SceneError, to_si
+from ..files.scene_file import shipped_scenes
+from ..files.table import not_among
 from ..statics import thermal_speed
 from .catalogue_keys import as_keys
-from .quantity import SceneError, to_si
-from .scene_file import shipped_scenes
-from .table import not_among
 
 _SHARE = 0.1
 """Load of a new scene over the dynamic capacity."""

@@ -26,11 +26,11 @@ from ..element import (
     OuterControl,
 )
 from ..element.choices import usual_kinematics
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table
 from ..numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..statics.load_search import SLOTS
-from .schema import Keys, read_keys, scene_key
-from .table import Table
 
 LINE_LAWS = {
     "palmgren": Palmgren,

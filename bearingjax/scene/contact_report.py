@@ -6,10 +6,10 @@ import numpy as np
 
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
+from ..files.output_files import plain_run
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from .contact_table import ContactScene
-from .files import plain_run
 from .report_model import NEWTONS, Column, Grid, Report
 
 WIDE = 0.2

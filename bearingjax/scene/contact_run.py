@@ -10,12 +10,12 @@ from ..contact.halfspace import ConjugateGradients, FreeEnds
 from ..contact.line import Palmgren
 from ..contact.slices import Compared, slices
 from ..element import RINGS
+from ..files.quantity import SceneError
 from ..numerics.compiled.programs import program
 from ..statics.refine import refine
 from ..statics.solution import Solution
 from ..statics.warning import warnings
 from .contact_table import ContactScene
-from .quantity import SceneError
 from .read import Scene
 
 

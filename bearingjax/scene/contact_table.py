@@ -11,11 +11,11 @@ import numpy as np
 from ..contact.halfspace import FreeEnds, RollerContact
 from ..contact.line import AbstractLineLaw
 from ..design import AbstractProfile, Material
+from ..files.scene_file import find_scene, parse_scene
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, written_numbers
 from .choices_table import LineContactKeys
 from .design_keys import read_material, read_profile
-from .scene_file import find_scene, parse_scene
-from .schema import Keys, read_keys, scene_key
-from .table import Table, written_numbers
 
 LAWS = ("palmgren", "iso16281")
 """Line laws of independent slices."""

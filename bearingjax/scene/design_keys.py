@@ -17,7 +17,7 @@ from ..design import (
 )
 from ..design.keywords import BALLS, PROFILES, ROLLERS, both_rows
 from ..element import RINGS
-from .table import Table, written, written_numbers
+from ..files.table import Table, written, written_numbers
 
 SPHERES = "spherical_roller", "spherical_thrust_roller"
 """Rollers in an outer raceway whose radius may stand for the pitch diameter."""

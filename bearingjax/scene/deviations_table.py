@@ -12,9 +12,9 @@ from ..design.form_error import (
     RacewayErrors,
     Spall,
 )
-from .cases_list import read_list
-from .schema import Keys, read_keys, scene_key
-from .table import Table, written
+from ..files.column_list import read_list
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, written
 
 RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
 ELEMENTS = "elements"

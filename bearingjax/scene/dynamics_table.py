@@ -8,6 +8,7 @@ import numpy as np
 
 from ..element import Speed
 from ..element.frame import LOADS
+from ..files.schema import Keys, scene_key
 from ..skid import (
     Cage,
     Drag,
@@ -18,7 +19,6 @@ from ..skid import (
     ramp,
 )
 from .operating_table import LoadKeys
-from .schema import Keys, scene_key
 
 AXES = ("vertical", "horizontal")
 STARTS = ("rolling", "rest")

@@ -15,9 +15,9 @@ from ..design.catalogue_entry import (
     class_clearance,
     from_catalogue_unit,
 )
+from ..files.quantity import SceneError, to_si
+from ..files.table import not_among
 from ..optimise.estimate import estimate_geometry
-from .quantity import SceneError, to_si
-from .table import not_among
 
 SIZES = {
     "bore": "length",

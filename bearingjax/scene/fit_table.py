@@ -37,12 +37,12 @@ from ..design import (
 from ..design.catalogue_entry import CLEARANCE, class_limits
 from ..design.fits import PARTS
 from ..element import Speed
+from ..files.quantity import SceneError, scene_number
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.schema_text import class_schema, number_schema
+from ..files.table import Table
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 from .fits import Fits
-from .quantity import SceneError, scene_number
-from .schema import Keys, read_keys, scene_key
-from .schema_text import class_schema, number_schema
-from .table import Table
 
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from ..design.fits import PARTS
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table
 from ..shafts import BearingOil, HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series, skf_series_of
 from ..statics.reference_speed import heat_area
 from .oil_table import Oil
 from .read import Scene
-from .schema import Keys, read_keys, scene_key
-from .table import Table
 
 _FLOW = 16e3 / 50.0
 """Heat flow that ISO 15312 takes from the seats of a radial bearing, over the area of

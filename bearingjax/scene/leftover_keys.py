@@ -10,8 +10,8 @@ from ..design.catalogue_entry import (
     catalogue,
 )
 from ..design.fit_limits import CLEARANCE_CLASSES
+from ..files.quantity import SceneError, to_si
 from .catalogue_keys import FromCatalogue, same_key
-from .quantity import SceneError, to_si
 
 _FAR = 0.05
 """Relative change of the pitch diameter above that measured between makers of one

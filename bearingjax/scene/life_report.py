@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import RINGS
+from ..files.output_files import plain
 from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
-from .files import plain
 from .life_ratings import not_published, rating_origins
 from .read import Scene
 from .report_model import Column, Grid, Part

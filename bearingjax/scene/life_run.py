@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..design.published import with_published
+from ..files.output_files import plain_run
+from ..files.quantity import SceneError
+from ..files.scene_file import find_scene, parse_bearing
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.life import LIFE_OUTPUTS, turns_against_load
@@ -18,7 +21,6 @@ from ..statics.sweep import Sweep
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
-from .files import plain_run
 from .life_ratings import life_conditions, not_published, rating_origins
 from .life_report import (
     life_number,
@@ -27,10 +29,8 @@ from .life_report import (
     ratings_in_words,
     turning,
 )
-from .quantity import SceneError
 from .report import design_sections
 from .report_model import NEWTONS, Column, Grid, Part, Report
-from .scene_file import find_scene, parse_bearing
 from .sweep_run import all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")

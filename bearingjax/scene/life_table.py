@@ -5,13 +5,13 @@ from typing import Any
 
 from ..design import AbstractBearing, BearingSet, rows_of
 from ..element import Speed
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table
 from ..statics.life import FRAMES, LifeConditions
 from ..statics.life_factor import CLEANLINESS
 from ..statics.rating import rated_axially
 from ..statics.reference_life import LEAST_LAMINAE
 from .oil_table import Oil, read_oil
-from .schema import Keys, read_keys, scene_key
-from .table import Table
 
 _RATED = "published for the `designation`, else from the geometry"
 

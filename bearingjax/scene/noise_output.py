@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from ..files.output_files import plain_run
 from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
-from .files import plain_run
 from .noise_run import NoiseRun, RandomBearings
 from .noise_scene import AXES
 from .tolerance_table import Tighter

@@ -15,6 +15,9 @@ from ..design import (
 )
 from ..element import FREEDOMS, RINGS
 from ..element.bearing_element import BearingElement
+from ..files.scene_file import find_scene, parse_bearing
+from ..files.schema import Keys, direction_json, read_keys, scene_key
+from ..files.table import Table
 from ..noise import (
     REFERENCE_ACCELERATION,
     Hann,
@@ -28,9 +31,6 @@ from ..noise.level import NORM
 from .deviations_table import read_deviations
 from .noise_scene import AXES, NoiseScene
 from .read import Scene, scene_of, with_speed_warnings
-from .scene_file import find_scene, parse_bearing
-from .schema import Keys, direction_json, read_keys, scene_key
-from .table import Table
 from .tolerance_table import ToleranceKeys, read_tolerance
 
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}

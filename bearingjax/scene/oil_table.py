@@ -8,6 +8,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..files.output_files import plain
+from ..files.schema import read_keys
+from ..files.table import Table
 from ..lubrication import Lubricant
 from ..numerics.compiled.programs import program
 from ..numerics.types import as_array
@@ -21,10 +24,7 @@ from ..statics.friction_skf import (
 )
 from ..statics.solution import Solution
 from .catalogue_keys import FromCatalogue
-from .files import plain
 from .lubricant_table import LubricantKeys, described
-from .schema import read_keys
-from .table import Table
 
 
 @dataclasses.dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from typing import Any
 
 from ..element import FREEDOMS, LOADS, RINGS, Speed
+from ..files.schema import Keys, scene_key
 from ..statics.options import DEFAULT_TOLERANCE
 from ..statics.support import restrained_freedoms
-from .schema import Keys, scene_key
 
 MOST_POINTS = 10_000
 """Most positions along a roller: line load and pressure on two raceways, 0.8 MB per

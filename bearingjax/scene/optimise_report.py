@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from ..files.output_files import plain_run
 from ..numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
-from .files import plain_run
 from .optimise_design import scene_of_design
 from .optimise_table import Optimisation
 from .output import fits_as_dict

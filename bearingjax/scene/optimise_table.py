@@ -8,6 +8,10 @@ from typing import Any, NamedTuple
 from ..design import BearingSet, rows_of
 from ..design.fits import PARTS
 from ..element import FREEDOMS, BearingElement
+from ..files.quantity import SceneError, kind_of, scene_number
+from ..files.scene_file import find_scene, parse_bearing
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, not_among
 from ..numerics.units import unit_of
 from ..optimise.constraint import Constraint
 from ..optimise.life import RatingLife
@@ -26,11 +30,7 @@ from ..statics.cases import Cases
 from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_ratings import life_conditions
-from .quantity import SceneError, kind_of, scene_number
 from .read import Scene, scene_of, with_speed_warnings
-from .scene_file import find_scene, parse_bearing
-from .schema import Keys, read_keys, scene_key
-from .table import Table, not_among
 
 OBJECTIVES = (
     "peak_pressure",

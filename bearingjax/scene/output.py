@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+from ..files.output_files import plain, plain_run, write_numbers
 from ..numerics.result import Result
 from ..statics.solution import BallSolution, message
-from .files import plain, plain_run, write_numbers
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
 from .oil_table import oil_as_dict

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..design.catalogue_entry import catalogue_entry
+from ..files.quantity import SceneError
+from ..files.table import Table, text_of
 from ..rotor import Shaft
 from .bearing_table import EXTRA_KEYS
 from .catalogue_keys import FromCatalogue
 from .design_keys import BALLS
 from .fits import Fits
-from .quantity import SceneError
 from .read import Scene, scene_of
-from .table import Table, text_of
 
 _CONTROL = ("raceway_control", "friction_coefficient")
 """Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""

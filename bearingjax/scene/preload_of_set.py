@@ -9,12 +9,12 @@ import numpy as np
 
 from ..design import Limits, Mounting, mounting_at, sized
 from ..element import BearingElement, Speed
+from ..files.output_files import plain
 from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from ..statics.sweep import stack_designs
-from .files import plain
 from .fits import Fits
 from .report_model import Column, Grid, Part
 

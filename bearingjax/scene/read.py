@@ -14,6 +14,16 @@ from ..element import (
     ConstantAngle,
     Speed,
 )
+from ..files.quantity import SceneError
+from ..files.scene_file import (
+    find_scene,
+    is_scene,
+    need_float64,
+    parse_bearing,
+    shipped_scenes,
+)
+from ..files.schema import read_keys
+from ..files.table import Table
 from ..numerics.compiled.programs import called
 from ..statics.installed import Installed
 from ..statics.life import LifeConditions
@@ -28,16 +38,6 @@ from .life_table import lubrication_warnings, rating_warnings, read_life
 from .oil_table import Oil, read_oil
 from .operating_table import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
 from .preload_of_set import PreloadOfSet
-from .quantity import SceneError
-from .scene_file import (
-    find_scene,
-    is_scene,
-    need_float64,
-    parse_bearing,
-    shipped_scenes,
-)
-from .schema import read_keys
-from .table import Table
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,12 +7,12 @@ from pathlib import Path
 import jax
 import numpy as np
 
+from ..files.quantity import SceneError
 from ..numerics.result import Result
 from ..statics.sweep import Sweep
 from ..statics.sweep_program import WARNED
 from ..statics.sweep_table import NOTHING, asked, left_out, read, restored
 from .cases_table import CaseTable
-from .quantity import SceneError
 from .sweep_run import design_columns, run_cases
 
 CHECKED = 64

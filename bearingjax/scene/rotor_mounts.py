@@ -6,6 +6,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..design import AbstractBallBearing
+from ..files.quantity import SceneError
+from ..files.scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
+from ..files.schema import Keys, scene_key
+from ..files.schema_text import number_schema, object_schema
+from ..files.table import Table, not_among
 from ..rotor import Housing, Shaft
 from ..rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ..statics import restrained_freedoms
@@ -13,13 +18,8 @@ from ..statics.installed import Installed
 from .catalogue_keys import FromCatalogue
 from .fits import Fits, fit_warnings, fits_at_speed, installed
 from .placed_bearing import check_seat, echoed, placed_bearing
-from .quantity import SceneError
 from .read import Scene, scene_of
 from .rotor_scene import Mount
-from .scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
-from .schema import Keys, scene_key
-from .schema_text import number_schema, object_schema
-from .table import Table, not_among
 
 LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
 

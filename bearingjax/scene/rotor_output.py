@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from ..files.output_files import plain_run
+from ..files.quantity import SceneError
 from ..numerics.result import Result
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
-from .files import plain_run
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
-from .quantity import SceneError
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_run import RotorRun
 from .rotor_scene import RotorScene

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..element import Speed
+from ..files.quantity import SceneError
 from ..numerics.result import Result, SolveError
 from ..numerics.types import as_array
 from ..rotor import (
@@ -32,7 +33,6 @@ from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
 from .fits import fits_at_speed
 from .life_ratings import life_conditions
-from .quantity import SceneError
 from .report_model import rpm
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import Mount, RotorScene

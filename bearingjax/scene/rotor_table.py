@@ -10,6 +10,10 @@ import numpy as np
 
 from ..design import Material
 from ..element.frame import LOADS
+from ..files.quantity import scene_number
+from ..files.scene_file import find_scene, is_rotor, parse_scene
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.table import Table, written_numbers
 from ..numerics.gravity import GRAVITY
 from ..rotor import (
     AbstractDamping,
@@ -24,13 +28,9 @@ from ..rotor import (
     Unbalance,
 )
 from .design_keys import read_material
-from .quantity import scene_number
 from .rotor_mounts import MountKeys, read_mounts
 from .rotor_scene import RotorScene
 from .rotor_tasks import CampbellKeys, ResponseKeys, TransientKeys
-from .scene_file import find_scene, is_rotor, parse_scene
-from .schema import Keys, read_keys, scene_key
-from .table import Table, written_numbers
 
 AXES = {
     "horizontal": (0.0, -GRAVITY, 0.0),

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import FREEDOMS
-from .quantity import scene_number
-from .schema import Keys, scene_key
+from ..files.quantity import scene_number
+from ..files.schema import Keys, scene_key
 
 METHODS = ("linear", "harmonic_balance", "shooting")
 MOST_SPEEDS, MOST_POINTS, MOST_SAMPLES, MOST_TIMES = 2000, 5000, 1024, 20_000

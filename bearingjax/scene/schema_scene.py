@@ -5,6 +5,20 @@ from typing import Any
 from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
 from ..element import RINGS
 from ..element.frame import LOADS
+from ..files.quantity import SceneError
+from ..files.schema import Keys
+from ..files.schema_text import (
+    DIALECT,
+    attribute_texts,
+    class_schema,
+    classes_schema,
+    first_line,
+    key_tables,
+    number_schema,
+    object_schema,
+    table_schema,
+)
+from ..files.table import not_among
 from ..shafts import ShaftLoad, ThermalPaths
 from .bearing_table import SetKeys
 from .cases_table import CasesKeys
@@ -40,21 +54,8 @@ from .lubricant_table import LubricantKeys
 from .noise_table import VibrationKeys
 from .operating_table import OperatingKeys, OutputKeys, SolveKeys
 from .optimise_table import OptimiseKeys
-from .quantity import SceneError
 from .rotor_mounts import SpringKeys
 from .rotor_table import RotorKeys
-from .schema import Keys
-from .schema_text import (
-    DIALECT,
-    attribute_texts,
-    class_schema,
-    classes_schema,
-    first_line,
-    key_tables,
-    number_schema,
-    object_schema,
-    table_schema,
-)
 from .shaft_optimise import ShaftOptimiseKeys
 from .shaft_table import (
     PARTS,
@@ -64,7 +65,6 @@ from .shaft_table import (
     ShaftKeys,
     SystemKeys,
 )
-from .table import not_among
 
 
 def scene_schema() -> dict[str, Any]:

@@ -7,6 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ..files.quantity import kind_of
+from ..files.scene_file import find_scene, is_shafts, parse_scene
+from ..files.schema import read_keys, scene_key
+from ..files.table import Table, not_among
 from ..optimise.variable import design_numbers
 from ..shafts import (
     Gear,
@@ -31,11 +35,7 @@ from .optimise_table import (
     read_bearing_optimisation,
     read_variables,
 )
-from .quantity import kind_of
-from .scene_file import find_scene, is_shafts, parse_scene
-from .schema import read_keys, scene_key
 from .shaft_table import ShaftScene, read_shafts
-from .table import Table, not_among
 
 _OF_BEARINGS = ("rating_life", "static_safety", "peak_pressure", "tilt")
 _OF_SYSTEM = {"power_loss": PowerLoss, "mass": ShaftMass, "system_life": SystemLife}

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import LOAD_UNITS, LOADS
+from ..files.output_files import plain_run
 from ..numerics.result import Result
 from ..shafts import DutyResult
 from ..shafts.doubts import axial_load
 from ..shafts.duty import LIVES
-from .files import plain_run
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
 from .oil_table import oil_as_dict

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design import radial_clearance, rows_of
+from ..files.quantity import SceneError
 from ..numerics.compiled.programs import called
 from ..numerics.result import Result
 from ..shafts import (
@@ -35,7 +36,6 @@ from ..statics.warning import counted
 from .bearing_run import with_set_preload
 from .fits import fits_at_speed
 from .oil_table import OilFacts, oil_facts
-from .quantity import SceneError
 from .read import Scene, with_speed_warnings
 from .shaft_table import ShaftScene
 from .solved import solved_warnings

@@ -11,6 +11,11 @@ import numpy as np
 
 from ..design import Material
 from ..element.frame import LOADS
+from ..files.output_files import read_matrix
+from ..files.quantity import SceneError, scene_number, to_si
+from ..files.scene_file import assign, find_scene, is_shafts, parse_scene
+from ..files.schema import Keys, direction_json, read_keys, scene_key
+from ..files.table import Table
 from ..numerics.gravity import GRAVITY
 from ..shafts import (
     Coupling,
@@ -29,17 +34,12 @@ from ..shafts.parts import APEXES, HANDS
 from ..statics.cases import check_hours
 from ..statics.life import LifeConditions
 from .cases_table import CasesKeys, Varied
-from .files import read_matrix
 from .heat_table import read_heat
 from .life_ratings import life_conditions
 from .placed_bearing import check_seat, placed_bearing
-from .quantity import SceneError, scene_number, to_si
 from .read import Scene
 from .rotor_mounts import SpringKeys
 from .rotor_table import MATERIAL
-from .scene_file import assign, find_scene, is_shafts, parse_scene
-from .schema import Keys, direction_json, read_keys, scene_key
-from .table import Table
 
 AXES = {
     sign + name: tuple(factor * np.eye(3)[k])

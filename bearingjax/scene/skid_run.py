@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import skid
+from ..files.quantity import SceneError
 from ..numerics.result import Result
 from ..skid import (
     SkidState,
@@ -15,7 +16,6 @@ from ..skid import (
     skid_warnings,
 )
 from ..statics.warning import warnings
-from .quantity import SceneError
 from .skid_table import SkidScene
 
 

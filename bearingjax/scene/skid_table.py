@@ -15,13 +15,13 @@ from ..design import (
     rows_of,
 )
 from ..element import Speed
+from ..files.scene_file import find_scene, parse_bearing
+from ..files.schema import read_keys
+from ..files.table import Table
 from ..skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from .dynamics_table import CageKeys, DynamicsKeys
 from .lubricant_table import LubricantKeys
 from .read import Scene, scene_of, with_speed_warnings
-from .scene_file import find_scene, parse_bearing
-from .schema import read_keys
-from .table import Table
 
 
 @dataclasses.dataclass(frozen=True)

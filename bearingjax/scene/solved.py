@@ -5,13 +5,13 @@ import functools
 
 import jax
 
+from ..files.quantity import SceneError
 from ..statics.life import Life, life_of
 from ..statics.life_warning import life_warnings
 from ..statics.solution import Solution
 from ..statics.warning import warnings
 from .life_ratings import life_conditions
 from .oil_table import OilFacts, oil_facts
-from .quantity import SceneError
 from .read import Scene
 
 

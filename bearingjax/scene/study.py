@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..files.scene_file import find_scene, parse_scene
 from .bearing_run import run_optimisation, run_scene
 from .cases_table import read_cases
 from .contact_run import run_contact
@@ -14,7 +15,6 @@ from .noise_table import read_noise
 from .read import read_scene
 from .rotor_run import run_rotor
 from .rotor_table import read_rotor
-from .scene_file import find_scene, parse_scene
 from .shaft_optimise import read_optimisation
 from .shaft_run import run_shafts
 from .shaft_table import read_shafts

@@ -8,6 +8,8 @@ import jax
 import numpy as np
 
 from ..design import radial_clearance, rows_of
+from ..files.output_files import plain_run
+from ..files.quantity import SceneError
 from ..numerics.units import display_unit, shown_count
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS, LifeConditions
@@ -17,10 +19,8 @@ from ..statics.sweep_program import not_run
 from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
-from .files import plain_run
 from .life_ratings import life_conditions
 from .preload_of_set import preload_warnings, range_warnings
-from .quantity import SceneError
 from .report_model import Column, Grid, Part, Report
 
 OUTPUTS = (

@@ -13,9 +13,9 @@ from ..design.tolerance import (
     roller_grade,
     running_accuracy,
 )
+from ..files.schema import Keys, scene_key
 from ..noise import RandomWaves, Tolerances
 from .deviations_table import MOST_ORDER
-from .schema import Keys, scene_key
 
 _WAVES = {
     "waviness": ("outer_outwards", "inner_outwards"),

@@ -16,8 +16,9 @@ from tolerances import ROUNDING
 
 from bearingjax.design.catalogue_entry import _names
 from bearingjax.design.designation import split_designation
-from bearingjax.scene import STUDIES, SceneError, shipped_scenes, study_of
-from bearingjax.scene.quantity import KINDS, to_si
+from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.files.quantity import KINDS, to_si
+from bearingjax.scene import STUDIES, study_of
 
 _DEG, _TURN = math.pi / 180, 2 * math.pi
 UNITS = {

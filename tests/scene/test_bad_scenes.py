@@ -9,7 +9,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
-from bearingjax.scene import STUDIES, shipped_scenes, study_of
+from bearingjax.files import shipped_scenes
+from bearingjax.scene import STUDIES, study_of
 from bearingjax.scene.design_keys import BALLS, ROLLERS
 
 TAPER = """

@@ -10,9 +10,9 @@ import pytest
 from pages import missing_on_page
 
 import bearingjax as bj
+from bearingjax.files import SceneError
+from bearingjax.files import column_list as cases_list
 from bearingjax.scene import (
-    SceneError,
-    cases_list,
     cases_table,
     design_columns,
     read_cases,

@@ -16,15 +16,9 @@ import bearingjax as bj
 from bearingjax.design import rows_of
 from bearingjax.design.catalogue_entry import UNITS
 from bearingjax.design.keywords import BALLS, ROLLERS
+from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.numerics.units import unit_of
-from bearingjax.scene import (
-    SceneError,
-    catalogue_report,
-    new_scene,
-    read_cases,
-    read_scene,
-    shipped_scenes,
-)
+from bearingjax.scene import catalogue_report, new_scene, read_cases, read_scene
 from bearingjax.scene.read import scene_of
 
 ENTRIES = bj.catalogue()
@@ -573,7 +567,8 @@ def test_solve_command_rejects_designation_as_scene(run):
     done = run("solve", "6205/C3")
     assert done.status == 2
     assert done.err.endswith(
-        "; `bearingjax new 6205/C3 > my.toml` writes the scene of this bearing\n"
+        "; if it is a designation, `bearingjax new 6205/C3 > my.toml` writes the scene"
+        " of this bearing\n"
     )
 
 

@@ -94,14 +94,14 @@ def test_solve_report_is_self_contained_html(run, tmp_path):
     assert not re.search(r"(?:src|href)=\"(?!data:)|url\(|@import|<script", text)
     assert "@media print" in text
     # It tells how to make it again: command, changes, scene.
-    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    shipped = bj.files.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
     assert shipped in words and f"--set '{change}'" in words
     assert bj.__version__ in words and "-9000 N" in words
 
 
 def test_a_report_of_strange_names_is_still_a_page(run, tmp_path):
     scene = tmp_path / "<b>&amp;.toml"
-    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    shipped = bj.files.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
     scene.write_text(f"# </pre><script>x</script>\n{shipped}", encoding="utf-8")
     path = tmp_path / "out.HTM"
     assert run("solve", scene, "--report", path).status == 0
@@ -148,7 +148,7 @@ def test_a_roller_of_a_bearing_without_a_solution(run, tmp_path):
 def test_scene_of_ones_own(run, tmp_path):
     """A file is named as it is given; its name heads the report."""
     path = tmp_path / "my $taper_{.toml"
-    shipped = bj.scene.shipped_scenes()["tapered"].read_text(encoding="utf-8")
+    shipped = bj.files.shipped_scenes()["tapered"].read_text(encoding="utf-8")
     path.write_text(f"{shipped}\n[output]\npoints = 21\n", encoding="utf-8")
     done = run("solve", path, "--plot", tmp_path / "x.png")
     assert done.status == 0

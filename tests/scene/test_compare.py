@@ -35,7 +35,7 @@ outer_ring = "50 °C"
 @pytest.fixture
 def other(tmp_path):
     """The shipped rig under twice its load."""
-    text = bj.scene.shipped_scenes()[SCENE].read_text(encoding="utf-8")
+    text = bj.files.shipped_scenes()[SCENE].read_text(encoding="utf-8")
     path = tmp_path / "heavy.toml"
     path.write_text(text.replace("-10.6 kN", "-21.2 kN"), encoding="utf-8")
     assert path.read_text(encoding="utf-8") != text

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.files import SceneError
+from bearingjax.files.quantity import KINDS, to_si
 from bearingjax.scene import (
-    SceneError,
     as_dict,
     read_cases,
     read_contact,
@@ -20,7 +21,6 @@ from bearingjax.scene import (
     read_scene,
     read_skid,
 )
-from bearingjax.scene.quantity import KINDS, to_si
 
 SCENES = (
     "ball_pair",
@@ -165,7 +165,7 @@ def test_echo_includes_contents_of_files(tmp_path):
     heights = "\n".join(["height [um]", *(f"{0.1 * k}" for k in (0, 1, 0, -1))])
     (folder / "ring.csv").write_text(f"{heights}\n", encoding="utf-8")
     (folder / "list.csv").write_text("operating.load.Fy [kN]\n1\n2\n")
-    shipped = bj.scene.shipped_scenes()
+    shipped = bj.files.shipped_scenes()
     for reader, name, more in (
         (
             read_noise,
@@ -224,7 +224,7 @@ shaft_roughness = "0.8 um"
 
 def test_echo_includes_fits(tmp_path):
     """A class of clearance stands for the number that the bearing has not."""
-    text = bj.scene.shipped_scenes()["deep_groove"].read_text(encoding="utf-8")
+    text = bj.files.shipped_scenes()["deep_groove"].read_text(encoding="utf-8")
     lines = [x for x in text.splitlines() if "radial_internal_clearance" not in x]
     path = tmp_path / "fits.toml"
     warm = '[temperature]\nshaft = "60 °C"\ninner_ring = "55 °C"\n'

@@ -7,7 +7,7 @@ import os
 import pytest
 
 import bearingjax as bj
-from bearingjax.scene import (
+from bearingjax.files import (
     Incomplete,
     SceneError,
     check_outputs,
@@ -27,7 +27,7 @@ def own(tmp_path, monkeypatch):
 
     for name in ("run_scene", "run_cases", "run_contact", "run_optimisation"):
         monkeypatch.setattr(bj.scene, name, refuse)
-    shipped = bj.scene.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
+    shipped = bj.files.shipped_scenes()["cylindrical_rig"].read_text(encoding="utf-8")
     path = tmp_path / "self.toml"
     path.write_text(f'{shipped}\n[cases]\nfile = "list.csv"\n', encoding="utf-8")
     (tmp_path / "list.csv").write_text(LIST, encoding="utf-8")
@@ -58,7 +58,7 @@ def test_output_rejects_link_to_read_scene(run, own, tmp_path):
 
 
 def test_output_rejects_path_of_shipped_scene(run, own):
-    path = bj.scene.shipped_scenes()["tapered"]
+    path = bj.files.shipped_scenes()["tapered"]
     done = run("solve", "tapered", "--json", path)
     assert done.status == 2 and "is read as tapered.toml here" in done.err
 

@@ -192,7 +192,7 @@ housing_diameter = "270 mm"
 
 def test_fit_rejects_housing_in_another_unit(scene):
     text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
-    with pytest.raises(bj.scene.SceneError, match="housing_diameter.*unit meant"):
+    with pytest.raises(bj.files.SceneError, match="housing_diameter.*unit meant"):
         bj.read_scene(scene(text.replace('"270 mm"', '"270 m"')))
 
 

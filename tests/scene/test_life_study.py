@@ -12,8 +12,9 @@ from studies import SEARCH, WORDS, Runs, Study
 from tolerances import SOLVER
 
 import bearingjax as bj
+from bearingjax.files import shipped_scenes
 from bearingjax.lubrication import OILS
-from bearingjax.scene import read_cases, run_scene, shipped_scenes
+from bearingjax.scene import read_cases, run_scene
 from bearingjax.scene.life_run import (
     LifeRun,
     spectrum_as_dict,

@@ -15,6 +15,7 @@ import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
 from bearingjax.design.tolerance import running_accuracy
+from bearingjax.files import scene_files, shipped_scenes
 from bearingjax.noise import (
     NoiseModel,
     Rectangular,
@@ -30,14 +31,7 @@ from bearingjax.noise import (
 from bearingjax.noise.level import NORM
 from bearingjax.noise.warning import _short_waves
 from bearingjax.numerics import Result
-from bearingjax.scene import (
-    noise_as_dict,
-    noise_run,
-    read_noise,
-    run_noise,
-    scene_files,
-    shipped_scenes,
-)
+from bearingjax.scene import noise_as_dict, noise_run, read_noise, run_noise
 
 SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point", "noise_pair")
 WAVE = "part='outer raceway', order=3, amplitude='1 um'"

@@ -14,6 +14,8 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax import SceneError, read_scene
+from bearingjax.files import shipped_scenes
+from bearingjax.files.quantity import kind_of
 from bearingjax.numerics.units import unit_of
 from bearingjax.optimise import design_numbers
 from bearingjax.optimise.variable import changed
@@ -22,10 +24,8 @@ from bearingjax.scene import (
     read_optimisation,
     read_shafts,
     run_shafts,
-    shipped_scenes,
 )
 from bearingjax.scene.optimise_table import scene_numbers
-from bearingjax.scene.quantity import kind_of
 from bearingjax.scene.shaft_optimise import shaft_numbers
 
 REFUSED = Path(__file__).with_name("refused")

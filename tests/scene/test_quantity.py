@@ -6,7 +6,7 @@ import math
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.scene.quantity import (
+from bearingjax.files.quantity import (
     _UNITS,
     KINDS,
     SceneError,
@@ -14,7 +14,7 @@ from bearingjax.scene.quantity import (
     scene_number,
     to_si,
 )
-from bearingjax.scene.schema import Key
+from bearingjax.files.schema import Key
 
 G, LB, IN, TURN = 9.80665, 0.45359237, 0.0254, 2.0 * math.pi
 PSI = LB * G / IN**2

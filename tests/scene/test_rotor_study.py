@@ -15,18 +15,16 @@ from studies import Runs, Study
 from tolerances import PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
+from bearingjax.files import SceneError, scene_files, shipped_scenes
 from bearingjax.rotor import harmonic_response
 from bearingjax.rotor.nonlinear import BranchEnd
 from bearingjax.scene import (
-    SceneError,
     read_rotor,
     rotor_as_dict,
     rotor_report,
     rotor_run,
     rotor_series,
     run_rotor,
-    scene_files,
-    shipped_scenes,
 )
 from bearingjax.scene.rotor_report import _bearings
 from bearingjax.scene.rotor_supports import with_passage

@@ -13,7 +13,8 @@ from tolerances import PUBLISHED, ROUNDING
 
 import bearingjax as bj
 from bearingjax.design import rows_of
-from bearingjax.scene import read_shafts, shipped_scenes
+from bearingjax.files import shipped_scenes
+from bearingjax.scene import read_shafts
 from bearingjax.scene.report import design_sections
 
 DEG = np.pi / 180.0
@@ -269,7 +270,7 @@ def test_rows_of_a_set_have_their_own_bearings(tmp_path):
     ],
 )
 def test_wrong_rows(tmp_path, setting, message):
-    with pytest.raises(bj.scene.SceneError) as caught:
+    with pytest.raises(bj.files.SceneError) as caught:
         with_rows(tmp_path, settings=[setting])
     assert str(caught.value).startswith("mine.toml: ") and message in str(caught.value)
 

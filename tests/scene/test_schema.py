@@ -11,11 +11,11 @@ import jsonschema
 import pytest
 
 from bearingjax import SceneError, scene
-from bearingjax.scene import shipped_scenes
-from bearingjax.scene.quantity import KINDS
-from bearingjax.scene.schema import Keys, fields_of, read_keys
+from bearingjax.files import shipped_scenes
+from bearingjax.files.quantity import KINDS
+from bearingjax.files.schema import Keys, fields_of, read_keys
+from bearingjax.files.table import Table
 from bearingjax.scene.schema_scene import key_guide, scene_schema
-from bearingjax.scene.table import Table
 
 
 def classes(kind=Keys):

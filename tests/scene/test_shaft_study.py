@@ -12,9 +12,10 @@ import pytest
 from studies import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
+from bearingjax.files import SceneError
 from bearingjax.numerics.result import Result
 from bearingjax.plot.shafts import _warming
-from bearingjax.scene import SceneError, read_shafts, run_shafts
+from bearingjax.scene import read_shafts, run_shafts
 from bearingjax.scene.report_model import Grid
 from bearingjax.scene.shaft_output import shaft_columns
 from bearingjax.scene.shaft_report import _temperatures

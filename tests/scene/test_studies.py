@@ -9,7 +9,8 @@ import bearingjax as bj
 from bearingjax import cli
 from bearingjax.cli.entry import _SOLVING, parser
 from bearingjax.cli.execute import OUTPUTS
-from bearingjax.scene import STUDIES, SceneError, shipped_scenes, study_of
+from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.scene import STUDIES, study_of
 
 TOLD = {
     "rotor_flexible": "rotor",

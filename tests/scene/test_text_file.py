@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.io
 
-from bearingjax.scene.files import read_matrix
-from bearingjax.scene.text_file import read_text
+from bearingjax.files.output_files import read_matrix
+from bearingjax.files.text_file import read_text
 
 WANTED = np.array([[1.5, -2.0, 0.0], [-2.0, 300.0, 1e-3], [0.0, 1e-3, 7.0]])
 ROWS = "1.5,-2,0\n-2,300,1e-3\n0,0.001,7.0\n"

@@ -207,7 +207,7 @@ def _registry() -> Any:
     share, and without prefixes, or 20 Grad would be a billion radians."""
     import pint
 
-    listed = files("bearingjax.scene") / "units.txt"
+    listed = files("bearingjax.files") / "units.txt"
     return pint.UnitRegistry(str(listed), cache_folder=None, on_redefinition="raise")
 
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import jax
 
-from ..design.catalogue_entry import catalogue_entry
 from .quantity import SceneError
 from .table import typed
 from .text_file import read_text
@@ -21,7 +20,7 @@ from .text_file import read_text
 
 def shipped_scenes() -> dict[str, Path]:
     """Return the scenes shipped with the package, by name."""
-    folder = Path(str(files("bearingjax.scene") / "examples"))
+    folder = Path(str(files("bearingjax.files") / "examples"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
@@ -53,22 +52,18 @@ def find_scene(source: str | Path) -> Path:
         if str(source) in shipped:
             return shipped[str(source)]
         problem = f"neither a .toml file nor a shipped scene ({', '.join(shipped)})"
-        raise SceneError(f"{source}: {problem}{_of_catalogue(str(source))}")
+        if any(letter.isdigit() for letter in str(source)):
+            problem += (
+                f"; if it is a designation, `bearingjax new {source} > my.toml` writes"
+                " the scene of this bearing"
+            )
+        raise SceneError(f"{source}: {problem}")
     if not path.is_file():
         problem = "is a pipe or a device; name a file"
         if path.is_dir() or not path.exists():
             problem = "is a folder; name a file" if path.is_dir() else "no such file"
         raise SceneError(f"{source}: {problem}")
     return path
-
-
-def _of_catalogue(name: str) -> str:
-    """Return the hint for a designation given as a scene; "" if it is not one."""
-    try:
-        catalogue_entry(name)
-    except ValueError:
-        return ""
-    return f"; `bearingjax new {name} > my.toml` writes the scene of this bearing"
 
 
 def is_contact(data: dict[str, Any]) -> bool:
