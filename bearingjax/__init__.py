@@ -63,6 +63,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from . import contact as contact
 from . import design as design
 from . import element as element
+from . import fits as fits
 from . import lubrication as lubrication
 from . import numerics as numerics
 from . import statics as statics
@@ -75,14 +76,12 @@ from .design import CrownedEnds as CrownedEnds
 from .design import CylindricalRollerBearing as CylindricalRollerBearing
 from .design import CylindricalThrustRollerBearing as CylindricalThrustRollerBearing
 from .design import DeepGrooveBallBearing as DeepGrooveBallBearing
-from .design import FitConditions as FitConditions
 from .design import FourPointBallBearing as FourPointBallBearing
 from .design import FujiwaraKawase as FujiwaraKawase
 from .design import JohnsGohar as JohnsGohar
 from .design import Logarithmic as Logarithmic
 from .design import Lundberg as Lundberg
 from .design import Material as Material
-from .design import Mounting as Mounting
 from .design import NeedleRollerBearing as NeedleRollerBearing
 from .design import PreloadSpring as PreloadSpring
 from .design import Rib as Rib
@@ -102,6 +101,8 @@ from .design import catalogue_entry as catalogue_entry
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import Speed as Speed
+from .fits import FitConditions as FitConditions
+from .fits import Mounting as Mounting
 from .lubrication import Lubricant as Lubricant
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError

@@ -17,7 +17,7 @@ import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
-    "numerics design contact lubrication element statics optimise skid rotor"
+    "numerics files design fits contact lubrication element statics optimise skid rotor"
     " shafts noise scene plot cli"
 ).split()
 # What the plots show is what all layers below the scene provide; scene and plot stand

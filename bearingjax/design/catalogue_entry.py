@@ -17,9 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .bearing_set import rows_of
-from .designation import Suffixes, compact, split_designation
-from .fit_limits import (
+from ..fits.fit_limits import (
     CLEARANCE_CLASSES,
     MOTOR_CLASS,
     ball_clearance,
@@ -28,7 +26,9 @@ from .fit_limits import (
     spherical_roller_clearance,
     toroidal_roller_clearance,
 )
-from .iso286 import Limits
+from ..fits.iso286 import Limits
+from .bearing_set import rows_of
+from .designation import Suffixes, compact, split_designation
 from .keywords import bearing_of
 from .published import Published, rated_dimensions, with_published
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-from .fit_limits import CLEARANCE_CLASSES, MOTOR_CLASS
+from ..fits.fit_limits import CLEARANCE_CLASSES, MOTOR_CLASS
 
 MAKERS = (
     *("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "JTEKT", "TIMKEN", "NACHI"),

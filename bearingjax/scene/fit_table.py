@@ -6,19 +6,29 @@ from typing import Any
 import jax
 
 from ..design import (
+    AbstractBearing,
+    BearingSet,
+    Material,
+    TaperedRollerBearing,
+    rows_of,
+    shares_rings,
+)
+from ..design.catalogue_entry import CLEARANCE, class_limits
+from ..element import Speed
+from ..files.quantity import SceneError, scene_number
+from ..files.schema import Keys, read_keys, scene_key
+from ..files.schema_text import class_schema, number_schema
+from ..files.table import Table
+from ..fits import (
     CLEARANCE_CLASSES,
     CLEARANCE_PARTS,
     LIMIT_CLASSES,
     MOTOR_CLASS,
     PLACES,
     WARM_MATERIALS,
-    AbstractBearing,
-    BearingSet,
     FitConditions,
     Limits,
-    Material,
     Mounting,
-    TaperedRollerBearing,
     WarmMaterial,
     bore_limits,
     limit_classes,
@@ -28,19 +38,11 @@ from ..design import (
     needed_drive_up,
     outside_limits,
     radial_clearance,
-    rows_of,
-    shares_rings,
     sized,
     smoothing,
     with_radial_clearance,
 )
-from ..design.catalogue_entry import CLEARANCE, class_limits
-from ..design.fits import PARTS
-from ..element import Speed
-from ..files.quantity import SceneError, scene_number
-from ..files.schema import Keys, read_keys, scene_key
-from ..files.schema_text import class_schema, number_schema
-from ..files.table import Table
+from ..fits.fits import PARTS
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 from .fits import Fits
 

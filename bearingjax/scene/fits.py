@@ -6,9 +6,9 @@ from typing import Any
 
 import jax
 
-from ..design import (
-    AbstractBearing,
-    BearingSet,
+from ..design import AbstractBearing, BearingSet
+from ..element import BearingElement, Speed
+from ..fits import (
     FitConditions,
     Mounting,
     clearance_range,
@@ -16,9 +16,8 @@ from ..design import (
     mounting_at,
     sized,
 )
-from ..design.fit_range import ClearanceRange
-from ..design.fits import FitState
-from ..element import BearingElement, Speed
+from ..fits.fit_range import ClearanceRange
+from ..fits.fits import FitState
 from ..statics.installed import Installed
 from ..statics.service_warning import seat_warnings
 from .catalogue_keys import FromCatalogue

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..design.fits import PARTS
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table
+from ..fits.fits import PARTS
 from ..shafts import BearingOil, HeatNetwork, ThermalPaths
 from ..statics.friction_skf import skf_series, skf_series_of
 from ..statics.reference_speed import heat_area

@@ -9,8 +9,8 @@ from ..design.catalogue_entry import (
     CatalogueEntry,
     catalogue,
 )
-from ..design.fit_limits import CLEARANCE_CLASSES
 from ..files.quantity import SceneError, to_si
+from ..fits.fit_limits import CLEARANCE_CLASSES
 from .catalogue_keys import FromCatalogue, same_key
 
 _FAR = 0.05

@@ -7,7 +7,8 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from ..design import Limits, radial_clearance, rows_of
+from ..design import rows_of
+from ..fits import Limits, radial_clearance
 from ..numerics.types import as_array
 from ..statics.installed import Installed
 from .fits import Fits, fit_warnings

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..design import BearingSet, rows_of
-from ..design.fits import PARTS
 from ..element import FREEDOMS, BearingElement
 from ..files.quantity import SceneError, kind_of, scene_number
 from ..files.scene_file import find_scene, parse_bearing
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table, not_among
+from ..fits.fits import PARTS
 from ..numerics.units import unit_of
 from ..optimise.constraint import Constraint
 from ..optimise.life import RatingLife

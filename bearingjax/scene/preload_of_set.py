@@ -7,9 +7,9 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from ..design import Limits, Mounting, mounting_at, sized
 from ..element import BearingElement, Speed
 from ..files.output_files import plain
+from ..fits import Limits, Mounting, mounting_at, sized
 from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..statics.installed import Installed

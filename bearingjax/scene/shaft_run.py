@@ -9,8 +9,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import radial_clearance, rows_of
+from ..design import rows_of
 from ..files.quantity import SceneError
+from ..fits import radial_clearance
 from ..numerics.compiled.programs import called
 from ..numerics.result import Result
 from ..shafts import (

@@ -7,9 +7,10 @@ from typing import Any
 import jax
 import numpy as np
 
-from ..design import radial_clearance, rows_of
+from ..design import rows_of
 from ..files.output_files import plain_run
 from ..files.quantity import SceneError
+from ..fits import radial_clearance
 from ..numerics.units import display_unit, shown_count
 from ..statics.cases import Cases
 from ..statics.life import LIFE_OUTPUTS, LifeConditions

@@ -17,9 +17,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design import FitConditions
 from ..design.checks import check, in_range, is_traced, number, positive
 from ..element.inertia import Speed
+from ..fits import FitConditions
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real

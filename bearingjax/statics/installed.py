@@ -5,10 +5,10 @@ from typing import Any
 
 import equinox as eqx
 
-from ..design import FitConditions, Mounting, mounted
 from ..design.checks import instance
 from ..element.bearing_element import BearingElement
 from ..element.inertia import Speed
+from ..fits import FitConditions, Mounting, mounted
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .preload import preload

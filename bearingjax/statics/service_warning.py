@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..design.fits import FitState
 from ..element.inertia import Speed
+from ..fits.fits import FitState
 from .life import turns_against_load
 
 MOST_STRESS = 127e6

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..design.fits import Mounting
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
+from ..fits.fits import Mounting
 from ..numerics.result import Result
 from ..numerics.units import unit_of
 from .cases import Cases

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.design import fit_limits
 from bearingjax.design.catalogue_entry import CLEARANCES, class_limits
+from bearingjax.fits import fit_limits
 
 LINES = Path(__file__).with_name("designations.txt").read_text("utf-8").splitlines()
 PRINTED = [[x.strip() for x in line.split("|")] for line in LINES if line[0] != "#"]
@@ -196,7 +196,7 @@ def test_steel_and_balls_by_designation():
 
 @pytest.mark.parametrize("bore, low, high", [(10, 4, 11), (25, 5, 12), (80, 12, 22)])
 def test_clearance_of_motors(bore, low, high):
-    limits = bj.design.ball_clearance("CM", 1e-3 * bore)
+    limits = bj.fits.ball_clearance("CM", 1e-3 * bore)
     np.testing.assert_allclose(limits, [1e-6 * low, 1e-6 * high], rtol=1e-12)
     assert bj.catalogue_entry("6205DDUCM").clearance_class == "CM"
 

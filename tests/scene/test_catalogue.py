@@ -350,7 +350,7 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     entry = bj.catalogue_entry(written)
     clearance = 0.5e-6 * (low + high)
     row = rows_of(entry.bearing)[0].bearing
-    found = float(bj.design.radial_clearance(row))
+    found = float(bj.fits.radial_clearance(row))
     assert found == pytest.approx(clearance, rel=1e-3)
     assert entry.class_limits is not None
     limits = entry.class_limits(entry.clearance_class, entry.bore)

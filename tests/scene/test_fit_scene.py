@@ -14,12 +14,12 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError
-from bearingjax.design import (
+from bearingjax.design import rows_of
+from bearingjax.fits import (
     Mounting,
     needed_drive_up,
     raceway_diameters,
     radial_clearance,
-    rows_of,
     sized,
 )
 from bearingjax.optimise.design_problem import Problem
@@ -123,7 +123,7 @@ def test_fit_of_catalogue_bearing(scene):
     ] == pytest.approx((23e-6, 41e-6))
     motor = scene(path.read_text().replace("6205/C3", "6205/CM"))
     read = bj.read_scene(motor)
-    assert read.fits.limits["clearance"] == bj.design.ball_clearance("CM", 0.025)
+    assert read.fits.limits["clearance"] == bj.fits.ball_clearance("CM", 0.025)
     # What is echoed can be read again.
     assert bj.read_scene(motor, [f"fit.clearance={read.inputs['fit']['clearance']}"])
     with pytest.raises(SceneError, match="`fit.housing_diameter`: is missing"):

@@ -16,8 +16,9 @@ import bearingjax as bj
 from bearingjax.cli.entry import parser
 from bearingjax.cli.execute import Tools
 from bearingjax.cli.life import run
-from bearingjax.design import Mounting, radial_clearance, rows_of
-from bearingjax.design.fits import FitConditions
+from bearingjax.design import rows_of
+from bearingjax.fits import Mounting, radial_clearance
+from bearingjax.fits.fits import FitConditions
 from bearingjax.optimise.system import element_of, ready, solved_case
 from bearingjax.scene import (
     read_cases,
@@ -121,7 +122,7 @@ def by_hand(pair=True):
         **({"ring_width": 0.015} if pair else {}),
     )
     warm = FitConditions(inner_ring=25.0, shaft=25.0, speed=SPEED)
-    return bj.design.mounted(element.bearing, mounting, warm)
+    return bj.fits.mounted(element.bearing, mounting, warm)
 
 
 def facts(bearing):

@@ -460,7 +460,7 @@ def test_growth_by_heat():
     line = ShaftLine("s", [0.5], [0.04])
     seats = [Seat("A", "s", 0.05, installed), Seat("B", "s", 0.45, cool)]
     growth = axial_growth(ShaftSystem(line, seats))
-    steel = float(bj.design.WarmMaterial().expansion)
+    steel = float(bj.fits.WarmMaterial().expansion)
     np.testing.assert_allclose(growth, [0.0, 0.5 * steel * 20.0 * 0.4], rtol=1e-12)
 
 

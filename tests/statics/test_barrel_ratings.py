@@ -16,12 +16,8 @@ from slopes import with_slopes
 from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
-from bearingjax.design.mounted import (
-    radial_clearance,
-    row_shifts,
-    with_radial_clearance,
-)
 from bearingjax.element.constants import relative_radii
+from bearingjax.fits.mounted import radial_clearance, row_shifts, with_radial_clearance
 from bearingjax.statics import row_rating
 from bearingjax.statics.equivalent_load import equivalent_load, left_out, load_factors
 from bearingjax.statics.friction import _of_row

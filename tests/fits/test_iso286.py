@@ -12,7 +12,7 @@ from string import ascii_letters
 import numpy as np
 import pytest
 
-from bearingjax.design import (
+from bearingjax.fits import (
     CLEARANCE_CLASSES,
     LIMIT_CLASSES,
     ball_clearance,

@@ -13,9 +13,17 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 
+from ..design.checks import (
+    check,
+    concrete,
+    in_range,
+    instance,
+    non_negative,
+    number,
+    positive,
+)
 from ..numerics.types import Scalar, as_real, namespace
 from ..numerics.units import unit
-from .checks import check, concrete, in_range, instance, non_negative, number, positive
 from .warm_material import WarmMaterial
 
 

@@ -11,10 +11,10 @@ import pytest
 from slopes import with_slopes
 from tolerances import DIFFERENCE, ROUNDING
 
-from bearingjax.design import (
+from bearingjax.design import Material
+from bearingjax.fits import (
     FitConditions,
     Limits,
-    Material,
     Mounting,
     WarmMaterial,
     ball_clearance,

@@ -3,7 +3,7 @@
 import re
 from typing import Any, NamedTuple
 
-from .checks import positive
+from ..design.checks import positive
 
 _MICRON = 1e-6
 _SAME = 1e-6

@@ -12,17 +12,23 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Scalar, as_real
-from .ball import AbstractBallBearing
-from .ball_types import (
+from ..design.ball import AbstractBallBearing
+from ..design.ball_types import (
     AngularContactBallBearing,
     DeepGrooveBallBearing,
     FourPointBallBearing,
 )
-from .barrel import AbstractBarrelBearing, CrossedRollerRow
-from .bearing import AbstractRollerBearing
-from .bearing_set import AbstractBearing, BearingSet, SetRow, rows_of, shares_rings
-from .checks import check, concrete, number, of_class
+from ..design.barrel import AbstractBarrelBearing, CrossedRollerRow
+from ..design.bearing import AbstractRollerBearing
+from ..design.bearing_set import (
+    AbstractBearing,
+    BearingSet,
+    SetRow,
+    rows_of,
+    shares_rings,
+)
+from ..design.checks import check, concrete, number, of_class
+from ..numerics.types import Scalar, as_real
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
 

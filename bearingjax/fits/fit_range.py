@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import equinox as eqx
 
-from .checks import concrete, in_range, one_of
+from ..design.checks import concrete, in_range, one_of
 from .fits import FitConditions, Mounting, fit_state, positive_part
 from .iso286 import Limits
 

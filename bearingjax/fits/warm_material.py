@@ -2,10 +2,10 @@
 
 import equinox as eqx
 
+from ..design.checks import in_range, instance
+from ..design.material import Material
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .checks import in_range, instance
-from .material import Material
 
 
 class WarmMaterial(eqx.Module):

@@ -1,0 +1,35 @@
+"""Seats of bearings: ISO 286, interference, mounted clearance, temperatures."""
+
+from .fit_limits import CLEARANCE_CLASSES as CLEARANCE_CLASSES
+from .fit_limits import CLEARANCE_PARTS as CLEARANCE_PARTS
+from .fit_limits import MOTOR_CLASS as MOTOR_CLASS
+from .fit_limits import ball_clearance as ball_clearance
+from .fit_limits import bore_limits as bore_limits
+from .fit_limits import outside_limits as outside_limits
+from .fit_limits import roller_clearance as roller_clearance
+from .fit_limits import self_aligning_clearance as self_aligning_clearance
+from .fit_limits import spherical_roller_clearance as spherical_roller_clearance
+from .fit_limits import toroidal_roller_clearance as toroidal_roller_clearance
+from .fit_range import PLACES as PLACES
+from .fit_range import ClearanceRange as ClearanceRange
+from .fit_range import clearance_range as clearance_range
+from .fit_range import mounting_at as mounting_at
+from .fits import FitConditions as FitConditions
+from .fits import FitState as FitState
+from .fits import Mounting as Mounting
+from .fits import fit_state as fit_state
+from .fits import needed_drive_up as needed_drive_up
+from .fits import smoothing as smoothing
+from .iso286 import LIMIT_CLASSES as LIMIT_CLASSES
+from .iso286 import Limits as Limits
+from .iso286 import limit_classes as limit_classes
+from .iso286 import limits as limits
+from .iso286 import standard_tolerance as standard_tolerance
+from .mounted import mounted as mounted
+from .mounted import raceway_diameters as raceway_diameters
+from .mounted import radial_clearance as radial_clearance
+from .mounted import row_shifts as row_shifts
+from .mounted import sized as sized
+from .mounted import with_radial_clearance as with_radial_clearance
+from .warm_material import WARM_MATERIALS as WARM_MATERIALS
+from .warm_material import WarmMaterial as WarmMaterial
