@@ -60,6 +60,7 @@ Conventions
 import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+from . import catalogue as catalogue
 from . import contact as contact
 from . import design as design
 from . import element as element
@@ -68,6 +69,8 @@ from . import lubrication as lubrication
 from . import numerics as numerics
 from . import statics as statics
 from ._version import __version__ as __version__
+from .catalogue import catalogue_entries as catalogue_entries
+from .catalogue import catalogue_entry as catalogue_entry
 from .design import AngularContactBallBearing as AngularContactBallBearing
 from .design import BearingSet as BearingSet
 from .design import CircularCrown as CircularCrown
@@ -96,8 +99,6 @@ from .design import TaperedRollerBearing as TaperedRollerBearing
 from .design import TaperedThrustRollerBearing as TaperedThrustRollerBearing
 from .design import ThrustBallBearing as ThrustBallBearing
 from .design import ToroidalRollerBearing as ToroidalRollerBearing
-from .design import catalogue as catalogue
-from .design import catalogue_entry as catalogue_entry
 from .element import FREEDOMS as FREEDOMS
 from .element import BearingElement as BearingElement
 from .element import Speed as Speed
@@ -127,6 +128,7 @@ from .statics import sweep as sweep
 from .statics import warnings as warnings
 
 if _TYPE_CHECKING:
+    from . import files as files
     from . import noise as noise
     from . import optimise as optimise
     from . import plot as plot
@@ -141,9 +143,11 @@ if _TYPE_CHECKING:
 
 
 # Imported at first use: packages, and names of the top level with their package.
-_LATE = dict.fromkeys(
-    "noise optimise plot rotor scene shafts skid".split()
-) | dict.fromkeys("SceneError load_bearing read_scene run".split(), "scene")
+_LATE = (
+    dict.fromkeys("files noise optimise plot rotor scene shafts skid".split())
+    | {"SceneError": "files"}
+    | dict.fromkeys("load_bearing read_scene run".split(), "scene")
+)
 
 
 def __getattr__(name: str):

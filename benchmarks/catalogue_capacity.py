@@ -61,7 +61,7 @@ from bench import benchmark
 import bearingjax as bj
 
 
-def differences(entry: bj.design.CatalogueEntry) -> dict:
+def differences(entry: bj.catalogue.CatalogueEntry) -> dict:
     """Calculated over printed capacities less one, in percent; `None` if unknown."""
     c, c0 = (
         float(bj.dynamic_capacity(entry.bearing)),
@@ -90,7 +90,9 @@ def best(row: dict) -> float:
 
 def run(smoke: bool) -> list[dict]:
     """A row for each bearing, one arrangement of ribs of each."""
-    entries = [e for e in bj.catalogue() if e.design.get("arrangement", "NU") == "NU"]
+    entries = [
+        e for e in bj.catalogue_entries() if e.design.get("arrangement", "NU") == "NU"
+    ]
     if smoke:
         entries = [e for e in entries if e.geometry == "published"][:3]
     return [differences(entry) for entry in entries]

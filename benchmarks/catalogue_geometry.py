@@ -101,7 +101,7 @@ FILLED = 0.87
 def listed() -> dict[str, list[tuple[str, dict]]]:
     """Bearings with estimated geometry, as their files have them (mm, kN), by type."""
     found = {}
-    for path in (files("bearingjax.design") / "catalogue").iterdir():
+    for path in (files("bearingjax.catalogue") / "data").iterdir():
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         found[data["type"]] = [
             (key, values)

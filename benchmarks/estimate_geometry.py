@@ -343,7 +343,7 @@ def of_catalogue(every):
     than C and C0 (what else makers print, balls of whole sizes).
     """
     found: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
-    for entry in bj.catalogue()[::every]:
+    for entry in bj.catalogue_entries()[::every]:
         if entry.design.get("arrangement", "NU") != "NU":
             continue  # of the same inside
         kind = entry.type

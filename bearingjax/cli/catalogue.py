@@ -36,7 +36,7 @@ def add(commands):
 
 def run(options) -> int:
     """List bearings of the catalogue."""
-    from ..design import catalogue
+    from ..catalogue import catalogue_entries
     from ..files import SceneError, write_numbers
     from ..scene import (
         catalogue_as_dict,
@@ -54,7 +54,7 @@ def run(options) -> int:
         raise SceneError("--drawing draws one bearing; name one")
     check_outputs(options, inputs=[])
     chosen = select(
-        named or catalogue(),
+        named or catalogue_entries(),
         options.type,
         options.bore,
         options.outside,

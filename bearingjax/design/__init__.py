@@ -28,9 +28,6 @@ from .bearing_set import is_self_aligning as is_self_aligning
 from .bearing_set import pitch_radius as pitch_radius
 from .bearing_set import rows_of as rows_of
 from .bearing_set import shares_rings as shares_rings
-from .catalogue_entry import CatalogueEntry as CatalogueEntry
-from .catalogue_entry import catalogue as catalogue
-from .catalogue_entry import catalogue_entry as catalogue_entry
 from .deviation import Deviation as Deviation
 from .deviation import deviation_of as deviation_of
 from .deviation import with_raceways as with_raceways

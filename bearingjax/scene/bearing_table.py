@@ -3,6 +3,7 @@
 import difflib
 from typing import Any
 
+from ..catalogue.entry import catalogue_entry
 from ..design import (
     AbstractBearing,
     BearingSet,
@@ -10,7 +11,6 @@ from ..design import (
     SetRow,
     shares_rings,
 )
-from ..design.catalogue_entry import catalogue_entry
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table, text_of
 from ..statics.preload import check_preload

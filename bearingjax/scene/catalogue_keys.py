@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..design.catalogue_entry import (
+from ..catalogue.entry import (
     CLEARANCE,
     UNITS,
     CatalogueEntry,

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..catalogue.entry import CatalogueEntry
 from ..design import rows_of
-from ..design.catalogue_entry import CatalogueEntry
 from ..design.keywords import BALLS, ROLLERS
 from ..files.quantity import SceneError, to_si
 from ..files.scene_file import shipped_scenes

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design import rows_of
-from ..design.catalogue_entry import (
+from ..catalogue.entry import (
     CLEARANCE,
     CLEARANCES,
     UNITS,
@@ -15,6 +14,7 @@ from ..design.catalogue_entry import (
     class_clearance,
     from_catalogue_unit,
 )
+from ..design import rows_of
 from ..files.quantity import SceneError, to_si
 from ..files.table import not_among
 from ..optimise.estimate import estimate_geometry

@@ -5,6 +5,7 @@ from typing import Any
 
 import jax
 
+from ..catalogue.entry import CLEARANCE, class_limits
 from ..design import (
     AbstractBearing,
     BearingSet,
@@ -13,7 +14,6 @@ from ..design import (
     rows_of,
     shares_rings,
 )
-from ..design.catalogue_entry import CLEARANCE, class_limits
 from ..element import Speed
 from ..files.quantity import SceneError, scene_number
 from ..files.schema import Keys, read_keys, scene_key

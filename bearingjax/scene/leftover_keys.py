@@ -3,12 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..design.catalogue_entry import (
-    CLEARANCE,
-    CLEARANCES,
-    CatalogueEntry,
-    catalogue,
-)
+from ..catalogue.entry import CLEARANCE, CLEARANCES, CatalogueEntry, catalogue_entries
 from ..files.quantity import SceneError, to_si
 from ..fits.fit_limits import CLEARANCE_CLASSES
 from .catalogue_keys import FromCatalogue, same_key
@@ -43,7 +38,7 @@ def leftover_warnings(
 def _of_another(keys, taken) -> tuple[str, ...]:
     """Warn that the internal geometry is that of another bearing."""
     entry, changed = taken.entry, set(taken.overridden) - {CLEARANCE}
-    others = [e for e in catalogue() if e.type == entry.type]
+    others = [e for e in catalogue_entries() if e.type == entry.type]
     cure = "leave out the lines that are not meant"
     whole = [
         e for e in others if changed & set(e.design) and _agrees(keys, e, e.design)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design.catalogue_entry import catalogue_entry
+from ..catalogue.entry import catalogue_entry
 from ..files.quantity import SceneError
 from ..files.table import Table, text_of
 from ..rotor import Shaft

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from ..catalogue.entry import catalogue_entry
 from ..design import AbstractBearing, BearingSet, rows_of
-from ..design.catalogue_entry import catalogue_entry
 from ..element import (
     RINGS,
     BearingElement,

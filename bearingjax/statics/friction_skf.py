@@ -13,6 +13,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..catalogue.entry import CatalogueEntry
 from ..design import (
     AngularContactBallBearing,
     CylindricalRollerBearing,
@@ -27,7 +28,6 @@ from ..design import (
     ToroidalRollerBearing,
     rows_of,
 )
-from ..design.catalogue_entry import CatalogueEntry
 from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..numerics.types import Scalar, as_real

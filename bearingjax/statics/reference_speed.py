@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ..design.catalogue_entry import CatalogueEntry
+from ..catalogue.entry import CatalogueEntry
 from ..design.checks import positive
 from ..numerics.types import Scalar
 

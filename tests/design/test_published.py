@@ -12,7 +12,7 @@ import pytest
 from tolerances import ROUNDING
 
 import bearingjax as bj
-from bearingjax.design.catalogue_entry import catalogue
+from bearingjax.catalogue.entry import catalogue_entries
 from bearingjax.design.published import is_as_published, rated_dimensions
 from bearingjax.optimise.variable import changed
 from bearingjax.scene import read_scene
@@ -28,7 +28,7 @@ def rows(bearing) -> list[Any]:
 @functools.cache
 def by_type():
     found = {}
-    for entry in catalogue():
+    for entry in catalogue_entries():
         found.setdefault(entry.type, []).append(entry)
     return found
 

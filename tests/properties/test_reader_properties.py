@@ -14,8 +14,8 @@ from hypothesis import assume, example
 from hypothesis import strategies as st
 from tolerances import ROUNDING
 
-from bearingjax.design.catalogue_entry import _names
-from bearingjax.design.designation import split_designation
+from bearingjax.catalogue.designation import split_designation
+from bearingjax.catalogue.entry import _names
 from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.files.quantity import KINDS, to_si
 from bearingjax.scene import STUDIES, study_of

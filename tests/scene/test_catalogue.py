@@ -13,15 +13,15 @@ import pytest
 from tolerances import SOLVER
 
 import bearingjax as bj
+from bearingjax.catalogue.entry import UNITS
 from bearingjax.design import rows_of
-from bearingjax.design.catalogue_entry import UNITS
 from bearingjax.design.keywords import BALLS, ROLLERS
 from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.numerics.units import unit_of
 from bearingjax.scene import catalogue_report, new_scene, read_cases, read_scene
 from bearingjax.scene.read import scene_of
 
-ENTRIES = bj.catalogue()
+ENTRIES = bj.catalogue_entries()
 NAMES = [entry.designation for entry in ENTRIES]
 NEWER = {
     "spherical_roller": 1.135,
@@ -59,7 +59,7 @@ def test_catalogue_files_hold_known_keys_only():
     sizes = {"bore", "outside_diameter", "width", "inner_width", "outer_width"}
     ratings = {"dynamic_capacity", "static_capacity", "fatigue_load_limit"}
     known |= sizes | ratings | {"reference_speed", "limiting_speed", "mass"}
-    for path in (files("bearingjax.design") / "catalogue").iterdir():
+    for path in (files("bearingjax.catalogue") / "data").iterdir():
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         used = set()
         for key, values in data["bearings"].items():

@@ -285,7 +285,7 @@ data; SKF, general catalogue, 2006; Timken, engineering manual."""
 def test_needed_drive_up_of_small_bores_beside_tables_of_makers():
     """The band that its docstring states."""
     ratios = []
-    for entry in bj.catalogue():
+    for entry in bj.catalogue_entries():
         bore = 1e3 * entry.bore
         if entry.type == "spherical_roller" and 24 < bore <= 40:
             seats = Mounting(
@@ -310,7 +310,7 @@ def test_drive_up_beside_the_table_of_a_maker():
     """One row of the table serves all series, and seats give way more than cylinders:
     the travel found is a tenth less on average, 20 % less to 10 % more."""
     ratios = []
-    for entry in bj.catalogue():
+    for entry in bj.catalogue_entries():
         bore = 1e3 * entry.bore
         if entry.type != "spherical_roller" or not 80 < bore <= 250:
             continue

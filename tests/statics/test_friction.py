@@ -316,7 +316,7 @@ UNLISTED = {
 
 def test_every_row_of_skfs_table_is_reached_by_an_entry_or_its_series_is_not_listed():
     reached: dict[str, set] = {}
-    for entry in bj.catalogue():
+    for entry in bj.catalogue_entries():
         reached.setdefault(entry.type, set()).add(skf_series_of(entry))
     for kind, found in reached.items():
         model = friction_skf._TYPES.get({**BALL_TYPES, **ROLLERS_BY_TYPE}[kind])

@@ -98,7 +98,7 @@ def test_every_series_with_factors_is_reached_by_an_entry():
     """Also with a class of clearance, and where the number has no letters (33010)."""
     reached = {
         (e.type, *factors)
-        for e in bj.catalogue()
+        for e in bj.catalogue_entries()
         if (factors := _factors_of(e)) is not None
     }
     table = {(kind, *f) for kind, rows in _FACTORS.items() for f in rows.values()}

@@ -1,6 +1,6 @@
 """The catalogue: bearings by their designation, with the source of each value.
 
-The folder `catalogue/` has one file per type: `type`, the `[sources]` with their short
+The folder `data/` has one file per type: `type`, the `[sources]` with their short
 names, and a table for each bearing under its designation, in the units of catalogues
 (`UNITS`). The `bearing` of such a table holds the keywords of its design.
 """
@@ -17,6 +17,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..design.bearing_set import rows_of
+from ..design.keywords import bearing_of
+from ..design.published import Published, rated_dimensions, with_published
 from ..fits.fit_limits import (
     CLEARANCE_CLASSES,
     MOTOR_CLASS,
@@ -27,10 +30,7 @@ from ..fits.fit_limits import (
     toroidal_roller_clearance,
 )
 from ..fits.iso286 import Limits
-from .bearing_set import rows_of
 from .designation import Suffixes, compact, split_designation
-from .keywords import bearing_of
-from .published import Published, rated_dimensions, with_published
 
 CLEARANCES = {
     "deep_groove_ball": ball_clearance,
@@ -281,7 +281,7 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
     return _entry(kind, key, changes, remarks, suffixes)
 
 
-def catalogue() -> tuple[CatalogueEntry, ...]:
+def catalogue_entries() -> tuple[CatalogueEntry, ...]:
     """Return all bearings of the catalogue, by type and in the order of the files."""
     plain = Suffixes()
     seen: dict[str, CatalogueEntry] = {}
@@ -295,7 +295,7 @@ def catalogue() -> tuple[CatalogueEntry, ...]:
 @functools.cache
 def _files() -> dict[str, dict[str, Any]]:
     """Read the files of the catalogue, by type."""
-    folder = Path(str(files("bearingjax.design") / "catalogue"))
+    folder = Path(str(files("bearingjax.catalogue") / "data"))
     read = (
         tomllib.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
         for path in sorted(folder.glob("*.toml"))

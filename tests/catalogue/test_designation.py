@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.design.catalogue_entry import CLEARANCES, class_limits
+from bearingjax.catalogue.entry import CLEARANCES, class_limits
 from bearingjax.fits import fit_limits
 
 LINES = Path(__file__).with_name("designations.txt").read_text("utf-8").splitlines()
 PRINTED = [[x.strip() for x in line.split("|")] for line in LINES if line[0] != "#"]
-ENTRIES = bj.catalogue()
+ENTRIES = bj.catalogue_entries()
 ANGLES = {"A": 30, "A5": 25, "AC": 25, "AD": 25, "B": 40, "BE": 40, "C": 15, "CD": 15}
 
 

@@ -61,7 +61,7 @@ class _Letters(NamedTuple):
 @functools.cache
 def _table(name: str) -> tuple[_Letters, ...]:
     """Read the `suffixes` or the `prefixes`."""
-    text = (files("bearingjax.design") / "suffixes.toml").read_text(encoding="utf-8")
+    text = (files("bearingjax.catalogue") / "suffixes.toml").read_text(encoding="utf-8")
     return tuple(
         _Letters(
             re.compile("|".join(one["forms"])),
