@@ -60,15 +60,22 @@ Conventions
 import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+from . import cases as cases
 from . import catalogue as catalogue
 from . import contact as contact
 from . import design as design
 from . import element as element
 from . import fits as fits
+from . import friction as friction
+from . import life as life
 from . import lubrication as lubrication
 from . import numerics as numerics
 from . import statics as statics
 from ._version import __version__ as __version__
+from .cases import Cases as Cases
+from .cases import spectrum_life as spectrum_life
+from .cases import stack_designs as stack_designs
+from .cases import sweep as sweep
 from .catalogue import catalogue_entries as catalogue_entries
 from .catalogue import catalogue_entry as catalogue_entry
 from .design import AngularContactBallBearing as AngularContactBallBearing
@@ -104,27 +111,23 @@ from .element import BearingElement as BearingElement
 from .element import Speed as Speed
 from .fits import FitConditions as FitConditions
 from .fits import Mounting as Mounting
+from .friction import films as films
+from .friction import friction_torque as friction_torque
+from .life import LifeConditions as LifeConditions
+from .life import dynamic_capacity as dynamic_capacity
+from .life import rating_life as rating_life
+from .life import ratings as ratings
+from .life import static_capacity as static_capacity
 from .lubrication import Lubricant as Lubricant
 from .numerics import Result as Result
 from .numerics import SolveError as SolveError
 from .numerics import keep_programs as keep_programs
-from .statics import Cases as Cases
 from .statics import Installed as Installed
-from .statics import LifeConditions as LifeConditions
 from .statics import Solution as Solution
-from .statics import dynamic_capacity as dynamic_capacity
-from .statics import films as films
-from .statics import friction_torque as friction_torque
 from .statics import linearise as linearise
 from .statics import preload as preload
-from .statics import rating_life as rating_life
-from .statics import ratings as ratings
 from .statics import refine as refine
 from .statics import solve_load as solve_load
-from .statics import spectrum_life as spectrum_life
-from .statics import stack_designs as stack_designs
-from .statics import static_capacity as static_capacity
-from .statics import sweep as sweep
 from .statics import warnings as warnings
 
 if _TYPE_CHECKING:

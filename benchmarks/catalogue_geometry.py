@@ -55,7 +55,7 @@ import numpy as np
 from bench import benchmark
 
 import bearingjax as bj
-from bearingjax.statics import row_rating as by_row
+from bearingjax.life import row_rating as by_row
 
 INCH = 25.4
 SIZES = sorted(

@@ -38,7 +38,7 @@ from bench import benchmark, compiled, shuffled, table
 from scipy.optimize import root
 
 import bearingjax as bj
-from bearingjax.statics import solve_case
+from bearingjax.cases import solve_case
 
 CAPACITY = 23400.0
 FULL = {"cases": 10_000, "batch": 500, "loop": 100, "rounds": 3, "gradient": True}

@@ -51,7 +51,7 @@ from scipy.optimize import root
 
 import bearingjax as bj
 from bearingjax import shafts
-from bearingjax.statics.life import LifeConditions
+from bearingjax.life.life import LifeConditions
 
 BEARING = bj.DeepGrooveBallBearing(
     8, 0.065, 0.015081, outer_osculation=0.53, inner_osculation=0.52,

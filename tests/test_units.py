@@ -16,13 +16,13 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import design
+from bearingjax.cases.sweep import SUMMARIES
+from bearingjax.cases.sweep_table import _label
 from bearingjax.files.quantity import KINDS, kind_of
 from bearingjax.numerics import units
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import shown_count, stated_units, unit, unit_of
 from bearingjax.statics.solution import BallSolution, RollerSolution
-from bearingjax.statics.sweep import SUMMARIES
-from bearingjax.statics.sweep_table import _label
 
 MEASURES = [
     bj.optimise.PeakPressure(),

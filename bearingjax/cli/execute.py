@@ -137,8 +137,8 @@ def execute(command: Any, options: Any) -> int:
 
 def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
+    from ..cases.sweep_table import write_columns
     from ..files import write_numbers
-    from ..statics.sweep_table import write_columns
 
     def tabulate(path):
         assert found.columns is not None
@@ -265,8 +265,8 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
 
 def check_table(options, rows: int = 0) -> None:
     """Fail before solving if a table with this number of rows cannot be written."""
+    from ..cases.sweep_table import check_writable
     from ..files import SceneError
-    from ..statics.sweep_table import check_writable
 
     table = getattr(options, "table", None)
     if table is None:

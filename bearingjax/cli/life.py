@@ -36,8 +36,8 @@ def run(options, tools: Tools) -> Outcome:
 
 def _life_of_load(options) -> Outcome:
     from ..files import SceneError
+    from ..life import LifeConditions
     from ..scene import read_scene, solved_life_as_dict
-    from ..statics import LifeConditions
 
     if options.table is not None:
         raise SceneError("--table is for a scene with [cases]; this one has one load")

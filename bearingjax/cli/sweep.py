@@ -43,6 +43,7 @@ def add(commands):
 
 def run(options, tools: Tools) -> Outcome:
     """Solve the cases of a scene."""
+    from ..cases import sweep_table
     from ..files import SceneError
     from ..numerics import Result
     from ..scene import (
@@ -55,7 +56,6 @@ def run(options, tools: Tools) -> Outcome:
         sweep_as_dict,
         sweep_report,
     )
-    from ..statics import sweep_table
 
     jax_settings.devices(options)
     if options.resume and options.table is None:

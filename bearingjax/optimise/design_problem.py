@@ -9,9 +9,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..cases.cases import Cases
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
-from ..statics.cases import Cases
 from ..statics.options import SolveOptions
 from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint

@@ -37,11 +37,11 @@ from ..design import (
     rows_of,
 )
 from ..design.checks import check, in_range, is_traced, positive
+from ..life import row_rating
+from ..life.rating import nominal_contact_angle
+from ..life.row_rating import BallKind, BallRow, RollerRow, Rows
 from ..numerics.compiled.programs import program
 from ..numerics.types import as_real
-from ..statics import row_rating
-from ..statics.rating import nominal_contact_angle
-from ..statics.row_rating import BallKind, BallRow, RollerRow, Rows
 from .typical import PROPORTIONS, Proportions, Typical
 
 _RATINGS = (0.015, 0.01)
@@ -287,7 +287,7 @@ def estimate_geometry(
             diameter, the kind unknown, a contact angle given to a type that has none,
             or no geometry of this size has these ratings.
 
-    Source: ratings by ISO 281 and ISO 76 (`statics.row_rating`); proportions: see
+    Source: ratings by ISO 281 and ISO 76 (`life.row_rating`); proportions: see
         `typical`.
     """
     numbers = dict(

@@ -6,12 +6,12 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from ..cases.cases import Cases
+from ..cases.spectrum import spectrum_life
 from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
-from ..statics.cases import Cases
-from ..statics.life import LifeConditions, life_of
-from ..statics.life_warning import life_sizes
-from ..statics.spectrum import spectrum_life
+from ..life.life import LifeConditions, life_of
+from ..life.life_warning import ALL, life_sizes
 from ..statics.warning import counted
 from .measure import AbstractMeasure
 from .system import element_of, loads_of
@@ -83,7 +83,8 @@ class OfLife(AbstractMeasure):
         Args:
             element, solution: As in `__call__`, concrete.
         """
-        return counted(jax.device_get(self._sizes(element_of(element), solution)))
+        sizes = jax.device_get(self._sizes(element_of(element), solution))
+        return counted(sizes, ALL)
 
     @eqx.filter_jit
     def _sizes(self, element, solution):

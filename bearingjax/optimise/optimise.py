@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cases.cases import Cases
 from ..design.checks import of_class
+from ..life.rating import check_alike
 from ..numerics.units import shown_number
-from ..statics.cases import Cases
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
-from ..statics.rating import check_alike
 from ..statics.support import check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import equinox as eqx
 
+from ..cases.cases import Cases, case_speed, solve_case
 from ..element.bearing_element import BearingElement, check_element
-from ..statics.cases import Cases, case_speed, solve_case
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution, message

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..cases.sweep import Sweep
+from ..cases.sweep_table import columns
 from ..numerics.units import display_unit
-from ..statics.sweep import Sweep
-from ..statics.sweep_table import columns
 from .panel import finish
 from .style import CURVES, SMALL, Figure, head, power_of_ten, pyplot, without_offset
 

@@ -4,8 +4,8 @@ from collections import Counter
 
 import numpy as np
 
+from ..cases.sweep_table import asked
 from ..numerics.units import shown_number
-from ..statics.sweep_table import asked
 from .cases_table import CaseTable
 from .sweep_run import design_columns
 

@@ -16,6 +16,9 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..cases.cases import Cases
+from ..cases.spectrum import revolutions_per_hour
+from ..cases.sweep import SUMMARIES, stack_designs
 from ..design import rows_of
 from ..element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
@@ -24,12 +27,9 @@ from ..files.quantity import KINDS, SceneError, kind_of, to_si
 from ..files.scene_file import assign, find_scene, parse_bearing
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table, axes_of, text_of
+from ..life.life import LIFE_OUTPUTS, Life
 from ..numerics.units import unit_of
-from ..statics.cases import Cases
-from ..statics.life import LIFE_OUTPUTS, Life
 from ..statics.solution import Solution
-from ..statics.spectrum import revolutions_per_hour
-from ..statics.sweep import SUMMARIES, stack_designs
 from .read import Scene, scene_of
 
 OPERATING = {

@@ -13,7 +13,7 @@ from ..design.keywords import BALLS, ROLLERS
 from ..files.quantity import SceneError, to_si
 from ..files.scene_file import shipped_scenes
 from ..files.table import not_among
-from ..statics import thermal_speed
+from ..friction import thermal_speed
 from .catalogue_keys import as_keys
 
 _SHARE = 0.1

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
+from ..cases.sweep import SUMMARIES
+from ..cases.sweep_table import OPERATING_CLEARANCE, kind, spread
 from ..element.frame import FREEDOMS
+from ..life.life import LIFE_OUTPUTS
 from ..numerics.result import Result
 from ..numerics.units import shown_count
-from ..statics.life import LIFE_OUTPUTS
-from ..statics.sweep import SUMMARIES
-from ..statics.sweep_table import OPERATING_CLEARANCE, kind, spread
 from .bearing_run import solve_scene
 from .html_report import flat
 from .read import Scene

@@ -9,9 +9,9 @@ import numpy as np
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table
 from ..fits.fits import PARTS
+from ..friction.friction_skf import skf_series, skf_series_of
+from ..friction.reference_speed import heat_area
 from ..shafts import BearingOil, HeatNetwork, ThermalPaths
-from ..statics.friction_skf import skf_series, skf_series_of
-from ..statics.reference_speed import heat_area
 from .oil_table import Oil
 from .read import Scene
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..design import BearingSet, rows_of, shares_rings
-from ..statics.life import LifeConditions
-from ..statics.rating import GIVEN, PUBLISHED
+from ..life.life import LifeConditions
+from ..life.rating import GIVEN, PUBLISHED
 from .read import Scene
 
 
@@ -14,7 +14,7 @@ def life_conditions(scene: Scene, turning: bool = True) -> LifeConditions:
     """Return the conditions of the rating life of a scene.
 
     Ratings that [life] does not give are those that the bearing carries, published or
-    from its geometry (`statics.ratings`).
+    from its geometry (`life.ratings`).
 
     Args:
         scene: The scene.

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..element.frame import RINGS
 from ..files.output_files import plain
-from ..statics.life import LIFE_OUTPUTS, Life
+from ..life.life import LIFE_OUTPUTS, Life
 from ..statics.solution import RollerSolution, Solution
 from .life_ratings import not_published, rating_origins
 from .read import Scene

@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from ..cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
+from ..cases.sweep import Sweep
+from ..cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from ..design.published import with_published
 from ..files.output_files import plain_run
 from ..files.quantity import SceneError
 from ..files.scene_file import find_scene, parse_bearing
+from ..life.life import LIFE_OUTPUTS, turns_against_load
+from ..life.rating import Ratings, ratings
 from ..numerics.result import Result
 from ..numerics.units import shown_count
-from ..statics.life import LIFE_OUTPUTS, turns_against_load
-from ..statics.rating import Ratings, ratings
-from ..statics.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
-from ..statics.sweep import Sweep
-from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .case_words import case_words, differing
 from .cases_table import CaseTable
 from .life_ratings import life_conditions, not_published, rating_origins

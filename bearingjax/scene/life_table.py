@@ -7,10 +7,10 @@ from ..design import AbstractBearing, BearingSet, rows_of
 from ..element import Speed
 from ..files.schema import Keys, read_keys, scene_key
 from ..files.table import Table
-from ..statics.life import FRAMES, LifeConditions
-from ..statics.life_factor import CLEANLINESS
-from ..statics.rating import rated_axially
-from ..statics.reference_life import LEAST_LAMINAE
+from ..life.life import FRAMES, LifeConditions
+from ..life.life_factor import CLEANLINESS
+from ..life.rating import rated_axially
+from ..life.reference_life import LEAST_LAMINAE
 from .oil_table import Oil, read_oil
 
 _RATED = "published for the `designation`, else from the geometry"

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..files.schema import Keys, scene_key
+from ..friction.friction import SUPPLIES
 from ..lubrication import (
     OILS,
     AbstractAmbient,
@@ -24,7 +25,6 @@ from ..lubrication import (
     Walther,
 )
 from ..numerics.units import CELSIUS, unit_of
-from ..statics.friction import SUPPLIES
 
 LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
 """Laws of viscosity over pressure; the first includes the temperature."""

@@ -11,17 +11,17 @@ import numpy as np
 from ..files.output_files import plain
 from ..files.schema import read_keys
 from ..files.table import Table
-from ..lubrication import Lubricant
-from ..numerics.compiled.programs import program
-from ..numerics.types import as_array
-from ..statics.contact_films import Films, films
-from ..statics.friction import Friction, friction_torque
-from ..statics.friction_skf import (
+from ..friction.contact_films import Films, films
+from ..friction.friction import Friction, friction_torque
+from ..friction.friction_skf import (
     SkfFriction,
     skf_friction_torque,
     skf_series,
     skf_series_of,
 )
+from ..lubrication import Lubricant
+from ..numerics.compiled.programs import program
+from ..numerics.types import as_array
 from ..statics.solution import Solution
 from .catalogue_keys import FromCatalogue
 from .lubricant_table import LubricantKeys, described

@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..cases.cases import Cases
 from ..design import BearingSet, rows_of
 from ..element import FREEDOMS, BearingElement
 from ..files.quantity import SceneError, kind_of, scene_number
@@ -26,7 +27,6 @@ from ..optimise.measure import (
 from ..optimise.search import METHODS
 from ..optimise.smooth import EXPONENT
 from ..optimise.variable import Variable, check_variables, design_numbers
-from ..statics.cases import Cases
 from .cases_table import DESIGN, read_cases, turns_of
 from .fit_table import no_expansion, read_temperature
 from .life_ratings import life_conditions

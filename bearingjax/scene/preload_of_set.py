@@ -7,6 +7,7 @@ import equinox as eqx
 import jax
 import numpy as np
 
+from ..cases.sweep import stack_designs
 from ..element import BearingElement, Speed
 from ..files.output_files import plain
 from ..fits import Limits, Mounting, mounting_at, sized
@@ -14,7 +15,6 @@ from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
-from ..statics.sweep import stack_designs
 from .fits import Fits
 from .report_model import Column, Grid, Part
 

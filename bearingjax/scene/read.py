@@ -24,9 +24,9 @@ from ..files.scene_file import (
 )
 from ..files.schema import read_keys
 from ..files.table import Table
+from ..life.life import LifeConditions
 from ..numerics.compiled.programs import called
 from ..statics.installed import Installed
-from ..statics.life import LifeConditions
 from ..statics.options import DEFAULT_TOLERANCE
 from .bearing_table import designated, read_bearing
 from .catalogue_keys import FromCatalogue

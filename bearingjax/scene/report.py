@@ -9,6 +9,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..cases.sweep_table import ROUND_OFF
 from ..design import (
     AbstractBarrelBearing,
     AbstractBearing,
@@ -21,7 +22,6 @@ from ..design import (
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, Solution
-from ..statics.sweep_table import ROUND_OFF
 from ..statics.warning_sizes import ends_over
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
 from .life_report import life_section

@@ -7,11 +7,11 @@ from pathlib import Path
 import jax
 import numpy as np
 
+from ..cases.sweep import Sweep
+from ..cases.sweep_program import WARNED
+from ..cases.sweep_table import NOTHING, asked, left_out, read, restored
 from ..files.quantity import SceneError
 from ..numerics.result import Result
-from ..statics.sweep import Sweep
-from ..statics.sweep_program import WARNED
-from ..statics.sweep_table import NOTHING, asked, left_out, read, restored
 from .cases_table import CaseTable
 from .sweep_run import design_columns, run_cases
 

@@ -12,6 +12,8 @@ import numpy as np
 
 from ..element import Speed
 from ..files.quantity import SceneError
+from ..life.life import Life, life_of
+from ..life.life_warning import life_warnings
 from ..numerics.result import Result, SolveError
 from ..numerics.types import as_array
 from ..rotor import (
@@ -28,8 +30,6 @@ from ..rotor import (
     static_equilibrium,
     static_equilibrium_over,
 )
-from ..statics.life import Life, life_of
-from ..statics.life_warning import life_warnings
 from ..statics.load_result import solution_at
 from .fits import fits_at_speed
 from .life_ratings import life_conditions

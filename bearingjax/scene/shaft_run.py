@@ -12,6 +12,8 @@ import numpy as np
 from ..design import rows_of
 from ..files.quantity import SceneError
 from ..fits import radial_clearance
+from ..life.life import Life, life_of
+from ..life.life_warning import ALL
 from ..numerics.compiled.programs import called
 from ..numerics.result import Result
 from ..shafts import (
@@ -31,7 +33,6 @@ from ..shafts.equilibrium import searched_system, system_state, unsolved
 from ..shafts.heat import overheated, with_temperatures
 from ..shafts.seats import adjusted, speed_of
 from ..shafts.state import moving
-from ..statics.life import Life, life_of
 from ..statics.solution import Solution
 from ..statics.warning import counted
 from .bearing_run import with_set_preload
@@ -390,7 +391,7 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
         texts = (
             solved_warnings(bearing.scene, bearing.solution, bearing.life)
             if run.duty is None
-            else [*bearing.scene.warnings, *counted(run.duty.warned[k])]
+            else [*bearing.scene.warnings, *counted(run.duty.warned[k], ALL)]
         )
         for text in texts:
             yield f"{bearing.name}: {text}"

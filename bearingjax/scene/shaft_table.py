@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cases.cases import check_hours
 from ..design import Material
 from ..element.frame import LOADS
 from ..files.output_files import read_matrix
@@ -16,6 +17,7 @@ from ..files.quantity import SceneError, scene_number, to_si
 from ..files.scene_file import assign, find_scene, is_shafts, parse_scene
 from ..files.schema import Keys, direction_json, read_keys, scene_key
 from ..files.table import Table
+from ..life.life import LifeConditions
 from ..numerics.gravity import GRAVITY
 from ..shafts import (
     Coupling,
@@ -31,8 +33,6 @@ from ..shafts import (
 )
 from ..shafts.duty import alike
 from ..shafts.parts import APEXES, HANDS
-from ..statics.cases import check_hours
-from ..statics.life import LifeConditions
 from .cases_table import CasesKeys, Varied
 from .heat_table import read_heat
 from .life_ratings import life_conditions

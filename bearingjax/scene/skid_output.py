@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from ..cases.sweep_table import column_header
 from ..element import RINGS
 from ..files.output_files import plain_run
 from ..numerics.result import Result
 from ..skid import by_raceway
 from ..skid.transient import CAUSES
 from ..statics.solution import message
-from ..statics.sweep_table import column_header
 from .skid_run import SkidRun
 
 UNITS = {

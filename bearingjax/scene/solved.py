@@ -6,8 +6,8 @@ import functools
 import jax
 
 from ..files.quantity import SceneError
-from ..statics.life import Life, life_of
-from ..statics.life_warning import life_warnings
+from ..life.life import Life, life_of
+from ..life.life_warning import life_warnings
 from ..statics.solution import Solution
 from ..statics.warning import warnings
 from .life_ratings import life_conditions

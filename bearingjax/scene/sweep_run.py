@@ -7,17 +7,17 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..cases.cases import Cases
+from ..cases.sweep import Sweep, sweep
+from ..cases.sweep_program import not_run
+from ..cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from ..design import rows_of
 from ..files.output_files import plain_run
 from ..files.quantity import SceneError
 from ..fits import radial_clearance
+from ..life.life import LIFE_OUTPUTS, LifeConditions
 from ..numerics.units import display_unit, shown_count
-from ..statics.cases import Cases
-from ..statics.life import LIFE_OUTPUTS, LifeConditions
 from ..statics.preload import is_opposed, pressed
-from ..statics.sweep import Sweep, sweep
-from ..statics.sweep_program import not_run
-from ..statics.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
 from .life_ratings import life_conditions

@@ -5,11 +5,11 @@ from typing import Any
 import equinox as eqx
 from jaxtyping import Array, Float
 
+from ..friction.friction import friction_torque
+from ..friction.friction_skf import skf_friction_torque
 from ..lubrication import Lubricant
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from ..statics.friction import friction_torque
-from ..statics.friction_skf import skf_friction_torque
 from ..statics.solution import Solution
 
 

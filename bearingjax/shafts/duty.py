@@ -11,17 +11,17 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
+from ..cases.cases import check_hours
 from ..design import rows_of
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
+from ..life.life import LifeConditions, life_of
+from ..life.life_warning import life_sizes
+from ..life.rating import check_alike
+from ..life.reference_life import BALLS, exponents_of
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar
 from ..numerics.units import unit
-from ..statics.cases import check_hours
-from ..statics.life import LifeConditions, life_of
-from ..statics.life_warning import life_sizes
-from ..statics.rating import check_alike
-from ..statics.reference_life import BALLS, exponents_of
 from ..statics.solution import Solution
 from ..statics.warning import sizes
 from .equilibrium import check_torques, system_state, torques_left

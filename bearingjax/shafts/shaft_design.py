@@ -14,15 +14,16 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..cases.cases import check_hours
 from ..design.checks import one_of
+from ..life.life import LifeConditions
+from ..life.life_warning import ALL
+from ..life.rating import check_alike
 from ..numerics.units import unit
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted
-from ..statics.cases import check_hours
-from ..statics.life import LifeConditions
-from ..statics.rating import check_alike
 from ..statics.warning import counted
 from .bearing_oil import BearingOil
 from .doubts import load_doubts
@@ -159,7 +160,7 @@ class ShaftDesign(AbstractSystem):
     def warnings(self, cases, solved):
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
-            texts = counted(jax.device_get(sizes))
+            texts = counted(jax.device_get(sizes), ALL)
             found += [f"{seat.name}: {text}" for text in texts]
         return [*found, *load_doubts(self.system, solved.load)]
 

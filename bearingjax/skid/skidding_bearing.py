@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..cases.cases import Cases, solve_case
 from ..design.checks import instance, number
 from ..element.inertia import Speed
 from ..numerics.result import Result
@@ -15,7 +16,6 @@ from ..numerics.units import unit, unit_of
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
 from ..optimise.smooth import EXPONENT
 from ..optimise.system import AbstractSystem
-from ..statics.cases import Cases, solve_case
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .conditions import conditions

@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
 from ..fits.fits import FitState
-from .life import turns_against_load
+from ..numerics.types import as_real
 
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
@@ -14,6 +16,27 @@ catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
 
 _SEATS = {"housing": "the outer ring", "shaft": "the inner ring on its shaft"}
 """Seats in the order of the rings (outer, inner), and what sits there."""
+
+
+def turns_against_load(
+    speed: Speed | None, load_fixed_to: str = "space"
+) -> Float[Array, "2"]:
+    """1 where a ring turns against the load, 0 where it does not (outer, inner).
+
+    Both may; if none does, or no speed is known, the inner ring counts as turning, or
+    the outer one if the load is fixed to the inner.
+
+    Args:
+        speed: Ring speeds.
+        load_fixed_to: As in `LifeConditions`.
+    """
+    usual = as_real([1.0, 0.0] if load_fixed_to == "inner" else [0.0, 1.0])
+    if speed is None:
+        return usual
+    frames = {"inner": speed.inner, "outer": speed.outer}
+    load = frames.get(load_fixed_to, jnp.zeros_like(speed.inner))
+    against = jnp.stack([speed.outer, speed.inner]) != load
+    return jnp.where(jnp.any(against), jnp.where(against, 1.0, 0.0), usual)
 
 
 def seat_warnings(

@@ -1,5 +1,6 @@
 """Warnings about a solution: one list for the library and the command line."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import jax
@@ -7,12 +8,8 @@ import numpy as np
 
 from ..design.checks import is_traced
 from ..numerics.types import namespace
-from .life_warning import LIFE_KINDS
 from .solution import Solution
 from .warning_kinds import KINDS
-
-ALL: dict[str, Any] = {**KINDS, **LIFE_KINDS}
-"""Every kind of warning about a case, by name."""
 
 
 def warnings(solution: Solution) -> list[str]:
@@ -76,31 +73,35 @@ def sizes(solution: Solution) -> dict[str, Any]:
         }
 
 
-def given(warned: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def given(
+    warned: Mapping[str, np.ndarray], kinds: Mapping[str, Any] = KINDS
+) -> dict[str, np.ndarray]:
     """Whether each case has each kind, by name (case,); kinds without cases left out.
 
     Args:
-        warned: Name -> `sizes`, and `life_sizes` (case,).
+        warned: Name -> size of the warning (case,), NaN where it does not apply.
+        kinds: Kinds of warnings by name, in the order in which they are told.
     """
-    over = {
-        name: warned[name] > kind.limit for name, kind in ALL.items() if name in warned
-    }
-    for name in set(over) & set(LIFE_KINDS):
-        if LIFE_KINDS[name].of_all and (~over[name] & np.isfinite(warned[name])).any():
+    names = sorted(warned, key=[*kinds].index)
+    over = {name: warned[name] > kinds[name].limit for name in names}
+    for name in [name for name in over if kinds[name].of_all]:
+        if (~over[name] & np.isfinite(warned[name])).any():
             del over[name]
     return {name: cases for name, cases in over.items() if cases.any()}
 
 
-def counted(warned: dict[str, np.ndarray]) -> list[str]:
+def counted(
+    warned: Mapping[str, np.ndarray], kinds: Mapping[str, Any] = KINDS
+) -> list[str]:
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned: As in `given`.
+        warned, kinds: As in `given`.
     """
     out = []
-    for name, cases in given(warned).items():
+    for name, cases in given(warned, kinds).items():
         worst = int(np.nanargmax(warned[name]))
-        said = ALL[name].words(float(warned[name][worst]), "")
+        said = kinds[name].words(float(warned[name][worst]), "")
         out.append(
             f"{said}, in {int(cases.sum())} of {len(cases)} cases, worst case {worst}"
         )

@@ -36,6 +36,7 @@ class Kind(NamedTuple):
         where: Concrete solution -> the rows, elements or numbers concerned, in words.
         many: Size -> the words in place of those of `where` for many cases.
         factor: Of size and limit in the text.
+        of_all: Whether it is reported only if it applies to all cases.
     """
 
     applies: Callable[[BearingElement, Speed | None], bool]
@@ -45,6 +46,7 @@ class Kind(NamedTuple):
     where: Callable[[Solution], str] = lambda solution: ""
     many: Callable[[float], str] = lambda size: ""
     factor: float = 1.0
+    of_all: bool = False
 
     def words(self, size: float, where: str) -> str:
         """Return the sentence about a size.

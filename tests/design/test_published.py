@@ -14,9 +14,9 @@ from tolerances import ROUNDING
 import bearingjax as bj
 from bearingjax.catalogue.entry import catalogue_entries
 from bearingjax.design.published import is_as_published, rated_dimensions
+from bearingjax.life import equivalent_load, rating, ratings
 from bearingjax.optimise.variable import changed
 from bearingjax.scene import read_scene
-from bearingjax.statics import equivalent_load, rating, ratings
 
 LOAD = np.array([2e3, 0.0, 4e3, 0.0, 0.0, 0.0])
 

@@ -24,7 +24,7 @@ from bearingjax.fits import (
     sized,
     with_radial_clearance,
 )
-from bearingjax.statics.rating import nominal_contact_angle
+from bearingjax.life.rating import nominal_contact_angle
 
 MICRON = 1e-6
 BALLS = {

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.cases.cases import Cases
+from bearingjax.cases.sweep import Sweep
 from bearingjax.numerics import Result
 from bearingjax.plot.style import power_of_ten
-from bearingjax.statics.cases import Cases
-from bearingjax.statics.sweep import Sweep
 
 plt = pytest.importorskip("matplotlib.pyplot")
 FY = np.tile(-1e3 * np.arange(1.0, 9.0), 2)

@@ -10,6 +10,7 @@ import pytest
 from pages import missing_on_page
 
 import bearingjax as bj
+from bearingjax.cases import Sweep, sweep_table
 from bearingjax.files import SceneError
 from bearingjax.files import column_list as cases_list
 from bearingjax.scene import (
@@ -19,7 +20,6 @@ from bearingjax.scene import (
     read_scene,
     sweep_report,
 )
-from bearingjax.statics import Sweep, sweep_table
 
 HEAD = """
 [bearing]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.cases import sweep_table
 from bearingjax.scene import as_dict
 from bearingjax.scene.compare_run import _side_by_side, difference
-from bearingjax.statics import sweep_table
 
 SCENE = "cylindrical_rig"
 PAIR = """

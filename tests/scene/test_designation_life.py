@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.life import ratings
 from bearingjax.scene import (
     read_cases,
     read_noise,
@@ -16,7 +17,6 @@ from bearingjax.scene import (
 )
 from bearingjax.scene.life_ratings import not_published, rating_origins
 from bearingjax.scene.rotor_run import task_warnings
-from bearingjax.statics import ratings
 
 LOAD = '[operating]\nload = { Fy = "-1 kN" }\n'
 

@@ -14,6 +14,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import SceneError
+from bearingjax.cases.sweep import Sweep
+from bearingjax.cases.sweep_table import columns
 from bearingjax.design import rows_of
 from bearingjax.fits import (
     Mounting,
@@ -41,8 +43,6 @@ from bearingjax.scene.rotor_run import RotorRun, task_warnings
 from bearingjax.scene.rotor_supports import support_of
 from bearingjax.scene.sweep_run import _on_seats
 from bearingjax.statics.options import SolveOptions
-from bearingjax.statics.sweep import Sweep
-from bearingjax.statics.sweep_table import columns
 
 MICRON = 1e-6
 REFUSED = Path(__file__).with_name("refused")

@@ -12,6 +12,7 @@ from studies import SEARCH, WORDS, Runs, Study
 from tolerances import SOLVER
 
 import bearingjax as bj
+from bearingjax.cases.sweep import Sweep
 from bearingjax.files import shipped_scenes
 from bearingjax.lubrication import OILS
 from bearingjax.scene import read_cases, run_scene
@@ -21,7 +22,6 @@ from bearingjax.scene.life_run import (
     spectrum_page,
     spectrum_report,
 )
-from bearingjax.statics.sweep import Sweep
 
 GROOVES = {"inner_osculation": 0.52, "outer_osculation": 0.53}
 SCENE = "life_spectrum"

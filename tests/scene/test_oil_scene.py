@@ -100,8 +100,8 @@ def test_command_tells_friction_and_films(run, scene, tmp_path):
 
 
 def test_series_words_tell_an_assumed_series():
+    from bearingjax.friction import SkfFriction
     from bearingjax.scene.oil_table import series_words
-    from bearingjax.statics import SkfFriction
 
     one = jnp.ones(1)
     made = [SkfFriction(one, one, one[0], "62", known) for known in (False, True)]

@@ -10,10 +10,8 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax import FREEDOMS, Cases
-from bearingjax.numerics.result import Result
-from bearingjax.scene import design_columns, read_cases, resume
-from bearingjax.statics import Sweep, sweep_program, sweep_table
-from bearingjax.statics.sweep_table import (
+from bearingjax.cases import Sweep, sweep_program, sweep_table
+from bearingjax.cases.sweep_table import (
     asked,
     left_out,
     read,
@@ -21,8 +19,10 @@ from bearingjax.statics.sweep_table import (
     write,
     write_columns,
 )
+from bearingjax.numerics.result import Result
+from bearingjax.scene import design_columns, read_cases, resume
 
-SWEEP = importlib.import_module("bearingjax.statics.sweep")  # the name is a function
+SWEEP = importlib.import_module("bearingjax.cases.sweep")  # the name is a function
 
 # In the part that is solved first one load is nought throughout.
 LIST = """operating.load.Fy [kN],operating.load.Fx [kN]

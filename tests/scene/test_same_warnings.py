@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.life.life_warning import ALL, LIFE_KINDS, life_sizes
 from bearingjax.scene import (
     read_cases,
     read_optimisation,
@@ -17,8 +18,7 @@ from bearingjax.scene import (
 from bearingjax.scene.optimise_report import optimisation_as_dict
 from bearingjax.scene.output import as_dict
 from bearingjax.scene.sweep_run import all_warnings
-from bearingjax.statics.life_warning import LIFE_KINDS, life_sizes
-from bearingjax.statics.warning import ALL, counted, sizes
+from bearingjax.statics.warning import counted, sizes
 
 LIGHT = """
 [bearing]
@@ -69,7 +69,7 @@ def solved(path, settings=()):
     kinds = {name for name, size in found.items() if size > ALL[name].limit}
     told = as_dict(bj.scene.SolvedScene(scene, solution))["warnings"]
     assert len(told) == len(scene.warnings) + len(kinds)
-    of_one = counted({name: np.atleast_1d(size) for name, size in found.items()})
+    of_one = counted({name: np.atleast_1d(size) for name, size in found.items()}, ALL)
     return alone((*scene.warnings, *of_one)), kinds
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.cases.sweep_table import columns
 from bearingjax.scene import (
     read_cases,
     read_optimisation,
@@ -25,7 +26,6 @@ from bearingjax.scene.preload_of_set import (
     range_warnings,
 )
 from bearingjax.scene.sweep_run import set_warnings
-from bearingjax.statics.sweep_table import columns
 
 PAIR = """
 [bearing]

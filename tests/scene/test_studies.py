@@ -45,7 +45,7 @@ def test_run_solves_scene_with_settings(untyped):
 def test_run_solves_the_cases():
     some = '{ grid = { "operating.load.Fy" = ["-1 kN", "-2 kN"] } }'
     found = bj.run("cylindrical_rig", [f"cases={some}"])
-    assert isinstance(found, bj.statics.Sweep) and found.converged.all()
+    assert isinstance(found, bj.cases.Sweep) and found.converged.all()
     assert found.cases.count == 2
 
 

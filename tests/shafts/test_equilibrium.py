@@ -8,6 +8,7 @@ import pytest
 from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
 
 import bearingjax as bj
+from bearingjax.friction import films
 from bearingjax.shafts import (
     Drive,
     Gear,
@@ -20,7 +21,7 @@ from bearingjax.shafts import (
     solve_system,
 )
 from bearingjax.shafts.seats import axial_growth
-from bearingjax.statics import BallSolution, films, warnings
+from bearingjax.statics import BallSolution, warnings
 
 LOAD = [
     ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0), (10.0, -25.0, 0.0)),

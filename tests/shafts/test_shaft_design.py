@@ -11,6 +11,7 @@ from systems import ball, springs, stage
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
+from bearingjax.life.life import LifeConditions
 from bearingjax.lubrication import iso_vg
 from bearingjax.optimise import Constraint, PeakPressure, Variable, optimise
 from bearingjax.optimise.design_problem import Problem
@@ -26,7 +27,6 @@ from bearingjax.shafts import (
     system_life,
 )
 from bearingjax.shafts.duty import bearing_hours
-from bearingjax.statics.life import LifeConditions
 from bearingjax.statics.options import SolveOptions
 
 POWERS, HOURS = (12e3, 22e3, 30e3), (500.0, 300.0, 50.0)

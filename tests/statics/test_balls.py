@@ -11,7 +11,8 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import inertia_load
-from bearingjax.statics import BallSolution, films, warnings
+from bearingjax.friction import films
+from bearingjax.statics import BallSolution, warnings
 from bearingjax.statics.load_result import solution_at
 from bearingjax.statics.warning_sizes import on_land
 

@@ -235,7 +235,7 @@ def of_solution(solution):
         "solution": solution,
         "life": bj.rating_life(solution, viscosity=2e-5, contamination=0.5),
         "torque": bj.friction_torque(solution, 2e-5),
-        "skf": bj.statics.skf_friction_torque(solution, 2e-5),
+        "skf": bj.friction.skf_friction_torque(solution, 2e-5),
         "films": bj.films(solution, oil, 340.0, 2e-7),
         "warnings": sizes(solution),
     }

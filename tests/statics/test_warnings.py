@@ -12,7 +12,8 @@ from registry import balls, bearings
 from tolerances import ROUNDING
 
 import bearingjax as bj
-from bearingjax.statics import seat_warnings, speed_warnings, sweep_table
+from bearingjax.cases import sweep_table
+from bearingjax.statics import seat_warnings, speed_warnings
 from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS

@@ -17,8 +17,8 @@ from slopes import with_slopes
 from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.statics import row_rating
-from bearingjax.statics.row_rating import BallRow
+from bearingjax.life import row_rating
+from bearingjax.life.row_rating import BallRow
 
 _DEG = np.pi / 180
 _LAST_DIGIT = 0.1
@@ -273,7 +273,7 @@ def test_steep_bearings_are_rated_by_their_axial_load():
     angular = EXAMPLES["angular contact"]
     angle = 60 * _DEG
     steep = eqx.tree_at(lambda b: b.contact_angle, angular, jnp.asarray(angle))
-    assert not bj.statics.rated_axially(angular) and bj.statics.rated_axially(steep)
+    assert not bj.life.rated_axially(angular) and bj.life.rated_axially(steep)
     g = 22.225 * 0.5 / 125.26
     # f_c of the standard's table at 60 degrees, and f_0 of thrust bearings.
     f = np.interp(g, np.arange(1, 21) / 100, printed(F_C["60"]))
@@ -295,7 +295,7 @@ def test_given_ratings_are_kept_and_named():
     assert float(rated.fatigue_load_limit) == pytest.approx(limit, rel=ROUNDING)
     roller = EXAMPLES["cylindrical"]
     limit = float(bj.static_capacity(roller)) / 8.2 / 1.035**0.3
-    assert float(bj.statics.fatigue_load_limit(roller)) == pytest.approx(
+    assert float(bj.life.fatigue_load_limit(roller)) == pytest.approx(
         limit, rel=ROUNDING
     )
 
@@ -304,7 +304,7 @@ def test_fatigue_load_limit_of_the_contacts():
     """Annex B by hand, beside C0: its pressure is 2.8 times as high."""
 
     def limit(bearing):
-        return float(bj.statics.fatigue_load_limit(bearing, method="contact"))
+        return float(bj.life.fatigue_load_limit(bearing, method="contact"))
 
     # At grooves that C0 is counted with all contacts are alike.
     bearing = balls()
@@ -365,15 +365,15 @@ SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angl
             "`dynamic_capacity` is -1",
         ),
         (
-            lambda: bj.statics.fatigue_load_limit(balls(), np.nan),
+            lambda: bj.life.fatigue_load_limit(balls(), np.nan),
             "`static_capacity` is nan N; it must be a finite",
         ),
         (
-            lambda: bj.statics.fatigue_load_limit(balls(), method="hertz"),
+            lambda: bj.life.fatigue_load_limit(balls(), method="hertz"),
             "`method` is 'hertz'; it must be 'static' or 'contact'",
         ),
         (
-            lambda: bj.statics.fatigue_load_limit(taper(), method="contact"),
+            lambda: bj.life.fatigue_load_limit(taper(), method="contact"),
             "'contact' is of ball bearings",
         ),
         (
@@ -393,7 +393,7 @@ def test_ratings_reject_invalid_arguments(call, words):
 
 def test_program_is_shared_by_bearings_of_one_kind():
     """Another number of balls compiles nothing: the count is a number like others."""
-    from bearingjax.statics import rating
+    from bearingjax.life import rating
 
     rows = [rating._row(balls(n=n)) for n in (7, 8, 9)]
     assert len({jax.tree.structure(row) for row in rows}) == 1
@@ -404,6 +404,6 @@ def test_equivalent_load_of_invalid_load():
         8, 0.045, 0.0085, outer_osculation=0.525, inner_osculation=0.515
     )
     for load in ([0.0, np.nan, 800.0, 0, 0, 0], [np.nan, 0.0, 0.0, 0, 0, 0]):
-        assert np.all(np.isnan(bj.statics.equivalent_load(bearing, jnp.asarray(load))))
+        assert np.all(np.isnan(bj.life.equivalent_load(bearing, jnp.asarray(load))))
     with pytest.raises(ValueError, match=r"`load` has shape \(3,\); it must be \(6,\)"):
-        bj.statics.equivalent_load(bearing, jnp.asarray([0.0, 500.0, 800.0]))
+        bj.life.equivalent_load(bearing, jnp.asarray([0.0, 500.0, 800.0]))

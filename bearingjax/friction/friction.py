@@ -32,12 +32,12 @@ from ..design import (
     rows_of,
 )
 from ..design.checks import check, of_class, one_of, positive
+from ..life.equivalent_load import equivalent_load
+from ..life.rating import nominal_contact_angle
+from ..life.rating import static_capacity as rated
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .equivalent_load import equivalent_load
-from .rating import nominal_contact_angle
-from .rating import static_capacity as rated
-from .solution import BallSolution, Solution, check_single
+from ..statics.solution import BallSolution, Solution, check_single
 
 SUPPLIES = ("grease", "oil_mist", "oil_bath", "oil_jet")
 """Types of lubricant supply; a jet counts as an oil bath with a vertical shaft."""

@@ -4,9 +4,9 @@ from ..design import AbstractRollerBearing, bearings_of
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
+from ..statics.options import SolveOptions
+from ..statics.support import restrained_freedoms
 from .cases import Cases
-from .options import SolveOptions
-from .support import restrained_freedoms
 
 
 def names_of_zeros(

@@ -14,9 +14,9 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
 from ..numerics.units import unit
-from .load import solve
-from .options import SolveOptions
-from .solution import Solution
+from ..statics.load import solve
+from ..statics.options import SolveOptions
+from ..statics.solution import Solution
 
 
 class Cases(eqx.Module):

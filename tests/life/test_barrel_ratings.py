@@ -18,14 +18,14 @@ from tolerances import DIFFERENCE, ROUNDING
 import bearingjax as bj
 from bearingjax.element.constants import relative_radii
 from bearingjax.fits.mounted import radial_clearance, row_shifts, with_radial_clearance
-from bearingjax.statics import row_rating
-from bearingjax.statics.equivalent_load import equivalent_load, left_out, load_factors
-from bearingjax.statics.friction import _of_row
-from bearingjax.statics.friction_skf import _TYPES, _variables
-from bearingjax.statics.life_warning import life_warnings
-from bearingjax.statics.rating import row_ratings
-from bearingjax.statics.reference_life import contact_capacities
-from bearingjax.statics.row_rating import RollerRow
+from bearingjax.friction.friction import _of_row
+from bearingjax.friction.friction_skf import _TYPES, _variables
+from bearingjax.life import row_rating
+from bearingjax.life.equivalent_load import equivalent_load, left_out, load_factors
+from bearingjax.life.life_warning import life_warnings
+from bearingjax.life.rating import row_ratings
+from bearingjax.life.reference_life import contact_capacities
+from bearingjax.life.row_rating import RollerRow
 
 _DEG = np.pi / 180
 SPEED = bj.Speed(inner=50.0)
@@ -478,7 +478,7 @@ def test_skfs_model_beside_skfs_constant_coefficients():
 
 @pytest.mark.slow
 def test_friction_of_a_solution(solved):
-    skf = bj.statics.skf_friction_torque
+    skf = bj.friction.skf_friction_torque
     found = skf(solved["spherical"], 2e-5, series="222E", diameters=(0.1, 0.18))
     assert found.rolling_torque.shape == (1,) and float(found.torque) > 0
     with pytest.raises(ValueError, match="`diameters` is None; it must be bore and"):
@@ -486,7 +486,7 @@ def test_friction_of_a_solution(solved):
     turning = eqx.tree_at(lambda s: s.speed, solved["crossed"], SPEED, is_leaf=is_none)
     with pytest.raises(ValueError, match="no CrossedRollerRow; it must be one of"):
         skf(turning, 2e-5)
-    assert bj.statics.skf_series(EXAMPLES["crossed"][0]) == ()
+    assert bj.friction.skf_series(EXAMPLES["crossed"][0]) == ()
 
 
 @pytest.mark.slow
@@ -595,7 +595,7 @@ def test_thrust_rollers_on_two_circles():
     assert max(c) < wanted < sum(c)
     c0 = [float(bj.static_capacity(row)) for row in (inner, outer)]
     assert float(bj.static_capacity(both)) == pytest.approx(sum(c0), rel=ROUNDING)
-    rated = bj.statics.ratings(both)
+    rated = bj.life.ratings(both)
     assert bool(rated.axial)
     assert float(rated.fatigue_load_limit) == pytest.approx(sum(c0) / 8.2, rel=ROUNDING)
     # The formula for unlike rows is that for alike ones where they are alike.
@@ -608,7 +608,7 @@ def test_thrust_rollers_on_two_circles():
 
     @jax.jit
     def found(bearing):
-        rated = bj.statics.ratings(bearing)
+        rated = bj.life.ratings(bearing)
         rows = jnp.asarray(row_ratings(bearing, rated))
         return rated.dynamic_capacity, rated.fatigue_load_limit, rows
 
@@ -627,7 +627,7 @@ def test_ratings_of_unlike_rows_are_nan_when_traced():
     """Where the numbers are not known, a set of alike rows is still rated."""
     row = bj.CylindricalThrustRollerBearing(20, 0.078, 0.009, 0.008)
     other = eqx.tree_at(lambda b: b.roller_length, row, jnp.asarray(0.007))
-    capacity = jax.jit(lambda bearing: bj.statics.ratings(bearing).dynamic_capacity)
+    capacity = jax.jit(lambda bearing: bj.life.ratings(bearing).dynamic_capacity)
 
     def pair(second):
         turned = bj.design.SetRow(second, 0.05, mirrored=True)

@@ -18,11 +18,11 @@ from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
+from ..statics.options import SolveOptions
+from ..statics.solution import Solution
+from ..statics.support import restrained_freedoms
+from ..statics.warning_sizes import loose
 from .cases import Cases
-from .options import SolveOptions
-from .solution import Solution
-from .support import restrained_freedoms
-from .warning_sizes import loose
 
 KEPT = 1024
 """Solved cases of a device that others start from. More cost more than they save."""

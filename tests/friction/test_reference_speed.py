@@ -6,13 +6,13 @@ import pytest
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
-from bearingjax.statics import (
+from bearingjax.friction import (
     heat_area,
     reference_factors,
     reference_speed,
     thermal_speed,
 )
-from bearingjax.statics.reference_speed import _FACTORS, _factors_of
+from bearingjax.friction.reference_speed import _FACTORS, _factors_of
 
 RPM = 30.0 / np.pi
 

@@ -20,8 +20,7 @@ from registry import grooves
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
-from bearingjax.optimise.design_problem import Problem
-from bearingjax.statics import (
+from bearingjax.life import (
     CLEANLINESS,
     Cleanliness,
     life_factor,
@@ -29,7 +28,7 @@ from bearingjax.statics import (
     reliability_factor,
     viscosity_ratio,
 )
-from bearingjax.statics.equivalent_load import (
+from bearingjax.life.equivalent_load import (
     _ANGLES,
     _FLAT,
     _STEEP,
@@ -41,7 +40,7 @@ from bearingjax.statics.equivalent_load import (
     left_out,
     load_factors,
 )
-from bearingjax.statics.life import (
+from bearingjax.life.life import (
     FRAMES,
     LIFE_OUTPUTS,
     _modified,
@@ -49,14 +48,15 @@ from bearingjax.statics.life import (
     life_outputs,
     turns_against_load,
 )
-from bearingjax.statics.life_warning import LIFE_KINDS, life_sizes, life_warnings
-from bearingjax.statics.reference_life import (
+from bearingjax.life.life_warning import ALL, LIFE_KINDS, life_sizes, life_warnings
+from bearingjax.life.reference_life import (
     BALLS,
     contact_capacities,
     edge_stress,
     row_fatigue,
 )
-from bearingjax.statics.refined_life import _of_laminae, _peaks_at_an_end
+from bearingjax.life.refined_life import _of_laminae, _peaks_at_an_end
+from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics.warning import counted
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
@@ -829,7 +829,7 @@ def test_optimise_life_warnings_match_rating_life():
         one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
         life = bj.rating_life(element, one)
         found = life_sizes(element.bearing, life.ratings, vars(life))
-        (alone,) = counted({name: np.atleast_1d(x) for name, x in found.items()})
+        (alone,) = counted({name: np.atleast_1d(x) for name, x in found.items()}, ALL)
         words, _, case = alone.partition(", in 1 of 1 cases, worst case ")
         assert text == f"{words}, in 1 of 3 cases, worst case {k}" and case == "0"
 
@@ -964,16 +964,16 @@ def test_life_warnings_of_each_kind(untyped):
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
     cases["viscosity_ratio"][:] = [0.08, 4.5, 0.02, np.nan]
-    heavy, thin, thick = counted(life_sizes(bearing, ratings, cases))  # pyright: ignore[reportArgumentType]
+    heavy, thin, thick = counted(life_sizes(bearing, ratings, cases), ALL)  # pyright: ignore[reportArgumentType]
     assert "1.5 times the lesser" in heavy and "in 1 of 4 cases, worst" in heavy
     assert heavy.endswith("case 1")
     assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
     assert "of 4.5:" in thick and "in 1 of 4 cases, worst case 1" in thick
     # A standstill among other cases has no life in hours, and needs none.
     cases["life_hours"][2] = np.inf
-    assert len(counted(life_sizes(bearing, ratings, cases))) == 3  # pyright: ignore[reportArgumentType]
+    assert len(counted(life_sizes(bearing, ratings, cases), ALL)) == 3  # pyright: ignore[reportArgumentType]
     cases["life_hours"][:] = np.inf
-    assert "no life in hours" in counted(life_sizes(bearing, ratings, cases))[-1]  # pyright: ignore[reportArgumentType]
+    assert "no life in hours" in counted(life_sizes(bearing, ratings, cases), ALL)[-1]  # pyright: ignore[reportArgumentType]
 
 
 def nj_element():

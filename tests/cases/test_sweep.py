@@ -17,15 +17,10 @@ import pytest
 from sweep_in_process import loads, small_element
 
 import bearingjax as bj
+from bearingjax.cases import near_starts, sweep_program, sweep_table
+from bearingjax.cases.sweep import n_designs
 from bearingjax.numerics.compiled import batched_loop
-from bearingjax.statics import (
-    SolveOptions,
-    load_search,
-    near_starts,
-    sweep_program,
-    sweep_table,
-)
-from bearingjax.statics.sweep import n_designs
+from bearingjax.statics import SolveOptions, load_search
 
 COUPLED = """
 import jax, numpy as np, bearingjax as bj
@@ -376,7 +371,7 @@ def test_columns_of_round_off_are_zero():
         "displacement": moved,
         "residual": moved[:, 0],
     }
-    found = bj.statics.Sweep(bj.Cases(np.zeros((3, 6))), outputs, "inner")
+    found = bj.cases.Sweep(bj.Cases(np.zeros((3, 6))), outputs, "inner")
     plain, exact = sweep_table.columns(found), sweep_table.columns(found, exact=True)
     names = [f"displacement_outer_{n} [m]" for n in ("ux", "uy", "uz")]
     names += [f"displacement_outer_{n} [rad]" for n in ("gx", "gy", "gz")]

@@ -15,15 +15,15 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
 from ..design import rows_of
+from ..life.life import LifeConditions, life_of, life_outputs
+from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
+from ..statics.options import SolveOptions
+from ..statics.solution import Solution
+from ..statics.warning import sizes
 from .cases import solve_case
-from .life import LifeConditions, life_of, life_outputs
-from .life_warning import life_sizes
 from .near_starts import added, likeness, nothing_known, others, starts
-from .options import SolveOptions
-from .solution import Solution
-from .warning import sizes
 
 BLOCK = 4096
 """Cases of a device between two visits of the host, or a chunk if that is more."""

@@ -14,14 +14,15 @@ import numpy as np
 from ..design.rib import RIB_NAMES
 from ..element.frame import FREEDOMS, LOADS, RINGS
 from ..fits.fits import Mounting
+from ..life.life import Life
+from ..life.life_warning import ALL
 from ..numerics.result import Result
 from ..numerics.units import unit_of
+from ..statics.solution import BallSolution, RollerSolution
+from ..statics.warning import given
 from .cases import Cases
-from .life import Life
-from .solution import BallSolution, RollerSolution
 from .sweep import SUMMARIES, Sweep
 from .sweep_program import WARNED, not_run
-from .warning import given
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 
@@ -158,7 +159,7 @@ def left_out(sweep: Sweep) -> tuple[tuple[str, tuple[str, ...]], ...]:
 def _warned(sweep):
     """Warnings of each case, "kind=size" joined by "; ", sizes in SI."""
     texts = np.full(sweep.cases.count, "", dtype=object)
-    for name, cases in given(sweep.warned).items():
+    for name, cases in given(sweep.warned, ALL).items():
         new = [f"{name}={size:.6g}" for size in sweep.warned[name][cases]]
         old = texts[cases]
         texts[cases] = [f"{a}; {b}" if a else b for a, b in zip(old, new, strict=True)]

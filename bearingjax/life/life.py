@@ -24,6 +24,8 @@ from ..numerics.implicit import unless_failed
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
+from ..statics.service_warning import turns_against_load
+from ..statics.solution import BallSolution, RollerSolution, Solution
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out
 from .life_factor import (
     LARGEST_FACTOR,
@@ -51,7 +53,6 @@ from .reference_life import (
     exponents_of,
     row_fatigue,
 )
-from .solution import BallSolution, RollerSolution, Solution
 
 STANDARDS = {
     "basic_rating_life": "ISO 281:2007",
@@ -485,27 +486,6 @@ def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
     return Life(
         **fields, **modified, damage=damage, life_hours=hours, reliability_factor=a1
     )
-
-
-def turns_against_load(
-    speed: Speed | None, load_fixed_to: str = "space"
-) -> Float[Array, "2"]:
-    """1 where a ring turns against the load, 0 where it does not (outer, inner).
-
-    Both may; if none does, or no speed is known, the inner ring counts as turning, or
-    the outer one if the load is fixed to the inner.
-
-    Args:
-        speed: Ring speeds.
-        load_fixed_to: As in `LifeConditions`.
-    """
-    usual = as_real([1.0, 0.0] if load_fixed_to == "inner" else [0.0, 1.0])
-    if speed is None:
-        return usual
-    frames = {"inner": speed.inner, "outer": speed.outer}
-    load = frames.get(load_fixed_to, jnp.zeros_like(speed.inner))
-    against = jnp.stack([speed.outer, speed.inner]) != load
-    return jnp.where(jnp.any(against), jnp.where(against, 1.0, 0.0), usual)
 
 
 class _RowPart(NamedTuple):

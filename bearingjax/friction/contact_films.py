@@ -13,7 +13,7 @@ from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .solution import BallSolution, Solution, check_single
+from ..statics.solution import BallSolution, Solution, check_single
 
 _SIDES = (1.0, -1.0)
 """Signs of outer and inner raceway: outside and inside of the pitch circle."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..design import AbstractBearing, BearingSet, pitch_radius
 from ..numerics.types import namespace
+from ..statics.warning_kinds import KINDS
 from .life_factor import KAPPA
 from .rating import Ratings
 from .reference_life import LEAST_LAMINAE
@@ -221,3 +222,7 @@ LIFE_KINDS: dict[str, LifeKind] = {
     ),
 }
 """Every kind of warning about a life, by name, in the order of the reports."""
+
+
+ALL: dict[str, Any] = {**KINDS, **LIFE_KINDS}
+"""Every kind of warning about a case, by name."""

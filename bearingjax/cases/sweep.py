@@ -18,16 +18,17 @@ from jaxtyping import Array, Bool, Float
 from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.checks import is_traced, of_class
 from ..element.bearing_element import BearingElement, check_element
+from ..life.life import LIFE_OUTPUTS, LifeConditions
+from ..life.life_warning import ALL
+from ..life.rating import check_alike
 from ..numerics.result import Result
+from ..statics.options import SolveOptions
+from ..statics.solution import Solution
+from ..statics.support import check_held
+from ..statics.warning import counted, given
 from .cases import Cases
-from .life import LIFE_OUTPUTS, LifeConditions
 from .names_of_zeros import names_of_zeros
-from .options import SolveOptions
-from .rating import check_alike
-from .solution import Solution
-from .support import check_held
 from .sweep_program import WARNED, Program, Task
-from .warning import counted, given
 
 CHUNK = 512
 """Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
@@ -56,7 +57,7 @@ class Sweep(eqx.Module):
         cases: The cases that were solved.
         outputs: By name, leading axis case; among them `warning_KIND`, the size of
             every kind of warning that can arise (`statics.warning_kinds.KINDS`, and
-            with conditions of a life `statics.life_warning.LIFE_KINDS`).
+            with conditions of a life `life.life_warning.LIFE_KINDS`).
         moving_ring: "outer" or "inner".
         zeros: (output, names along its last axes whose numbers are zero whatever the
             case), each; a table leaves them out.
@@ -98,11 +99,13 @@ class Sweep(eqx.Module):
     @property
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
-        return counted(self.warned)
+        return counted(self.warned, ALL)
 
     def warning_counts(self) -> dict[str, int]:
         """Number of cases with each kind of warning; kinds without cases left out."""
-        return {name: int(cases.sum()) for name, cases in given(self.warned).items()}
+        return {
+            name: int(cases.sum()) for name, cases in given(self.warned, ALL).items()
+        }
 
 
 def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any]:

@@ -8,9 +8,9 @@ from ..contact.halfspace import Grid
 from ..element.bearing_element import BearingElement
 from ..element.frame import RINGS
 from ..element.inertia import Speed
+from ..statics.refine import Refined, refine
+from ..statics.solution import RollerSolution
 from .reference_life import LEAST_LAMINAE, ROLLERS
-from .refine import Refined, refine
-from .solution import RollerSolution
 
 
 def refined_lamina_loads(

@@ -30,12 +30,12 @@ from ..design import (
 )
 from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
+from ..life.rating import nominal_contact_angle
+from ..life.rating import static_capacity as rated
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
+from ..statics.solution import Solution
 from .friction import check_call, unit_loads, units_of
-from .rating import nominal_contact_angle
-from .rating import static_capacity as rated
-from .solution import Solution
 
 OILS = {"mineral": 0.05, "synthetic": 0.04, "transmission": 0.1}
 """Friction coefficient of sliding in a full film by the kind of oil [1]; rollers of

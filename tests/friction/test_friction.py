@@ -10,9 +10,9 @@ import pytest
 import bearingjax as bj
 from bearingjax.design.keywords import BALLS as BALL_TYPES
 from bearingjax.design.keywords import ROLLERS as ROLLERS_BY_TYPE
+from bearingjax.friction import SUPPLIES, friction_skf, skf_series_of
+from bearingjax.friction.friction import _of_row, _row_loads, unit_loads
 from bearingjax.lubrication import OILS
-from bearingjax.statics import SUPPLIES, friction_skf, skf_series_of
-from bearingjax.statics.friction import _of_row, _row_loads, unit_loads
 
 BALLS = {
     "n_balls": 9,
@@ -261,12 +261,12 @@ def test_skf_rolling_and_sliding_variables_by_hand():
 
 
 def test_skf_series_of_a_bearing():
-    assert bj.statics.skf_series(ANGULAR) == ("other", "72B", "73B", "72AC", "73AC")
-    assert bj.statics.skf_series(bj.BearingSet.tandem(TAPER, 0.02))[:2] == (
+    assert bj.friction.skf_series(ANGULAR) == ("other", "72B", "73B", "72AC", "73AC")
+    assert bj.friction.skf_series(bj.BearingSet.tandem(TAPER, 0.02))[:2] == (
         "other",
         "302",
     )
-    assert bj.statics.skf_series(NEEDLE) == ()
+    assert bj.friction.skf_series(NEEDLE) == ()
 
 
 def test_skf_diameters_from_the_rolling_elements():
@@ -360,7 +360,7 @@ def pair():
             solution,
             bj.friction_torque(solution, viscosity),
             bj.films(solution, oil, 323.15, 0.2e-6),
-            bj.statics.skf_friction_torque(
+            bj.friction.skf_friction_torque(
                 solution, viscosity, diameters=(0.025, 0.052)
             ),
         )
@@ -488,7 +488,7 @@ def test_friction_and_films_reject_invalid_arguments(pair):
         bj.friction_torque(solution, 30.0)
     with pytest.raises(ValueError, match="`viscosity` is 0 m²/s"):
         bj.friction_torque(solution, 0.0)
-    skf = bj.statics.skf_friction_torque
+    skf = bj.friction.skf_friction_torque
     with pytest.raises(ValueError, match="skf_friction_torque: `supply` is 'bath'"):
         skf(solution, 30e-6, "bath")
     with pytest.raises(ValueError, match="`series` is '62'; .* other, 72B, 73B"):
