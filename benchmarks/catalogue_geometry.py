@@ -374,7 +374,7 @@ def blind(kind, values, size) -> float | None:
     if kind in ("spherical_roller", "spherical_thrust_roller"):
         given = {"contact_angle": axis_and_arc(kind, values)[0]}
     try:
-        found = bj.optimise.estimate_geometry(
+        found = bj.catalogue.estimate_geometry(
             bore, outside, width, kind, c, c0, **given
         )
     except ValueError:

@@ -210,7 +210,7 @@ def estimate(kind, d, big, b, c, c0, angle=None):
     """Of mm and N, the angle in degrees."""
     angle = None if angle is None else np.deg2rad(angle)
     sizes = 1e-3 * d, 1e-3 * big, 1e-3 * b
-    return bj.optimise.estimate_geometry(*sizes, kind, c, c0, contact_angle=angle)
+    return bj.catalogue.estimate_geometry(*sizes, kind, c, c0, contact_angle=angle)
 
 
 def inside(bearing):

@@ -17,8 +17,8 @@ import bearingjax as bj
 
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
-    "numerics files design fits catalogue contact lubrication element statics life"
-    " cases friction optimise skid rotor shafts noise scene plot cli"
+    "numerics files design fits contact lubrication element statics life"
+    " cases catalogue friction optimise skid rotor shafts noise scene plot cli"
 ).split()
 # What the plots show is what all layers below the scene provide; scene and plot stand
 # side by side, and only the command line and the top level see both.

@@ -33,9 +33,10 @@ def add(commands):
 
 def run(options) -> int:
     """Print a scene of a bearing, of the catalogue or estimated, or of shafts."""
+    from ..catalogue import estimated_entry
+    from ..catalogue.estimated_entry import SIZES
     from ..files import SceneError, shipped_scenes
-    from ..scene import estimated_entry, listed_bearing, new_scene
-    from ..scene.estimated_entry import SIZES
+    from ..scene import listed_bearing, new_scene
 
     given = {name: getattr(options, name) for name in SIZES}
     name = " ".join(options.designation)

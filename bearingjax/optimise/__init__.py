@@ -28,8 +28,6 @@ the ratings and the usual proportions. It is an estimate; `report()` states its 
 
 from .constraint import Constraint as Constraint
 from .design_problem import Outcome as Outcome
-from .estimate import GeometryEstimate as GeometryEstimate
-from .estimate import estimate_geometry as estimate_geometry
 from .life import Damage as Damage
 from .life import RatingLife as RatingLife
 from .measure import Displacement as Displacement

@@ -26,7 +26,6 @@ from .contact_run import run_refined as run_refined
 from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
-from .estimated_entry import estimated_entry as estimated_entry
 from .html_report import Origin as Origin
 from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt

@@ -641,7 +641,7 @@ def test_a_scene_of_an_unlisted_bearing(run, tmp_path, kind):
     read = bj.read_scene(path)
     *sizes, c, c0 = numbers
     d, outside, width = (1e-3 * size for size in sizes)
-    found = bj.optimise.estimate_geometry(d, outside, width, kind, 1e3 * c, 1e3 * c0)
+    found = bj.catalogue.estimate_geometry(d, outside, width, kind, 1e3 * c, 1e3 * c0)
     made, wanted = (
         rows_of(bearing)[0].bearing for bearing in (read.element.bearing, found.bearing)
     )

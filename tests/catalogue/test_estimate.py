@@ -13,8 +13,8 @@ import pytest
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
+from bearingjax.catalogue import estimate
 from bearingjax.numerics import as_real
-from bearingjax.optimise import estimate
 
 _DEG = np.pi / 180
 # d, D, B [mm], C, C0 [kN]; number of elements, their diameter [mm].
@@ -43,7 +43,7 @@ def inside(bearing):
 @pytest.mark.slow
 def test_published_bearings_are_found(name):
     kind, d, big, b, c, c0, count, size = PUBLISHED[name]
-    found = bj.optimise.estimate_geometry(
+    found = bj.catalogue.estimate_geometry(
         1e-3 * d, 1e-3 * big, 1e-3 * b, kind, 1e3 * c, 1e3 * c0
     )
     number, diameter, _ = inside(found.bearing)
@@ -69,7 +69,7 @@ def test_estimate_detects_raised_capacity(kind, size, ratings, raised, count, di
     """SKF's 6309, 6205 and NU 215 ECP beside the ordinary class of others; wanted are
     the published balls and rollers (18 in the NU 215)."""
     (d, big, b), (c, c0) = (1e-3 * x for x in size), (1e3 * x for x in ratings)
-    found = bj.optimise.estimate_geometry(d, big, b, kind, c, c0)
+    found = bj.catalogue.estimate_geometry(d, big, b, kind, c, c0)
     number, element, _ = inside(found.bearing)
     assert (number, found.raised) == (count, raised)
     assert element == pytest.approx(1e-3 * diameter, rel=0.02)
@@ -173,7 +173,7 @@ def designs():
 def test_designs_are_found_from_their_own_ratings(kind):
     (d, big, b), angle, bearing = designs()[kind]
     c, c0 = float(bj.dynamic_capacity(bearing)), float(bj.static_capacity(bearing))
-    found = bj.optimise.estimate_geometry(d, big, b, kind, c, c0, contact_angle=angle)
+    found = bj.catalogue.estimate_geometry(d, big, b, kind, c, c0, contact_angle=angle)
     assert type(found.bearing) is type(bearing)
     assert not found.assumed_contact_angle or angle is None
     # What the estimate says of its ratings is what its bearing has.
@@ -206,7 +206,7 @@ def test_ratings_of_two_rows_are_understood(
     d, big, b = (1e-3 * x for x in size)
     c, c0 = (1e3 * x for x in ratings)
     angle = None if angle is None else angle * _DEG
-    found = bj.optimise.estimate_geometry(d, big, b, kind, c, c0, contact_angle=angle)
+    found = bj.catalogue.estimate_geometry(d, big, b, kind, c, c0, contact_angle=angle)
     number, ball, _ = inside(found.bearing)
     assert number == count
     assert ball == pytest.approx(1e-3 * diameter, rel=0.02)
@@ -252,11 +252,11 @@ GOOD = (0.025, 0.052, 0.015, "deep_groove_ball", 14.0e3, 7.85e3)
 def test_estimate_rejects_unattainable_arguments(changed, words):
     given = [changed.get(k, value) for k, value in enumerate(GOOD)]
     with pytest.raises(ValueError, match=words):
-        bj.optimise.estimate_geometry(*given)
+        bj.catalogue.estimate_geometry(*given)
 
 
 def test_estimate_report_states_numbers():
-    found = bj.optimise.estimate_geometry(*GOOD)
+    found = bj.catalogue.estimate_geometry(*GOOD)
     words = str(found)
     assert words == repr(found) == found.report()
     size, pitch = inside(found.bearing)[1:]
@@ -268,11 +268,11 @@ def test_estimate_report_states_numbers():
 
 def test_estimate_rejects_traced_numbers(untyped):
     with pytest.raises(TypeError, match="`bore` is traced; numbers must be known"):
-        jax.jit(lambda bore: bj.optimise.estimate_geometry(bore, *GOOD[1:]).misfit)(
+        jax.jit(lambda bore: bj.catalogue.estimate_geometry(bore, *GOOD[1:]).misfit)(
             GOOD[0]
         )
 
 
 def test_only_some_types_have_a_contact_angle_to_choose():
     with pytest.raises(ValueError, match="`contact_angle` is given; a deep groove"):
-        bj.optimise.estimate_geometry(*GOOD, contact_angle=0.3)
+        bj.catalogue.estimate_geometry(*GOOD, contact_angle=0.3)

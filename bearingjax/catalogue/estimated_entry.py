@@ -6,7 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ..catalogue.entry import (
+from ..design import rows_of
+from ..files.quantity import SceneError, to_si
+from ..files.table import not_among
+from .entry import (
     CLEARANCE,
     CLEARANCES,
     UNITS,
@@ -14,10 +17,7 @@ from ..catalogue.entry import (
     class_clearance,
     from_catalogue_unit,
 )
-from ..design import rows_of
-from ..files.quantity import SceneError, to_si
-from ..files.table import not_among
-from ..optimise.estimate import estimate_geometry
+from .estimate import estimate_geometry
 
 SIZES = {
     "bore": "length",
