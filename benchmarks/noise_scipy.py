@@ -46,7 +46,7 @@ from bearingjax.noise import (
     static_start,
     vibration,
 )
-from bearingjax.noise.stepping import REACH, step_weights
+from bearingjax.noise.dynamics.stepping import REACH, step_weights
 
 SAMPLES, FINE = 2048, 8
 """Samples per turn; evaluations of SciPy's solution for each."""

@@ -59,7 +59,7 @@ import numpy as np
 from bench import benchmark, subplots
 
 import bearingjax as bj
-from bearingjax.element.ball_speed import EqualShare
+from bearingjax.element.balls.ball_speed import EqualShare
 from bearingjax.lubrication import LimitingStress, iso_vg
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.skid import CageSlip, Drag, FrictionTorque, SkiddingBearing, SkidModel

@@ -63,10 +63,10 @@ from scipy.integrate import solve_ivp
 
 from bearingjax import skid
 from bearingjax.numerics.types import as_real
-from bearingjax.skid.beginning import surroundings
-from bearingjax.skid.integration import Options, integrated
 from bearingjax.skid.load_table import _as_row, _pieces
 from bearingjax.skid.ring_speed import as_table
+from bearingjax.skid.transients.beginning import surroundings
+from bearingjax.skid.transients.integration import Options, integrated
 from bearingjax.statics.load import solve_load
 
 CASES = {

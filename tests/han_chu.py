@@ -7,7 +7,7 @@ osculations 0.52), which has the ratio γ = 0.238339 that follows from the text.
 import numpy as np
 
 import bearingjax as bj
-from bearingjax.element.ball_speed import EqualShare
+from bearingjax.element.balls.ball_speed import EqualShare
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.skid import SkidModel

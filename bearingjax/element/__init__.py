@@ -63,17 +63,17 @@ hand-over between threads, half of the time of a call (benchmarks/single_call.py
 """
 
 from .azimuth import azimuths as azimuths
-from .ball_speed import AbstractRacewayControl as AbstractRacewayControl
-from .ball_speed import BallKinematics as BallKinematics
-from .ball_speed import CentrifugalOnly as CentrifugalOnly
-from .ball_speed import EqualShare as EqualShare
-from .ball_speed import FrictionLimited as FrictionLimited
-from .ball_speed import InnerControl as InnerControl
-from .ball_speed import LoadShare as LoadShare
-from .ball_speed import OperatingCentrifugal as OperatingCentrifugal
-from .ball_speed import OuterControl as OuterControl
-from .ball_speed import ball_kinematics as ball_kinematics
-from .ball_speed import ball_mass as ball_mass
+from .balls.ball_speed import AbstractRacewayControl as AbstractRacewayControl
+from .balls.ball_speed import BallKinematics as BallKinematics
+from .balls.ball_speed import CentrifugalOnly as CentrifugalOnly
+from .balls.ball_speed import EqualShare as EqualShare
+from .balls.ball_speed import FrictionLimited as FrictionLimited
+from .balls.ball_speed import InnerControl as InnerControl
+from .balls.ball_speed import LoadShare as LoadShare
+from .balls.ball_speed import OperatingCentrifugal as OperatingCentrifugal
+from .balls.ball_speed import OuterControl as OuterControl
+from .balls.ball_speed import ball_kinematics as ball_kinematics
+from .balls.ball_speed import ball_mass as ball_mass
 from .bearing_element import BearingElement as BearingElement
 from .bearing_model import BearingModel as BearingModel
 from .bearing_model import Evaluated as Evaluated

@@ -22,7 +22,7 @@ from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Ring, Scalar
 from .azimuth import azimuths, orbit_ratio
-from .ball_speed import AbstractRacewayControl
+from .balls.ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, Evaluated, RowGroup
 from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
 from .equilibrium import ElementStart

@@ -21,10 +21,10 @@ from ..design.ball_types import SelfAligningBallRow
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
-from .ball import Ball
-from .ball_contacts import GrooveGeometry
-from .ball_inertia import ball_inertia
-from .ball_speed import AbstractRacewayControl, OuterControl
+from .balls.ball import Ball
+from .balls.ball_contacts import GrooveGeometry
+from .balls.ball_inertia import ball_inertia
+from .balls.ball_speed import AbstractRacewayControl, OuterControl
 from .constants import TETHER, contact_constants
 from .inertia import Speed, inertia_force
 from .kinematics import AbstractKinematics, Finite, Linearised

@@ -33,7 +33,7 @@ from .rolling_element import (
 )
 
 if TYPE_CHECKING:
-    from .ball import Ball
+    from .balls.ball import Ball
     from .roller import Roller
 
 

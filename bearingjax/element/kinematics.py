@@ -9,7 +9,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..design.bearing_set import SetRow
-from .ball_geometry import AbstractBallGeometry, FiniteBall, LinearisedBall
+from .balls.ball_geometry import AbstractBallGeometry, FiniteBall, LinearisedBall
 from .constants import ContactConstants
 from .roller_geometry import AbstractRollerGeometry, FiniteRoller, LinearisedRoller
 

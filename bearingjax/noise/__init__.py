@@ -31,13 +31,14 @@ from .bands import is_held as is_held
 from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
-from .cage import GuidedCage as GuidedCage
-from .cage_contact import CageContact as CageContact
 from .causes import line_causes as line_causes
-from .contact_states import ContactStates as ContactStates
-from .contact_states import contact_states as contact_states
 from .contact_width import bridged as bridged
 from .contact_width import contact_half_width as contact_half_width
+from .dynamics.cage import GuidedCage as GuidedCage
+from .dynamics.cage_contact import CageContact as CageContact
+from .dynamics.contact_states import ContactStates as ContactStates
+from .dynamics.contact_states import contact_states as contact_states
+from .dynamics.system import NoiseSystem as NoiseSystem
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
 from .level import combined as combined
@@ -79,7 +80,6 @@ from .spectrum import Rectangular as Rectangular
 from .spectrum import Spectrum as Spectrum
 from .spectrum import spectrum as spectrum
 from .static_start import static_start as static_start
-from .system import NoiseSystem as NoiseSystem
 from .vibration import CageMotion as CageMotion
 from .vibration import Vibration as Vibration
 from .vibration import bandwidth as bandwidth

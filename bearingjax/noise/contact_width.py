@@ -24,7 +24,7 @@ from ..contact.point_law import ball_ellipses, balls_of
 from ..design import AbstractBallBearing, rows_of
 from ..design.material import contact_modulus
 from ..numerics.compiled.programs import program
-from .dynamic_row import of_rows
+from .dynamics.dynamic_row import of_rows
 from .model import NoiseModel
 from .static_start import static_start
 

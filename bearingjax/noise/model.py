@@ -34,10 +34,10 @@ from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.options import SolveOptions
-from .cage import GuidedCage
-from .dynamic_row import DynamicRow, of_small_motions
+from .dynamics.cage import GuidedCage
+from .dynamics.dynamic_row import DynamicRow, of_small_motions
+from .dynamics.system import NoiseSystem
 from .sensor import Sensor
-from .system import NoiseSystem
 
 
 class NoiseModel(eqx.Module):

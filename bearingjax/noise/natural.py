@@ -22,9 +22,9 @@ from ..design import rows_of
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop
 from ..numerics.lapack import eigh
+from .dynamics.system import NoiseSystem
 from .model import NoiseModel
 from .static_start import static_start
-from .system import NoiseSystem
 
 LOOSE = 1.0
 """Frequency below which a mode is that of an unloaded element [Hz]."""

@@ -23,9 +23,9 @@ from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.load import solve
-from .dynamic_row import of_rows
+from .dynamics.dynamic_row import of_rows
+from .dynamics.system import NoiseSystem
 from .model import NoiseModel
-from .system import NoiseSystem
 
 _LANES = 64
 """Number of instants solved in parallel."""

@@ -5,7 +5,7 @@ import dataclasses
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..element.ball_speed import CentrifugalOnly
+from ..element.balls.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
 from ..numerics.implicit import stop
 from ..numerics.linear import combined
@@ -13,9 +13,9 @@ from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics.load import solve
 from ..statics.solution import message
-from .element_positions import ElementPositions
+from .dynamics.element_positions import ElementPositions
+from .dynamics.system import NoiseSystem
 from .model import NoiseModel
-from .system import NoiseSystem
 
 _CARRIES = 1e-7
 """Load of a rolling element over the largest contact load below which it is unloaded

@@ -21,11 +21,11 @@ from ..numerics.implicit import stop
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.options import DEFAULT_TOLERANCE
-from .cage import fastest_of_cage
+from .dynamics.cage import fastest_of_cage
+from .dynamics.stepping import HELD, stepped
 from .model import NoiseModel
 from .natural import natural_modes
 from .static_start import static_start, why
-from .stepping import HELD, stepped
 
 _STABLE = 2.5
 """Stability limit of the step: 2.78 radians of the fastest mode [rad]."""

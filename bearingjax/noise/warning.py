@@ -10,14 +10,14 @@ import numpy as np
 
 from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
-from ..element.ball_inertia import ball_inertia, carried
-from ..element.ball_speed import CentrifugalOnly, OuterControl
+from ..element.balls.ball_inertia import ball_inertia, carried
+from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
 from ..element.choices import BallChoices
 from ..numerics.result import Result
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
-from .contact_states import contact_states
 from .contact_width import contact_half_width
-from .dynamic_row import of_rows
+from .dynamics.contact_states import contact_states
+from .dynamics.dynamic_row import of_rows
 from .model import NoiseModel
 from .natural import natural_modes, orbited, ring_modes
 from .orders import kinematic_frequencies

@@ -10,9 +10,9 @@ from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from ..statics.warning import warnings
 from .balls import contact_angles, ellipses
+from .drawings.section import cross_section
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
-from .section import cross_section
 from .style import RACEWAYS, Figure, degrees, force_text, head, pyplot, row_slices
 
 

@@ -10,7 +10,7 @@ from ..numerics.gravity import GRAVITY
 from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
-from .rotor import rotor_section
+from .rotors.rotor import rotor_section
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white
 
 _ACROSS = 4

@@ -12,8 +12,8 @@ from jaxtyping import Array, Float
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
 from .held import of_each
+from .linear.reduction import held_motions
 from .parts import AbstractSupport
-from .reduction import held_motions
 from .rotor import N_HOUSING, N_STATION, Rotor
 
 Supported = tuple[

@@ -10,8 +10,8 @@ from jaxtyping import Array, Float
 from ..design.checks import finite, of_shape
 from ..numerics.types import as_count, as_real
 from ..numerics.units import unit
+from .linear.response import Unbalance
 from .parts import check_station
-from .response import Unbalance
 from .rotor import N_HOUSING, N_STATION, Rotor, listed
 
 Motions = Float[Array, " motion"]

@@ -9,7 +9,7 @@ import numpy as np
 from ..element.bearing_element import BearingElement, check_element
 from ..element.function import check_damping
 from ..numerics.types import as_real
-from .coefficients import stiffness_table
+from .linear.coefficients import stiffness_table
 
 
 def to_ross(

@@ -10,7 +10,7 @@ from ..element import RINGS
 from ..files.output_files import plain_run
 from ..numerics.result import Result
 from ..skid import by_raceway
-from ..skid.transient import CAUSES
+from ..skid.transients.transient import CAUSES
 from ..statics.solution import message
 from .skid_run import SkidRun
 

@@ -13,8 +13,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..contact.hertz import Ellipse
-from ..element.ball_contacts import angles
-from ..element.ball_speed import ball_mass
+from ..element.balls.ball_contacts import angles
+from ..element.balls.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
 from ..element.energy import derivatives, unpacked
 from ..element.inertia import Speed

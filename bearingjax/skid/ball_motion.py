@@ -21,7 +21,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..element.ball_speed import ball_kinematics
+from ..element.balls.ball_speed import ball_kinematics
 from ..element.inertia import Speed
 from ..lubrication import (
     AbstractPatch,

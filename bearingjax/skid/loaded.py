@@ -12,7 +12,7 @@ from ..contact.hertz import Ellipse
 from ..contact.line import half_width
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design.ball import AbstractBallBearing
-from ..element.ball_speed import ball_mass
+from ..element.balls.ball_speed import ball_mass
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, RowGroup
 from ..element.constants import ContactConstants, relative_radii

@@ -20,8 +20,8 @@ from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .conditions import conditions
 from .model import SkidModel
-from .steady import check_places, end_state, enough_places, failure
-from .steady_results import SteadyMotion
+from .orbits.steady import check_places, end_state, enough_places, failure
+from .orbits.steady_results import SteadyMotion
 from .warning import skid_warnings
 
 

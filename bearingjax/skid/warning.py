@@ -7,8 +7,8 @@ import numpy as np
 
 from ..lubrication import DryFriction, Newtonian, Regime, SlipCurve
 from .conditions import Conditions
-from .history import SkidMotion
 from .model import SkidModel
+from .transients.history import SkidMotion
 
 MOST_SHEAR = 0.12
 """Largest shear stress over pressure of any oil [1]. Oils yield at 0.03 to 0.12 of the

@@ -17,9 +17,9 @@ from bearingjax.noise import (
     needed_steps,
     vibration,
 )
-from bearingjax.noise.cage import cage_forces, cage_loads, fastest_of_cage
+from bearingjax.noise.dynamics.cage import cage_forces, cage_loads, fastest_of_cage
+from bearingjax.noise.dynamics.stepping import stepped
 from bearingjax.noise.static_start import static_start
-from bearingjax.noise.stepping import stepped
 
 RADIUS = 0.026
 CAGE = GuidedCage(0.02, 1.3e-5, CageContact(5e-6), 0.2e-3, 0.1e-3)

@@ -7,8 +7,8 @@ import numpy as np
 
 import bearingjax as bj
 from bearingjax.noise import NoiseModel
-from bearingjax.noise import system as equations
-from bearingjax.noise.element_positions import ElementPositions
+from bearingjax.noise.dynamics import system as equations
+from bearingjax.noise.dynamics.element_positions import ElementPositions
 
 BALLS = 5
 MODEL = NoiseModel(

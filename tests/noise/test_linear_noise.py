@@ -20,7 +20,7 @@ from bearingjax.noise import (
     transfer,
     vibration,
 )
-from bearingjax.noise.stepping import stepped
+from bearingjax.noise.dynamics.stepping import stepped
 
 BEARING = balls(7)
 INNER = 1200.0  # rad/s

@@ -23,7 +23,7 @@ from bearingjax.noise import (
     sampled_model,
     spectrum,
 )
-from bearingjax.noise.dynamic_row import of_rows
+from bearingjax.noise.dynamics.dynamic_row import of_rows
 from bearingjax.noise.static_start import static_start
 from bearingjax.noise.warning import _gyroscopic
 

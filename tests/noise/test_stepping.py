@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tolerances import DIFFERENCE
 
-from bearingjax.noise.stepping import HELD, REACH, stepped
+from bearingjax.noise.dynamics.stepping import HELD, REACH, stepped
 
 STEPS, SAMPLES = 64, 3 * REACH
 

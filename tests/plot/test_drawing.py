@@ -13,10 +13,10 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import plot
-from bearingjax.plot.dimension import magnification, quantity, spread
-from bearingjax.plot.drawing import IN_WORDS
-from bearingjax.plot.face_drawing import DEVIATIONS
-from bearingjax.plot.set_drawing import arrangement_view
+from bearingjax.plot.drawings.dimension import magnification, quantity, spread
+from bearingjax.plot.drawings.drawing import IN_WORDS
+from bearingjax.plot.drawings.face_drawing import DEVIATIONS
+from bearingjax.plot.drawings.set_drawing import arrangement_view
 
 RIB = bj.Rib(0.3, 1.5e-3, 15e-6)
 SAME_FOR_ALL = dict(azimuth_deviation=[1e-3, 0, 0, 0, -1e-3])

@@ -15,8 +15,8 @@ from registry import balls, taper
 
 import bearingjax as bj
 from bearingjax import plot
+from bearingjax.plot.drawings.section import section
 from bearingjax.plot.panel import Axis, Bars, Curve, Panel, curves
-from bearingjax.plot.section import section
 from bearingjax.plot.style import ROLLER
 
 MM = 1e3

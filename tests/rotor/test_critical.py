@@ -10,7 +10,7 @@ from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import AbstractSupport
-from bearingjax.rotor.critical import _missed
+from bearingjax.rotor.linear.critical import _missed
 
 # Method 002, section 002.4: angle, c_r [1e8 N/m], c_a [1e7 N/m], radial f, axial f,
 # forward critical [Hz].

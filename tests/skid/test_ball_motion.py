@@ -10,7 +10,7 @@ from han_chu import BEARING, DIAMETER, OIL_TEMPERATURE, PITCH_DIAMETER
 from tolerances import ROUNDING
 
 from bearingjax.contact.point_law import FreeAngle
-from bearingjax.element.ball_speed import ball_kinematics
+from bearingjax.element.balls.ball_speed import ball_kinematics
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import (
     Eyring,

@@ -16,16 +16,11 @@ from bearingjax import skid
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.numerics.result import Result, SolveError
-from bearingjax.skid import (
-    Drag,
-    SkidModel,
-    conditions,
-    orbit_search,
-    skid_warnings,
-)
+from bearingjax.skid import Drag, SkidModel, conditions, skid_warnings
 from bearingjax.skid.loaded import ring_forces
-from bearingjax.skid.orbit_search import derivatives
-from bearingjax.skid.steady_results import Power
+from bearingjax.skid.orbits import orbit_search
+from bearingjax.skid.orbits.orbit_search import derivatives
+from bearingjax.skid.orbits.steady_results import Power
 
 steady_module = importlib.import_module("bearingjax.skid.steady")  # a function's name
 

@@ -16,8 +16,8 @@ import bearingjax as bj
 from bearingjax import skid
 from bearingjax.numerics.result import Result, SolveError
 from bearingjax.skid import LoadHistory, SinusoidalLoad, SpeedTable
-from bearingjax.skid.beginning import surroundings
 from bearingjax.skid.motion import SkidSystem, each_ball
+from bearingjax.skid.transients.beginning import surroundings
 
 BALLS, PLACES, STEADY_PLACES = 5, 96, 100
 KNOT = 0.004

@@ -17,9 +17,9 @@ from ...numerics.lapack import pseudoinverse
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 from ..held import of_each
+from ..linear.reduction import craig_bampton, held_motions
 from ..loads import RotorLoads
 from ..parts import AbstractSupport
-from ..reduction import craig_bampton, held_motions
 from ..rotor import N_HOUSING, Rotor, matrices_about
 from ..statics import StaticEquilibrium
 from .system import AbstractVibratingSystem, HarmonicLoad

@@ -1,0 +1,1 @@
+"""Balls: geometry, contacts, speeds and inertia."""

@@ -1,0 +1,1 @@
+"""Rolling elements, cage and rings as masses that move in time."""

@@ -1,0 +1,1 @@
+"""Drawings of bearings to scale, with their dimensions."""

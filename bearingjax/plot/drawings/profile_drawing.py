@@ -1,0 +1,139 @@
+"""Drawing of a profile with its parameters."""
+
+import dataclasses
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from ...design import AbstractRollerBearing, CrownedEnds, FujiwaraKawase, Tabulated
+from ...design.profile import drops
+from ..style import COLOURS, GREY, ROLLER, SMALL, Axes, axes_or_new
+from .dimension import ARROW, label
+
+_COLOURS = {
+    "roller_profile": ROLLER,
+    "outer_raceway_profile": COLOURS["outer"],
+    "inner_raceway_profile": COLOURS["inner"],
+}
+_NEAR = 0.95
+"""Share of the length beyond which a profile is ignored for the scale."""
+
+
+def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
+    """Draw the drop along the roller, magnified by its axis, with all its parameters.
+
+    Lengths are drawn where they are measured; the others are next to the curve.
+
+    Args:
+        ax: Axes.
+        bearing: The row.
+        name: Field of the profile.
+    """
+    ax = axes_or_new(ax)
+    profile, length = getattr(bearing, name), float(bearing.roller_length)
+    turn = np.linspace(0.0, np.pi, 401)
+    s = -0.5 * length * np.cos(turn)
+    drop = 1e6 * np.asarray(
+        drops(
+            profile,
+            jnp.asarray(s, bearing.roller_length.dtype),
+            bearing.roller_length,
+            bearing.roller_diameter,
+        )
+    )
+    inside = float(drop[np.abs(s) <= 0.5 * _NEAR * length].max())
+    limit = min(float(drop.max()), 3.0 * inside) if inside > 0.0 else drop.max()
+    limit = float(limit) or 1.0
+    ax.plot(1e3 * s, drop, color=_COLOURS[name], linewidth=2.0)
+    spans = _spans(profile, length)
+    for k, (field, (start, stop)) in enumerate(spans.items()):
+        height = -limit * (0.3 + 0.34 * k)
+        text = label(profile, field)
+        ax.annotate(
+            "", (1e3 * stop, height), (1e3 * start, height), arrowprops=ARROW, zorder=6
+        )
+        for place in (start, stop):
+            ax.plot([1e3 * place] * 2, [height, 0.0], color=GREY, linewidth=0.7)
+        middle = 0.5e3 * (start + stop)
+        where = "center" if abs(middle) < 0.3e3 * length else "right"
+        ax.text(middle, height - 0.04 * limit, text, ha=where, **_BESIDE)
+    levels = len(spans)
+    if drop[-1] <= limit:
+        text = f"at the end {drop[-1]:.4g} µm"
+        if hasattr(profile, "end_drop"):
+            text = label(profile, "end_drop")
+        height = -limit * (0.3 + 0.34 * levels)
+        _end(ax, 1e3 * s[-1], drop[-1], height, text)
+        levels += 1
+    rest = [name for name in _fields(profile) if name not in (*spans, "end_drop")]
+    ax.text(
+        0.5,
+        0.06,
+        "\n".join(_text(profile, field) for field in rest),
+        transform=ax.transAxes,
+        ha="center",
+        va="bottom",
+        fontsize=SMALL,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},
+    )
+    if isinstance(profile, Tabulated):
+        x, y = 1e3 * np.asarray(profile.positions), 1e6 * np.asarray(profile.drops)
+        ax.plot(x, y, "o", color="black", markersize=3, zorder=7)
+    ax.set_ylim(1.15 * limit, -limit * (0.35 + 0.36 * levels))
+    ax.set_xlim(-0.52e3 * length, 0.56e3 * length)
+    ax.grid(color="0.92")
+    ax.set_xlabel("position along the roller [mm]")
+    ax.set_ylabel("drop [µm]")
+    ax.set_title(f"{name}: {type(profile).__name__}", fontsize=11)
+
+
+def _end(ax, x, drop, height, text):
+    """Draw the drop at the end of the roller."""
+    at = 1.06 * x
+    for level in (0.0, drop):
+        ax.plot([x, 1.08 * x], [level] * 2, color=GREY, linewidth=0.7)
+    ax.annotate("", (at, drop), (at, 0.0), arrowprops=ARROW, zorder=6)
+    ax.annotate(
+        text,
+        (at, 0.0),
+        (at, height),
+        fontsize=SMALL,
+        ha="right",
+        arrowprops={
+            "arrowstyle": "-",
+            "color": GREY,
+            "linewidth": 0.6,
+            "relpos": (1.0, 0.0),  # straight down, beside the spans
+        },
+    )
+
+
+_BESIDE: dict[str, Any] = {"va": "bottom", "fontsize": SMALL, "zorder": 7}
+
+
+def _fields(profile):
+    return [field.name for field in dataclasses.fields(profile)]
+
+
+def _text(profile, field):
+    value = getattr(profile, field)
+    if value is not None and np.ndim(value):
+        return f"{field}: {len(value)} points"
+    return label(profile, field)
+
+
+def _spans(profile, length):
+    """Return fields that are lengths along the roller, with their ends [m]."""
+    half = 0.5 * length
+    if isinstance(profile, CrownedEnds):
+        straight = 0.5 * float(profile.straight_length)
+        spans = {"straight_length": (-straight, straight)}
+        if profile.dub_off_length is not None:
+            spans["dub_off_length"] = (half - float(profile.dub_off_length), half)
+        return spans
+    if isinstance(profile, FujiwaraKawase):
+        return {
+            "crowned_fraction": (half * (1 - float(profile.crowned_fraction)), half)
+        }
+    return {}

@@ -1,0 +1,197 @@
+"""Drawing of the arrangement of the rows of a set."""
+
+import numpy as np
+
+from ...design import (
+    AbstractBallBearing,
+    BearingSet,
+    CrossedRollerRow,
+    is_self_aligning,
+)
+from ..style import INNER, SMALL, Axes
+from .ball_section import ball_row, row_position
+from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
+from .outline import section
+from .roller_section import roller_row
+
+_APART = 0.25
+"""Gap between the labels of adjacent rows [inch]."""
+
+
+def arrangement_view(ax: Axes, bearing: BearingSet, turned: list[int], size) -> None:
+    """Draw the axial section of all rows, to scale, with their dimensions in the set.
+
+    Args:
+        ax: Axes.
+        bearing: The set.
+        turned: Rows whose first azimuth is to be told here.
+        size: Width and height of the axes [inch].
+    """
+    outlines = [_draw(ax, row, bearing) for row in bearing.rows]
+    points = np.concatenate(outlines)
+    (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
+    tall = high - low
+    names = [f"rows.{k}" for k in range(len(outlines))]
+    if _is_crossed(bearing):
+        names = ["rows.0, dashed rows.1", ""]
+    for k, (row, outline) in enumerate(zip(bearing.rows, outlines, strict=True)):
+        middle = outline.mean(axis=0)[0]
+        ax.text(
+            middle,
+            high + 0.05 * tall,
+            names[k],
+            ha="center",
+            fontsize=SMALL,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+            zorder=7,
+        )
+        _push(ax, row, (middle, low + 0.08 * tall), 0.1 * tall)
+    depth = _positions(ax, bearing, low, 0.13 * tall)
+    ax.plot([0.0, 0.0], [depth, high + 0.1 * tall], **AXIS)
+    # The words stand below the view.
+    texts = [_words(row, k, k in turned) for k, row in enumerate(bearing.rows)]
+    block = _APART + max(width(text) for text in texts)
+    across = max(1, int(size[0] // block))
+    lines = 1 + max(text.count("\n") for text in texts)
+    deep = LINE * (lines + 1)
+    below = deep * -(-len(texts) // across)
+    corners = [(left, depth), (right, high + 0.15 * tall)]
+    fit(ax, corners, (size[0], size[1] - below), (0.76, 0.98))
+    bottom, top = ax.get_ylim()
+    ax.set_ylim(bottom - (top - bottom) * below / (size[1] - below), top)
+    ax.set_box_aspect(size[1] / size[0])
+    order = np.argsort([outline.mean(axis=0)[0] for outline in outlines])
+    start, stop = ax.get_xlim()
+    for m in range(0, len(order), across):
+        part = order[m : m + across]
+        wanted = [(outlines[k].mean(axis=0)[0] - start) / (stop - start) for k in part]
+        places = spread(wanted, np.full(len(part), block / size[0]))
+        up = (below - deep * (m // across) - 0.5 * LINE) / size[1]
+        for k, place in zip(part, places, strict=True):
+            ax.text(
+                place,
+                up,
+                texts[k],
+                transform=ax.transAxes,
+                fontsize=SMALL,
+                ha="center",
+                va="top",
+                multialignment="left",
+            )
+    ax.set_title(f"{_arrangement(bearing)}; section to scale, ring bodies schematic")
+
+
+def _positions(ax, bearing, low, step):
+    """Draw positions of rows from the origin, the nearest first; return their depth."""
+    depth = low - step
+    for side in (-1.0, 1.0):
+        places = [
+            (side * 1e3 * float(r.position), k) for k, r in enumerate(bearing.rows)
+        ]
+        down = low
+        for far, k in sorted(one for one in places if one[0] > 0.0):
+            down -= step
+            place, below = side * far, np.array([0.0, down - low])
+            between(ax, (0.0, low), (place, low), below)
+            _beside(ax, bearing, k, (place, down), side)
+        depth = min(depth, down)
+    for k, row in enumerate(bearing.rows):
+        if float(row.position) == 0.0:
+            depth -= step
+            _beside(ax, bearing, k, (0.0, depth), 1.0)
+    return depth - 0.5 * step
+
+
+def _beside(ax, bearing, k, at, side):
+    """Write the position of a row at the end of its dimension line."""
+    ax.annotate(
+        label(bearing.rows[k], "position", f"rows.{k}."),
+        at,
+        (6.0 * side, 0.0),
+        textcoords="offset points",
+        fontsize=SMALL,
+        ha="left" if side > 0.0 else "right",
+        va="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+        zorder=7,
+    )
+
+
+def _push(ax, row, at, half):
+    """Draw an arrow on an inner ring with an offset."""
+    if float(row.inner_offset) == 0.0:
+        return
+    way = np.array([np.sign(float(row.inner_offset)) * half, 0.0])
+    arrow = {"arrowstyle": "-|>", "color": INNER, "linewidth": 2.0}
+    ax.annotate("", at + way, at - way, arrowprops=arrow, zorder=6)
+
+
+def _words(row, k, turned):
+    """Return the labels of a row other than its position."""
+    name = f"rows.{k}."
+    note = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
+    lines = [
+        f"{name}bearing: {type(row.bearing).__name__}, below",
+        label(row, "mirrored", name),
+        label(row, "inner_offset", name) + note,
+        _spring(row, name),
+    ]
+    if turned:
+        lines.append(label(row.bearing, "first_azimuth", f"{name}bearing."))
+    return "\n".join(lines)
+
+
+def _draw(ax, row, bearing):
+    """Draw a row; return its corners (point, 2)."""
+    sign = -1.0 if row.mirrored else 1.0
+    part = row.bearing
+    if isinstance(part, AbstractBallBearing):
+        radius = 0.5e3 * float(part.pitch_diameter)
+        centre = np.array([row_position(row), radius])
+        places = np.sort([row_position(one) for one in bearing.rows])
+        reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
+
+        def place(points):
+            return centre + np.asarray(points) * np.array([sign, 1.0])
+
+        return ball_row(ax, part, place, reach)
+
+    def turned(points):
+        return np.asarray(points) * np.array([sign, 1.0]) + np.array(
+            [1e3 * float(row.position), 0.0]
+        )
+
+    behind = _is_crossed(bearing) and row is not bearing.rows[0]
+    return roller_row(ax, section(part), turned, behind=behind)
+
+
+def _is_crossed(bearing):
+    return isinstance(bearing.rows[0].bearing, CrossedRollerRow)
+
+
+def _spring(row, name):
+    if row.spring is None:
+        return f"{name}spring: not given"
+    force, stiffness = (
+        label(row.spring, field, "") for field in ("force", "stiffness")
+    )
+    return f"{name}spring: {force}, {stiffness}"
+
+
+def _arrangement(bearing):
+    """Return the name of the arrangement, and the spacing of its rows."""
+    rows = sorted(bearing.rows, key=row_position)
+    spacing = np.diff([row_position(row) for row in rows])
+    turned = tuple(row.mirrored for row in rows)
+    if len(rows) == 1:
+        return "One row"
+    names = {(False, True): "Back-to-back (O)", (True, False): "Face-to-face (X)"}
+    word = names.get(turned, f"{len(rows)} rows")
+    if len(set(turned)) == 1:
+        word = "Tandem"
+    if is_self_aligning(bearing):
+        word = "Self-aligning"
+    elif _is_crossed(bearing):
+        return "Crossed rollers, every other one turned"
+    gaps = [quantity(1e-3 * gap, "m") for gap in spacing]
+    return f"{word}, spacing {', '.join(gaps[:1] if len(set(gaps)) == 1 else gaps)}"

@@ -1,0 +1,1 @@
+"""Linear vibration of a rotor: modes, critical speeds, responses."""

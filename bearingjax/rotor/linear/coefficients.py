@@ -1,0 +1,146 @@
+"""Stiffness over rotor speed, for programs of linear rotordynamics."""
+
+import warnings
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from ...design.checks import finite, is_traced, of_shape, one_of, real_numbers
+from ...element.bearing_element import BearingElement, check_element
+from ...element.frame import FREEDOMS, LOADS
+from ...element.inertia import Speed
+from ...numerics.compiled.programs import program
+from ...numerics.result import Result, raise_unless_converged
+from ...numerics.types import as_real
+from ...statics.linearise import OperatingPoint, linearise
+from ...statics.options import SolveOptions
+from ...statics.solution import message
+from ...statics.support import restrained_freedoms
+from ...statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
+from .modes import speed_list
+
+TILTS = ("held", "free")
+
+
+def stiffness_table(
+    element: BearingElement,
+    speeds: Any,
+    load: Any,
+    *,
+    tilts: str = "held",
+    fixed_ring: str = "outer",
+) -> Float[Array, "speed 3 3"]:
+    """Return the stiffness of the moving ring in x, y and z at each rotor speed.
+
+    At every speed the bearing is linearised at its equilibrium under the load, with the
+    inertia of its rolling elements. The other ring is at rest; the rolling elements are
+    at `first_azimuth`.
+
+    Args:
+        element: The bearing.
+        speeds: Speeds of the moving ring, positive from x towards y (speed,) [rad/s].
+        load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m], one for all
+            speeds (6,) or one for each (speed, 6).
+        tilts: "held": the moving ring does not tilt, as on a stiff shaft: the block
+            of the full stiffness. "free": its tilts balance the moments of the load
+            and follow (condensed), as on a slender shaft that holds no moment.
+        fixed_ring: "outer" or "inner".
+
+    Returns:
+        d(Fx, Fy, Fz)/d(ux, uy, uz) (speed, 3, 3) [N/m], differentiable with respect
+        to design, speeds and load. uz stays zero where the bearing cannot hold it.
+
+    Raises:
+        ValueError: For wrong shapes, names or non-finite numbers, or moments about
+            tilts that are held.
+        SolveError: If a solve fails; the message names the first such speed.
+
+    Warns:
+        UserWarning: If nothing holds a direction at some speed, as without load.
+    """
+    speeds, load = _checked(element, speeds, load, tilts, fixed_ring)
+    stiffness, result = _sweep(element, speeds, load, tilts, fixed_ring)
+
+    def first_failure():
+        index = int(jnp.argmax(result != Result.CONVERGED))
+        # Solved once more: the sweep keeps no more than it returns.
+        point = _point(element, speeds[index], load[index], tilts, fixed_ring)
+        return (
+            f"stiffness_table: speed {float(speeds[index]):g} rad/s:"
+            f" {Result(int(result[index])).label}:"
+            f" {message(point.solution, point.solution.moving_ring)}"
+        )
+
+    stiffness = raise_unless_converged(
+        stiffness, result, first_failure, "stiffness_table"
+    )
+    if not (is_traced(stiffness) or is_traced(speeds)):
+        _warn_of_slack(element, speeds, stiffness)
+    return stiffness
+
+
+def _warn_of_slack(element, speeds, stiffness):
+    """Warn where the ring has no stiffness: about 0 N/m is useless further on."""
+    nothing = SOFTEST_SHIFT * float(stiffness_scale(element.bearing))
+    own = np.diagonal(np.asarray(stiffness), axis1=1, axis2=2)
+    held = [name in restrained_freedoms(element.bearing) for name in FREEDOMS[:3]]
+    slack = (own <= nothing) & np.array(held)
+    if not slack.any():
+        return
+    index = int(slack.any(axis=1).argmax())
+    names = [FREEDOMS[k] for k in np.flatnonzero(slack[index])]
+    warnings.warn(
+        f"stiffness_table: no stiffness in {', '.join(names)} at"
+        f" {float(speeds[index]):g} rad/s: nothing holds the ring there; give the load"
+        " that it runs with",
+        stacklevel=3,
+    )
+
+
+@program(quick=True)
+def _sweep(element, speeds, load, tilts, fixed_ring):
+    """Return stiffness (speed, 3, 3) and result code (speed,)."""
+
+    def one(speed, load):
+        point = _point(element, speed, load, tilts, fixed_ring)
+        return point.condensed(), point.solution.result
+
+    return jax.vmap(one)(speeds, load)
+
+
+def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
+    moving = SolveOptions(fixed_ring=fixed_ring).moving_ring
+    return linearise(
+        element,
+        load,
+        prescribed={"gx": 0.0, "gy": 0.0} if tilts == "held" else None,
+        fixed_ring=fixed_ring,
+        speed=Speed(**{moving: speed}),
+        throw=False,
+    )
+
+
+def _checked(element, speeds, load, tilts, fixed_ring):
+    """Return checked speeds (speed,) and loads (speed, 6)."""
+    name = "stiffness_table"
+    SolveOptions(fixed_ring=fixed_ring).check(name)
+    one_of(name, "tilts", tilts, TILTS, " or ".join(map(repr, TILTS)))
+    check_element(name, element)
+    for what, value in (("speeds", speeds), ("load", load)):
+        real_numbers(name, what, value, "numbers (units belong in scene files)")
+    speeds, load = speed_list(name, speeds), as_real(load)
+    allowed = f"(6,) or {(*speeds.shape, 6)}: {' '.join(LOADS)}, in N and N m"
+    fits = load.shape in ((6,), (*speeds.shape, 6))
+    of_shape(name, "load", fits, allowed, load)
+    finite(name, "load", load, "N, N m")
+    if not is_traced(load):
+        moments = load[..., 3:5]
+        if tilts == "held" and bool(jnp.any(moments != 0)):
+            raise ValueError(
+                f"{name}: `load` has Mx or My, but the tilts are held, whose moments"
+                " are results; take tilts='free', or no moments."
+            )
+    return speeds, jnp.broadcast_to(load, (*speeds.shape, 6))

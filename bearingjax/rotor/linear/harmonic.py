@@ -1,0 +1,85 @@
+"""Vibration of a linear rotor under harmonic loads: unbalance, base excitation."""
+
+from typing import Any
+
+import jax.numpy as jnp
+from jax import lax
+
+from ...design.checks import number
+from ...numerics.compiled.programs import program
+from ...numerics.lapack import solve_any
+from ...numerics.types import Scalar, as_real
+from ..loads import RotorLoads
+from ..rotor import Rotor
+from .modes import speed_list, to_complex
+from .reduction import craig_bampton
+from .response import UnbalanceResponse, steady
+
+
+def harmonic_response(
+    rotor: Rotor, loads: RotorLoads, frequencies: Any, speed: Any = None
+) -> UnbalanceResponse:
+    """Return the vibration over the frequency of the excitation.
+
+    Args:
+        rotor: Linear, such as `StaticEquilibrium.rotor`; a bearing is taken by its
+            slopes.
+        loads: Unbalances and acceleration of the base count.
+        frequencies: Frequencies of the excitation (speed,) [rad/s].
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
+
+    Returns:
+        UnbalanceResponse, its `speed` that of the excitation; differentiable with
+        respect to every number.
+
+    Raises:
+        ValueError: If the rotor lacks a loaded station.
+    """
+    frequencies = speed_list("harmonic_response", frequencies)
+    speeds = frequencies
+    if speed is not None:
+        turning = as_real(speed)
+        number("harmonic_response", "speed", turning, "rad/s")
+        speeds = jnp.broadcast_to(turning, frequencies.shape)
+    loads.check(rotor)
+    return _response(rotor, loads, frequencies, speeds)
+
+
+@program(quick=True)
+def _response(rotor, loads, frequencies, speeds) -> UnbalanceResponse:
+    return steady(rotor, *_forces(rotor, loads), frequencies, speeds)
+
+
+def _forces(rotor, loads):
+    """Return the unbalance moments and the forces of base excitation, complex."""
+    cosine, sine = loads.unbalanced(rotor)
+    return lax.complex(cosine, -sine), to_complex(loads.shaken(rotor))
+
+
+@program(quick=True)
+def reduction_error(
+    rotor: Rotor, loads: RotorLoads, frequency: Any, speed: Any, modes: int
+) -> Scalar:
+    """Return the error of `craig_bampton` in a linear response, over its maximum [1].
+
+    Args:
+        rotor: Linear, with a shaft that bends.
+        loads: As in `harmonic_response`.
+        frequency: Frequency of the excitation [rad/s].
+        speed: Speed of the rotor [rad/s].
+        modes: As in `craig_bampton`. Static.
+    """
+    moments, shaken = _forces(rotor, loads)
+    force = to_complex(frequency**2) * moments + shaken
+    whole = rotor.linearised(speed)
+
+    def nodes(matrices):
+        motions = to_complex(matrices.motions)
+        value = lax.complex(0.0 * frequency, frequency)
+        stiffness = matrices.dynamic_stiffness(value)
+        moved = motions @ solve_any(stiffness, motions.T @ force)
+        return matrices.split(moved)[0][..., :3]
+
+    exact = nodes(whole)
+    change = nodes(whole.projected(craig_bampton(rotor, modes))) - exact
+    return jnp.max(jnp.abs(change)) / jnp.max(jnp.abs(exact))

@@ -1,0 +1,149 @@
+"""Vibration of a linear rotor under unbalance."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Complex, Float
+
+from ...design.checks import non_negative, number
+from ...numerics.compiled.programs import program
+from ...numerics.lapack import solve_any
+from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.units import unit
+from ..parts import check_station
+from ..rotor import Rotor
+from .modes import major_axis, speed_list, to_complex
+
+_HELD = 1e-6
+"""Stiffness over mass added to everything at frequency zero [1/s²]."""
+_BATCH = 16
+"""Number of speeds solved at once."""
+
+
+class Unbalance(eqx.Module):
+    """Unbalance: a mass off the axis.
+
+    Attributes:
+        station: Number of the station that it sits on.
+        moment: Mass times distance from the axis [kg m].
+        phase: Azimuth at time 0, from +x towards +y [rad].
+
+    Traced: moment, phase.
+    """
+
+    station: int = eqx.field(static=True, converter=as_count)
+    moment: Scalar = eqx.field(converter=as_real, metadata=unit("kg m"))
+    phase: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.0)
+
+    def __check_init__(self):
+        check_station(self, self.station)
+        non_negative(self, "moment")
+        number(self, "phase")
+
+
+class UnbalanceResponse(eqx.Module):
+    """Steady vibration at the frequency of the speed, Re(motion · exp(iΩt)).
+
+    Attributes:
+        speed: Ω (speed,) [rad/s].
+        motion: Complex amplitudes of (ux uy uz gx gy) of every node
+            (speed, node, 5) [m, rad].
+        housing: Of (ux uy uz) of every housing (speed, housing, 3) [m].
+    """
+
+    speed: Float[Array, " speed"]
+    motion: Complex[Array, "speed node 5"]
+    housing: Complex[Array, "speed housing 3"]
+
+    @property
+    def amplitude(self) -> Float[Array, "speed node 5"]:
+        """Half of peak to peak of every freedom [m, rad]."""
+        return jnp.abs(self.motion)
+
+    @property
+    def major_axis(self) -> Float[Array, "speed node"]:
+        """Longer half axis of the orbit of every node in x and y [m]."""
+        return major_axis(self.motion[..., 0], self.motion[..., 1])
+
+
+def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:
+    """Return the vibration under unbalance, speed by speed.
+
+    The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
+
+    Args:
+        rotor: The rotor.
+        unbalances: `Unbalance`, or several.
+        speeds: (speed,) [rad/s].
+
+    Returns:
+        UnbalanceResponse, differentiable with respect to every number.
+    """
+    many = isinstance(unbalances, Iterable)
+    unbalances = tuple(unbalances) if many else (unbalances,)
+    for one in unbalances:
+        if not isinstance(one, Unbalance):
+            raise TypeError(
+                f"unbalance_response: `unbalances` holds a {type(one).__name__}; it"
+                " must hold Unbalances."
+            )
+        if one.station > rotor.shaft.n_segments:
+            raise ValueError(
+                f"unbalance_response: `unbalances` holds one on station {one.station};"
+                f" the last station of the shaft is {rotor.shaft.n_segments}."
+            )
+    speeds = speed_list("unbalance_response", speeds)
+    moments = _moments(rotor, unbalances)
+    return steady(rotor, moments, jnp.zeros_like(moments), speeds, speeds)
+
+
+@program(quick=True)
+def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
+    """Return amplitudes of unbalance forces on all motions, over Ω² [kg m]."""
+    moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
+    for one in unbalances:
+        x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
+        at = rotor.at(one.station).start
+        moments = moments.at[at].add(lax.complex(x, y))
+        moments = moments.at[at + 1].add(lax.complex(y, -x))
+    return moments
+
+
+@program(quick=True)
+def steady(
+    rotor: Any,
+    moments: Complex[Array, " motion"],
+    forces: Complex[Array, " motion"],
+    frequencies: Float[Array, " speed"],
+    speeds: Float[Array, " speed"],
+) -> UnbalanceResponse:
+    """Return the vibration of a linear rotor under Re((moments ω² + forces) exp(iωt)).
+
+    Args:
+        rotor: The rotor.
+        moments, forces: On all motions [kg m], [N, N m].
+        frequencies: ω of the excitation [rad/s].
+        speeds: Speeds of the rotor at each of them [rad/s].
+
+    Returns:
+        UnbalanceResponse; its `speed` is that of the excitation.
+    """
+    motions = to_complex(rotor.motions())
+    moments, forces = motions.T @ moments, motions.T @ forces
+
+    def at_frequency(given):
+        frequency, speed = given
+        force = to_complex(frequency**2) * moments + forces
+        matrices = rotor.linearised(speed)
+        stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * frequency, frequency))
+        # Motions without stiffness would make it singular at rest.
+        little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
+        stiffness = stiffness + to_complex(little)
+        return motions @ solve_any(stiffness, force)
+
+    motion = lax.map(at_frequency, (frequencies, speeds), batch_size=_BATCH)
+    nodes, housing = rotor.linearised(0.0).split(motion)
+    return UnbalanceResponse(frequencies, nodes, housing)

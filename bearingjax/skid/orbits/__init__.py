@@ -1,0 +1,1 @@
+"""Steady states, found without integrating in time."""

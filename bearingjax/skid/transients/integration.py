@@ -1,0 +1,103 @@
+"""Integration of the motion, in units to which the tolerance relates."""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int
+
+from ...numerics import in_time
+from ...numerics.implicit import stop
+from ...numerics.types import Scalar
+from ..motion import SkidState, SkidSystem, Surroundings, Work
+from ..ring_load import LoadHistory
+from ..ring_speed import SpeedTable
+
+_STEP = 0.02
+"""Error of a step over the tolerance: errors of many steps add up [1]."""
+_FIRST = 1e-5
+"""First step over the duration [1]."""
+
+Options = in_time.Options
+"""The tolerance: of speeds relative to the fastest ring, of angles in rad, of work
+relative to the kinetic energy of rolling balls or rollers."""
+
+
+class Integrated(NamedTuple):
+    """A motion, leading axis time; NaN where it was not reached.
+
+    Attributes:
+        state: The motion.
+        work: Work done since the beginning.
+        steps: Steps in time, rejected ones included.
+        rejected: Those.
+        result: `Result` code.
+    """
+
+    state: SkidState
+    work: Work
+    steps: Int[Array, ""]
+    rejected: Int[Array, ""]
+    result: Int[Array, ""]
+
+
+def integrated(
+    environment: Surroundings,
+    start: SkidState,
+    times: Float[Array, " time"],
+    duration: Scalar,
+    options: Options,
+) -> Integrated:
+    """Integrate the motion of balls and cage.
+
+    Args:
+        environment: Surroundings of the balls.
+        start: The motion at time zero.
+        times: Times of the output, rising [s].
+        duration: The last time [s].
+        options: Settings.
+    """
+    # Imported here, which keeps the import of the package fast.
+    from .rosenbrock import Rodas
+
+    system = _system(environment, start)
+    found = in_time.integrated(
+        lambda time, y, system: system.rates(time, y),
+        system,
+        system.packed(start),
+        times,
+        duration,
+        options,
+        solver=Rodas(),
+        step_error=_STEP,
+        first=_FIRST * duration,
+        knots=_knots(environment),
+    )
+    state, work = jax.vmap(system.unpacked)(found.state)
+    return Integrated(state, work, found.steps, found.rejected, found.result)
+
+
+def _knots(environment):
+    """Return the times at which speeds or loads have a kink, or `None`."""
+    tables = [environment.speed, getattr(environment.loads, "load", None)]
+    times = [
+        stop(table.time)
+        for table in tables
+        if isinstance(table, SpeedTable | LoadHistory) and table.time.shape[0] > 1
+    ]
+    if not times:
+        return None
+    every = jnp.concatenate(times)
+    return jnp.unique(every, size=every.shape[0])
+
+
+def _system(environment, start):
+    """Return the system in units to which the tolerance relates."""
+    bearing, count = environment.model.bearing, start.orbit.shape[0]
+    rings = jnp.concatenate([environment.speed.inner, environment.speed.outer])
+    fastest = jnp.max(jnp.abs(jnp.concatenate([rings, start.orbit])))
+    fastest = jnp.where(fastest > 0, fastest, 1.0)
+    energy = (
+        count * environment.loads.mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
+    )
+    return SkidSystem(environment, *stop((fastest, energy)))
