@@ -135,6 +135,7 @@ if _TYPE_CHECKING:
     from . import noise as noise
     from . import optimise as optimise
     from . import plot as plot
+    from . import report as report
     from . import rotor as rotor
     from . import scene as scene
     from . import shafts as shafts
@@ -147,7 +148,7 @@ if _TYPE_CHECKING:
 
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = (
-    dict.fromkeys("files noise optimise plot rotor scene shafts skid".split())
+    dict.fromkeys("files noise optimise plot report rotor scene shafts skid".split())
     | {"SceneError": "files"}
     | dict.fromkeys("load_bearing read_scene run".split(), "scene")
 )

@@ -18,7 +18,7 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics files design fits contact lubrication element statics life"
-    " cases catalogue friction optimise skid rotor shafts noise scene plot cli"
+    " cases catalogue friction optimise skid rotor shafts noise report scene plot cli"
 ).split()
 # What the plots show is what all layers below the scene provide; scene and plot stand
 # side by side, and only the command line and the top level see both.

@@ -37,7 +37,8 @@ def add(commands):
 def run(options) -> int:
     """List bearings of the catalogue."""
     from ..catalogue import catalogue_entries
-    from ..files import SceneError, write_numbers
+    from ..files import SceneError
+    from ..report import write_numbers
     from ..scene import (
         catalogue_as_dict,
         catalogue_details,

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from .status import BAD_INPUT, NOT_SOLVED, SOLVED, complain
 
 if TYPE_CHECKING:
-    from ..scene import Report
+    from ..report import Report
 
 Draw = Callable[[], Any]
 """Function that draws a Matplotlib figure."""
@@ -138,7 +138,7 @@ def execute(command: Any, options: Any) -> int:
 def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
     from ..cases.sweep_table import write_columns
-    from ..files import write_numbers
+    from ..report import write_numbers
 
     def tabulate(path):
         assert found.columns is not None
@@ -190,7 +190,7 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
         Incomplete: If a picture failed; a line is shown in its place.
     """
     from ..files import Incomplete
-    from ..scene import report_page
+    from ..report import report_page
 
     missing: list[str] = []
 
@@ -296,7 +296,7 @@ def _origin(options):
 
     from ..files.scene_file import find_scene
     from ..files.text_file import read_text
-    from ..scene import Origin
+    from ..report import Origin
 
     now = datetime.datetime.now().astimezone()
     texts = []

@@ -4,7 +4,6 @@ A reader of an output file sees either all of the old file or all of the new one
 """
 
 import contextlib
-import json
 import os
 import shutil
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._version import __version__
 from .quantity import SceneError
 from .scene_file import bearing_files, find_scene, parse_scene, profile_files
 from .table import text_of
@@ -226,49 +224,6 @@ def _numbers(rows: Sequence[Line]) -> np.ndarray:
     if not found:
         raise ValueError("has no numbers")
     return np.array(found)
-
-
-def write_numbers(path: str | Path, numbers: Mapping[str, Any]) -> None:
-    """Write plain numbers and lists as JSON; non-finite numbers become null.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    text = json.dumps(plain(numbers), indent=1, allow_nan=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
-
-
-def plain(value: Any) -> Any:
-    """Return what the JSON has: lists for arrays, `None` for non-finite numbers.
-
-    Args:
-        value: A number, an array, a word or `None`, or tables and lists of these.
-    """
-    if value is None or isinstance(value, str):
-        return value
-    if isinstance(value, Mapping):
-        return {key: plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(inner) for inner in value]
-    values = np.asarray(value)
-    if values.dtype.kind == "f" and not np.isfinite(values).all():
-        finite, values = np.isfinite(values), values.astype(object)
-        values[~finite] = None
-    return values.tolist()
-
-
-def plain_run(
-    numbers: Mapping[str, Any], warnings: Iterable[str], inputs: dict[str, Any]
-) -> dict[str, Any]:
-    """Return the JSON of a run.
-
-    Args:
-        numbers: Its numbers and status, as `plain` takes them.
-        warnings: Its warnings.
-        inputs: The scene as it was read.
-    """
-    common = {"warnings": list(warnings), "inputs": inputs, "version": __version__}
-    return {**plain(numbers), **common}
 
 
 def _target(path: Path) -> Path:

@@ -26,8 +26,6 @@ from .contact_run import run_refined as run_refined
 from .contact_table import ContactScene as ContactScene
 from .contact_table import is_bearing as is_bearing
 from .contact_table import read_contact as read_contact
-from .html_report import Origin as Origin
-from .html_report import report_page as report_page
 from .interrupt import Interrupt as Interrupt
 from .life_ratings import rating_origins as rating_origins
 from .life_report import life_as_dict as life_as_dict
@@ -61,9 +59,6 @@ from .read import Scene as Scene
 from .read import load_bearing as load_bearing
 from .read import read_scene as read_scene
 from .report import report as report
-from .report_model import Column as Column
-from .report_model import Grid as Grid
-from .report_model import Report as Report
 from .resume import resume_cases as resume_cases
 from .rotor_output import rotor_as_dict as rotor_as_dict
 from .rotor_output import rotor_columns as rotor_columns

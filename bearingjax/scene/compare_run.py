@@ -13,11 +13,11 @@ from ..element.frame import FREEDOMS
 from ..life.life import LIFE_OUTPUTS
 from ..numerics.result import Result
 from ..numerics.units import shown_count
+from ..report.html_report import flat
+from ..report.report_model import Column, Grid, Part, Report
 from .bearing_run import solve_scene
-from .html_report import flat
 from .read import Scene
 from .report import without_round_off
-from .report_model import Column, Grid, Part, Report
 from .solved import SolvedScene
 
 _FIELDS = "displacement", "force", "stiffness"

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..contact.halfspace.pressure import message
 from ..contact.slices import Compared
-from ..files.output_files import plain_run
 from ..numerics.result import Result
 from ..numerics.units import shown_count
+from ..report.json_output import run_json
+from ..report.report_model import NEWTONS, Column, Grid, Report
 from .contact_table import ContactScene
-from .report_model import NEWTONS, Column, Grid, Report
 
 WIDE = 0.2
 """Half width of a contact over the roller radius above which a warning is given."""
@@ -114,7 +114,7 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
     if not scene.listed:
         shared = ("position", "cell_length", "end_cell_length")
         found = {k: v if k in shared else v[0] for k, v in found.items()}
-    return plain_run(found, contact_warnings(scene, cases), scene.inputs)
+    return run_json(found, contact_warnings(scene, cases), scene.inputs)
 
 
 def _status(solution) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from ..design import TaperedRollerBearing, rows_of
+from ..report.report_model import Column, Grid, Part
 from .fits import Fits
-from .report_model import Column, Grid, Part
 
 ACROSS_TAPERS = "normal to the outer raceway"
 """Direction in which the clearance of a tapered roller bearing is specified."""

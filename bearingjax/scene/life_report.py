@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import RINGS
-from ..files.output_files import plain
 from ..life.life import LIFE_OUTPUTS, Life
+from ..report.json_output import to_json
+from ..report.report_model import Column, Grid, Part
 from ..statics.solution import RollerSolution, Solution
 from .life_ratings import not_published, rating_origins
 from .read import Scene
-from .report_model import Column, Grid, Part
 
 _SOURCES = {
     "dynamic_capacity": "dynamic_source",
@@ -35,7 +35,7 @@ def life_as_dict(life: Life, scene: Scene) -> dict[str, Any]:
     """
     found = ratings_as_dict(life.ratings, rating_origins(scene, life.ratings))
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
-        found[name] = plain(getattr(life, name))
+        found[name] = to_json(getattr(life, name))
     row, ring, track = life.weakest
     found["weakest"] = {"row": row, "ring": ring, "track": track}
     return {**found, "standards": dict(life.standards)}
@@ -52,7 +52,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for name, source in _SOURCES.items():
-        found[name] = plain(getattr(ratings, name))
+        found[name] = to_json(getattr(ratings, name))
         found[f"{name}_source"] = getattr(ratings, source)
         found[f"{name}_origin"] = origins.get(name)
     found["axial_factors_source"] = ratings.factors_source

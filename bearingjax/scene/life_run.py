@@ -12,13 +12,14 @@ from ..cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ..cases.sweep import Sweep
 from ..cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from ..design.published import with_published
-from ..files.output_files import plain_run
 from ..files.quantity import SceneError
 from ..files.scene_file import find_scene, parse_bearing
 from ..life.life import LIFE_OUTPUTS, turns_against_load
 from ..life.rating import Ratings, ratings
 from ..numerics.result import Result
 from ..numerics.units import shown_count
+from ..report.json_output import run_json
+from ..report.report_model import NEWTONS, Column, Grid, Part, Report
 from .case_words import case_words, differing
 from .cases_table import CaseTable
 from .life_ratings import life_conditions, not_published, rating_origins
@@ -30,7 +31,6 @@ from .life_report import (
     turning,
 )
 from .report import design_sections
-from .report_model import NEWTONS, Column, Grid, Part, Report
 from .sweep_run import all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
@@ -201,7 +201,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["damage_share"] = run.asked.damage_share
     found["columns"] = life_columns(run, exact=True)
     found["counts"] = run.solved.counts()
-    return plain_run(found, run.warnings, run.table.inputs)
+    return run_json(found, run.warnings, run.table.inputs)
 
 
 def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:

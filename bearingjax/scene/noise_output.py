@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ..files.output_files import plain_run
 from ..noise import SourceContributions, write_sound
 from ..noise.natural import LOOSE
+from ..report.json_output import run_json
 from .noise_run import NoiseRun, RandomBearings
 from .noise_scene import AXES
 from .tolerance_table import Tighter
@@ -48,7 +48,7 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     if run.many is not None:
         parts["monte_carlo"] = _many(run.many, run.task.tighter)
     parts |= {"result": run.result.label, "message": run.message}
-    return plain_run(parts, run.warnings, run.task.inputs)
+    return run_json(parts, run.warnings, run.task.inputs)
 
 
 def _analysis(run: NoiseRun) -> dict[str, Any]:

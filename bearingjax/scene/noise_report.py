@@ -6,11 +6,11 @@ from ..noise import ring_modes
 from ..noise.level import LOWEST_LEVEL
 from ..noise.scatter import SOURCES
 from ..numerics.units import shown_count
+from ..report.report_model import Column, Grid, Report, load_text, rpm
 from .noise_output import PERCENTILES, parts_of
 from .noise_run import LARGEST_LINES, NoiseRun
 from .noise_scene import AXES
 from .report import bearing_text
-from .report_model import Column, Grid, Report, load_text, rpm
 
 _WORTH = 0.1
 """Part of a band above which its largest source is named [1]."""

@@ -8,7 +8,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..files.output_files import plain
 from ..files.schema import read_keys
 from ..files.table import Table
 from ..friction.contact_films import Films, films
@@ -22,6 +21,7 @@ from ..friction.friction_skf import (
 from ..lubrication import Lubricant
 from ..numerics.compiled.programs import program
 from ..numerics.types import as_array
+from ..report.json_output import to_json
 from ..statics.solution import Solution
 from .catalogue_keys import FromCatalogue
 from .lubricant_table import LubricantKeys, described
@@ -218,4 +218,4 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
             "assumed": skf.assumed,
         }
     film = {name: getattr(found, name) for name in names}
-    return plain({**numbers, "film": film})
+    return to_json({**numbers, "film": film})

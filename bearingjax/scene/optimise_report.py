@@ -4,17 +4,17 @@ from typing import Any
 
 import numpy as np
 
-from ..files.output_files import plain_run
 from ..numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ..optimise.design_problem import Outcome
 from ..optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ..optimise.optimise import Optimised
+from ..report.json_output import run_json
+from ..report.report_model import Column, Grid, Report
 from .optimise_design import scene_of_design
 from .optimise_table import Optimisation
 from .output import fits_as_dict
 from .read import Scene
 from .report import fits_section
-from .report_model import Column, Grid, Report
 from .shaft_optimise import ShaftOptimisation
 
 Task = Optimisation | ShaftOptimisation
@@ -141,7 +141,7 @@ def optimisation_as_dict(
         **(fits_as_dict(best) if isinstance(best, Scene) else {}),
         "warnings_before": _warned_before(task, found),
     }
-    return plain_run(numbers, [*best.warnings, *found.after.warnings], task.inputs)
+    return run_json(numbers, [*best.warnings, *found.after.warnings], task.inputs)
 
 
 def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
@@ -155,7 +155,7 @@ def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
         result ("start_not_solved"), message, warnings, inputs and version.
     """
     status = {"result": "start_not_solved", "message": str(error)}
-    return plain_run(status, task.scene.warnings, task.inputs)
+    return run_json(status, task.scene.warnings, task.inputs)
 
 
 def _numbers(found, best):

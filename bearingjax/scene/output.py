@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from ..files.output_files import plain, plain_run, write_numbers
 from ..numerics.result import Result
+from ..report.json_output import run_json, to_json, write_numbers
 from ..statics.solution import BallSolution, message
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
@@ -93,7 +93,7 @@ def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
         "residual": solution.stats.residual,
         "iterations": solution.stats.iterations,
     }
-    return plain_run(status, found.warnings, scene.inputs)
+    return run_json(status, found.warnings, scene.inputs)
 
 
 def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
@@ -142,7 +142,7 @@ def _numbers(solution):
     numbers = _of_elements(solution)
     if solution.spring_force is not None:
         numbers |= {name: getattr(solution, name) for name in OF_SPRINGS}
-    return plain(numbers)
+    return to_json(numbers)
 
 
 def _of_elements(solution):

@@ -9,14 +9,14 @@ import numpy as np
 
 from ..cases.sweep import stack_designs
 from ..element import BearingElement, Speed
-from ..files.output_files import plain
 from ..fits import Limits, Mounting, mounting_at, sized
 from ..numerics.compiled.programs import called
 from ..numerics.types import as_array
+from ..report.json_output import to_json
+from ..report.report_model import Column, Grid, Part
 from ..statics.installed import Installed
 from ..statics.preload import is_opposed, remaining_preload
 from .fits import Fits
-from .report_model import Column, Grid, Part
 
 _LEAST = 1e-6
 """Force below which the preload counts as zero [N]."""
@@ -198,7 +198,7 @@ def preload_as_dict(found: PreloadOfSet) -> dict[str, Any]:
     ranges = {"mounted": found.mounted_range, "operating": found.operating_range}
     if worst := {k: ends for k, ends in ranges.items() if ends}:
         numbers["worst"] = worst
-    return plain(numbers)
+    return to_json(numbers)
 
 
 def preload_report(found: PreloadOfSet) -> list[Part]:

@@ -21,6 +21,7 @@ from ..design import (
 )
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ..numerics.units import shown_count
+from ..report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from ..statics.solution import BallSolution, Solution
 from ..statics.warning_sizes import ends_over
 from .fit_report import ACROSS_TAPERS, fit_report, outer_cosine
@@ -29,7 +30,6 @@ from .oil_table import oil_report
 from .operation_report import operation
 from .preload_of_set import preload_report
 from .read import Scene
-from .report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from .solved import SolvedScene
 
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ..files.output_files import plain_run
 from ..files.quantity import SceneError
 from ..numerics.result import Result
+from ..report.json_output import run_json
 from ..rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from .fit_report import fit_as_dict
 from .life_report import life_as_dict
@@ -76,7 +76,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
         parts["transient"] = _transient(run.transient)
     worst = max((one.result for one in run.failures), default=Result.CONVERGED)
     parts |= {"result": worst.label, "message": rotor_message(run)}
-    return plain_run(parts, run.warnings, run.task.inputs)
+    return run_json(parts, run.warnings, run.task.inputs)
 
 
 def rotor_message(run: RotorRun) -> str:

@@ -3,11 +3,11 @@
 import numpy as np
 
 from ..numerics.units import shown_count
+from ..report.report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from ..rotor import STATION_FREEDOMS
 from ..rotor.nonlinear import BranchEnd
 from .fit_report import fit_report
 from .report import without_round_off
-from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .rotor_motion import RotorResponse, RotorTransient
 from .rotor_output import UNITS, mode_numbers
 from .rotor_run import RotorRun

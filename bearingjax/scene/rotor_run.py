@@ -16,6 +16,7 @@ from ..life.life import Life, life_of
 from ..life.life_warning import life_warnings
 from ..numerics.result import Result, SolveError
 from ..numerics.types import as_array
+from ..report.report_model import rpm
 from ..rotor import (
     BearingSupport,
     CriticalSpeeds,
@@ -33,7 +34,6 @@ from ..rotor import (
 from ..statics.load_result import solution_at
 from .fits import fits_at_speed
 from .life_ratings import life_conditions
-from .report_model import rpm
 from .rotor_motion import RotorResponse, RotorTransient, respond, run_in_time
 from .rotor_scene import Mount, RotorScene
 from .rotor_supports import support_of

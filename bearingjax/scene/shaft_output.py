@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from ..element.frame import LOAD_UNITS, LOADS
-from ..files.output_files import plain_run
 from ..numerics.result import Result
+from ..report.json_output import run_json
 from ..shafts import DutyResult
 from ..shafts.doubts import axial_load
 from ..shafts.duty import LIVES
@@ -58,7 +58,7 @@ def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
         "residual": found.residual,
         "iterations": found.steps,
     }
-    return plain_run(numbers, run.warnings, run.task.inputs)
+    return run_json(numbers, run.warnings, run.task.inputs)
 
 
 def _thermal(run: ShaftRun) -> dict[str, Any]:

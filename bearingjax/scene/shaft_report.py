@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from ..numerics.units import shown_count
+from ..report.report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .life_report import life_number, life_section
 from .oil_table import oil_report, series_words
 from .report import fits_section
-from .report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
 from .shaft_run import ShaftRun, bearing_loss
 
 _MICRO = 1e6, "µrad"

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..cases.sweep_table import column_header
 from ..element import RINGS
-from ..files.output_files import plain_run
 from ..numerics.result import Result
+from ..report.json_output import run_json
 from ..skid import by_raceway
 from ..skid.transients.transient import CAUSES
 from ..statics.solution import message
@@ -83,7 +83,7 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
         "iterations": run.found.steps,
     }
     numbers = of_run(run) if run.has_numbers else {}
-    return plain_run({**numbers, **status}, run.warnings, run.task.inputs)
+    return run_json({**numbers, **status}, run.warnings, run.task.inputs)
 
 
 def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:

@@ -4,9 +4,7 @@ import numpy as np
 
 from ..lubrication import Regime
 from ..numerics.units import shown_count
-from .lubricant_table import TRACTIONS, described
-from .report import ball_row, by_ring, roller_row
-from .report_model import (
+from ..report.report_model import (
     DEGREES,
     NEWTONS,
     Column,
@@ -16,6 +14,8 @@ from .report_model import (
     load_text,
     rpm,
 )
+from .lubricant_table import TRACTIONS, described
+from .report import ball_row, by_ring, roller_row
 from .skid_output import at_balls, each_ball, rolling_cage_speed
 from .skid_run import SkidRun
 

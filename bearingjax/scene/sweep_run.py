@@ -12,17 +12,17 @@ from ..cases.sweep import Sweep, sweep
 from ..cases.sweep_program import not_run
 from ..cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
 from ..design import rows_of
-from ..files.output_files import plain_run
 from ..files.quantity import SceneError
 from ..fits import radial_clearance
 from ..life.life import LIFE_OUTPUTS, LifeConditions
 from ..numerics.units import display_unit, shown_count
+from ..report.json_output import run_json
+from ..report.report_model import Column, Grid, Part, Report
 from ..statics.preload import is_opposed, pressed
 from .bearing_run import with_set_preload
 from .cases_table import CaseTable, DesignGroup, turns_of
 from .life_ratings import life_conditions
 from .preload_of_set import preload_warnings, range_warnings
-from .report_model import Column, Grid, Part, Report
 
 OUTPUTS = (
     "displacement",
@@ -268,4 +268,4 @@ def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
         "columns": columns(solved, design_columns(table), exact=True),
         "counts": solved.counts(),
     }
-    return plain_run(numbers, all_warnings(table, solved), table.inputs)
+    return run_json(numbers, all_warnings(table, solved), table.inputs)

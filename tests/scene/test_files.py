@@ -7,13 +7,8 @@ import os
 import pytest
 
 import bearingjax as bj
-from bearingjax.files import (
-    Incomplete,
-    SceneError,
-    check_outputs,
-    write_numbers,
-    write_outputs,
-)
+from bearingjax.files import Incomplete, SceneError, check_outputs, write_outputs
+from bearingjax.report import write_numbers
 
 LIST = "operating.load.Fy [kN]\n-1\n"
 

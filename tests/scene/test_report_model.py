@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from pages import missing_on_page
 
-from bearingjax.scene import Column, Grid, Origin, Report, report_page
-from bearingjax.scene.html_report import flat
-from bearingjax.scene.report_model import DEGREES, labelled
+from bearingjax.report import Column, Grid, Origin, Report, report_page
+from bearingjax.report.html_report import flat
+from bearingjax.report.report_model import DEGREES, labelled
 
 
 @pytest.mark.parametrize(

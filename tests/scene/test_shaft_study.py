@@ -15,8 +15,8 @@ import bearingjax as bj
 from bearingjax.files import SceneError
 from bearingjax.numerics.result import Result
 from bearingjax.plot.shafts import _warming
+from bearingjax.report.report_model import Grid
 from bearingjax.scene import read_shafts, run_shafts
-from bearingjax.scene.report_model import Grid
 from bearingjax.scene.shaft_output import shaft_columns
 from bearingjax.scene.shaft_report import _temperatures
 from bearingjax.scene.shaft_run import ShaftRun
