@@ -1,7 +1,7 @@
 """`bearingjax catalogue`."""
 
-from .execute import check_outputs, save, write_outputs
 from .options import add_drawing, add_json, add_plot
+from .outputs import check_outputs, save, write_outputs
 from .status import BAD_INPUT, SOLVED
 
 

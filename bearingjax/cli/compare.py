@@ -1,7 +1,7 @@
 """`bearingjax compare`."""
 
-from .execute import Outcome, Tools
 from .options import add_json, add_report, add_set, add_table
+from .outcome import Outcome, Tools
 from .solution import why_unsolved
 
 

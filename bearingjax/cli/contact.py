@@ -1,7 +1,7 @@
 """`bearingjax contact`."""
 
-from .execute import Outcome, Tools
 from .options import add_plot, add_report, add_scene
+from .outcome import Outcome, Tools
 from .solution import why_unsolved
 
 

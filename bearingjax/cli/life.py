@@ -2,8 +2,8 @@
 
 import dataclasses
 
-from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outcome import Outcome, Tools
 from .solution import solution_outcome
 
 

@@ -1,7 +1,7 @@
 """`bearingjax optimise`."""
 
-from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene
+from .outcome import Outcome, Tools
 
 
 def add(commands):

@@ -1,7 +1,7 @@
 """`bearingjax shaft`."""
 
-from .execute import Outcome, Tools
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outcome import Outcome, Tools
 
 
 def add(commands):

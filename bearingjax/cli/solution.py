@@ -1,6 +1,6 @@
 """Outcome of a solved bearing, for `solve` and the commands based on it."""
 
-from .execute import Outcome
+from .outcome import Outcome
 
 
 def solution_outcome(scene, numbers=None, brief=None) -> Outcome:

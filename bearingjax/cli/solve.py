@@ -1,7 +1,7 @@
 """`bearingjax solve`."""
 
-from .execute import Outcome, Tools
 from .options import add_drawing, add_plot, add_report, add_scene
+from .outcome import Outcome, Tools
 from .solution import solution_outcome
 from .status import complain
 

@@ -7,8 +7,9 @@ import time
 import numpy as np
 
 from . import jax_settings
-from .execute import Outcome, Tools, check_table
 from .options import add_plot, add_quiet, add_report, add_scene, add_table
+from .outcome import Outcome, Tools
+from .outputs import check_table
 from .status import NOT_SOLVED, SOLVED
 
 

@@ -1,6 +1,5 @@
 """Scene files: reading, running, reporting."""
 
-from .bearing_run import run_optimisation as run_optimisation
 from .bearing_run import run_scene as run_scene
 from .bearing_run import solve_scene as solve_scene
 from .bearing_run import with_set_preload as with_set_preload
@@ -49,6 +48,7 @@ from .optimise_design import scene_of_design as scene_of_design
 from .optimise_report import optimisation_as_dict as optimisation_as_dict
 from .optimise_report import optimisation_report as optimisation_report
 from .optimise_report import unsolved_start_as_dict as unsolved_start_as_dict
+from .optimise_run import run_optimisation as run_optimisation
 from .optimise_table import Optimisation as Optimisation
 from .output import as_dict as as_dict
 from .output import fits_as_dict as fits_as_dict

@@ -5,13 +5,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..files.scene_file import find_scene, parse_scene
-from .bearing_run import run_optimisation, run_scene
+from .bearing_run import run_scene
 from .cases_table import read_cases
 from .contact_run import run_contact
 from .contact_table import read_contact
 from .life_run import run_life
 from .noise_run import run_noise
 from .noise_table import read_noise
+from .optimise_run import run_optimisation
 from .read import read_scene
 from .rotor_run import run_rotor
 from .rotor_table import read_rotor

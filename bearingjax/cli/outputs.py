@@ -1,0 +1,109 @@
+"""Output files of commands: checked before a run, written after it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from .status import complain
+
+OUTPUTS = "json", "table", "wav", "plot", "drawing", "report"
+"""Options that name a file, in the order in which the files are written."""
+
+_PICTURE = (".png", ".pdf", ".svg"), "a picture ends in .png, .pdf or .svg"
+_ENDINGS = {
+    "plot": _PICTURE,
+    "drawing": _PICTURE,
+    "report": ((".html", ".htm"), "a report ends in .html"),
+    "wav": ((".wav",), "a sound ends in .wav"),
+}
+
+
+def write_outputs(outputs) -> bool:
+    """Write files, pairs of a path (`None`: not requested) and its writer.
+
+    Reports which files of an earlier run were removed, and which failed: a failed
+    picture does not affect tables and numbers.
+
+    Returns:
+        Whether one of them failed.
+    """
+    from ..files import write_outputs
+
+    written = write_outputs(outputs)
+    for path in written.removed:
+        complain(f"{path}: of an earlier run, removed")
+    for path, error in written.failed:
+        complain(f"{path}: {failure_of_output(error)}")
+    return bool(written.failed)
+
+
+def save(figure, path, **format) -> None:
+    """Write a picture, to a file or a stream."""
+    figure.savefig(path, dpi=150, **format)
+    # Laid out once: a layout of what has its place already would shift it.
+    figure.set_layout_engine("none")
+
+
+def failure_of_output(error: Exception) -> str:
+    """Describe why an output, or a part of one, is missing."""
+    from ..files import Incomplete
+
+    if isinstance(error, Incomplete):
+        return str(error)
+    return f"could not be made: {type(error).__name__}: {error}"
+
+
+def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
+    """Fail before solving if outputs cannot be written or overwrite an input.
+
+    Args:
+        options: Command line options.
+        inputs: Files that are read; default: those of the scene.
+    """
+    from ..files import SceneError, check_outputs, scene_files
+
+    outputs = {name: getattr(options, name, None) for name in OUTPUTS}
+    for name, (endings, words) in _ENDINGS.items():
+        path = outputs[name]
+        if path is not None:
+            if name != "wav":
+                check_matplotlib()
+            if path.suffix.lower() not in endings:
+                raise SceneError(f"{path}: {words}")
+    if inputs is None:
+        inputs = [
+            path
+            for source in sources_of(options)
+            for path in scene_files(source, options.set)
+        ]
+    check_outputs({f"--{name}": path for name, path in outputs.items()}, inputs)
+
+
+def check_table(options, rows: int = 0) -> None:
+    """Fail before solving if a table with this number of rows cannot be written."""
+    from ..cases.sweep_table import check_writable
+    from ..files import SceneError
+
+    table = getattr(options, "table", None)
+    if table is None:
+        return
+    try:
+        check_writable(table, rows)
+    except (ValueError, ImportError) as error:
+        raise SceneError(str(error)) from error
+
+
+def check_matplotlib() -> None:
+    """Fail if pictures cannot be drawn."""
+    from ..files import SceneError
+
+    try:
+        import matplotlib
+    except ImportError as error:
+        problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
+        raise SceneError(problem) from error
+    matplotlib.use("Agg")
+
+
+def sources_of(options) -> list[str]:
+    """Return the scenes of a command."""
+    return options.scenes if hasattr(options, "scenes") else [options.scene]
