@@ -137,25 +137,28 @@ if _TYPE_CHECKING:
     from . import plot as plot
     from . import report as report
     from . import rotor as rotor
-    from . import scene as scene
     from . import shafts as shafts
     from . import skid as skid
+    from . import studies as studies
     from .files import SceneError as SceneError
-    from .scene import load_bearing as load_bearing
-    from .scene import read_scene as read_scene
-    from .scene import run as run
+    from .studies.bearing.read_scene import load_bearing as load_bearing
+    from .studies.bearing.read_scene import read_scene as read_scene
+    from .studies.study import run as run
 
 
 # Imported at first use: packages, and names of the top level with their package.
-_LATE = (
-    dict.fromkeys("files noise optimise plot report rotor scene shafts skid".split())
-    | {"SceneError": "files"}
-    | dict.fromkeys("load_bearing read_scene run".split(), "scene")
-)
+_LATE = dict.fromkeys(
+    "files noise optimise plot report rotor shafts skid studies".split()
+) | {
+    "SceneError": "files",
+    "load_bearing": "studies.bearing.read_scene",
+    "read_scene": "studies.bearing.read_scene",
+    "run": "studies.study",
+}
 
 
 def __getattr__(name: str):
-    """Import a package, or what the top level has of it, at its first use (PEP 562)."""
+    """Import a package, or a name of one, at its first use (PEP 562)."""
     if name not in _LATE:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     package = _importlib.import_module(f"{__name__}.{_LATE[name] or name}")

@@ -18,11 +18,8 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics files design fits contact lubrication element statics life"
-    " cases catalogue friction optimise skid rotor shafts noise report scene plot cli"
+    " cases catalogue friction optimise skid rotor shafts noise report plot studies cli"
 ).split()
-# What the plots show is what all layers below the scene provide; scene and plot stand
-# side by side, and only the command line and the top level see both.
-NOT_SEEN = {"plot": {"scene"}, "scene": {"plot"}}
 
 
 def modules():
@@ -47,7 +44,7 @@ def imported_layers(path):
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_module_imports_respect_layers(path):
     own = path.relative_to(PACKAGE).parts[0]
-    allowed = set(LAYERS[: LAYERS.index(own) + 1]) - NOT_SEEN.get(own, set())
+    allowed = set(LAYERS[: LAYERS.index(own) + 1])
     foreign = set(imported_layers(path)) & set(LAYERS) - allowed
     assert not foreign, f"{path.name} imports {foreign}"
 
@@ -65,7 +62,7 @@ def own_imports(path, tree):
 
 
 # Fast starts: commands import what they need, and `rosenbrock` imports Diffrax.
-LATE_IMPORTS = {"cli", "skid/transients/integration.py"}
+LATE_IMPORTS = {"cli", "studies", "skid/transients/integration.py"}
 
 
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
@@ -81,13 +78,29 @@ def is_function(node):
 
 
 def test_imports_of_modules_form_no_circle():
-    """Those for types alone count, but for the energy's: it is written for elements
-    that import it."""
     graph = {p: set(own_imports(p, ast.parse(p.read_text()))) for p in modules()}
     graph = {p: found - {p} for p, found in graph.items() if p.name != "__init__.py"}
-    elements = {PACKAGE / "element" / f"{name}.py" for name in ("ball", "roller")}
-    graph[PACKAGE / "element" / "energy.py"] -= elements
     assert len(list(TopologicalSorter(graph).static_order())) > 300
+
+
+STUDIES = (
+    "bearing solve cases contact noise skid rotor shaft optimise catalogue".split()
+)
+
+
+@pytest.mark.parametrize("folder", STUDIES)
+def test_studies_import_those_before_them(folder):
+    before = {*STUDIES[: STUDIES.index(folder) + 1]}
+    for path in (PACKAGE / "studies" / folder).glob("*.py"):
+        files = own_imports(path, ast.parse(path.read_text()))
+        places = [file.relative_to(PACKAGE).parts for file in files]
+        seen = {p[1] for p in places if p[0] == "studies" and len(p) == 3}
+        assert seen <= before, path
+
+
+def test_no_folder_holds_more_than_twenty_files():
+    folders = {path.parent for path in PACKAGE.rglob("*.py")}
+    assert max(len([*folder.glob("*.py")]) for folder in folders) <= 20
 
 
 @pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))

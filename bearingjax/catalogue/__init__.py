@@ -5,4 +5,3 @@ from .entry import catalogue_entries as catalogue_entries
 from .entry import catalogue_entry as catalogue_entry
 from .estimate import GeometryEstimate as GeometryEstimate
 from .estimate import estimate_geometry as estimate_geometry
-from .estimated_entry import estimated_entry as estimated_entry

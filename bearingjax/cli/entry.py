@@ -8,25 +8,23 @@ import os
 import sys
 from collections.abc import Sequence
 
-from . import (
-    catalogue,
-    compare,
-    contact,
-    examples,
-    jax_settings,
-    life,
-    new,
-    noise,
-    optimise,
-    rotor,
-    schema,
-    shaft,
-    skid,
-    solve,
-    sweep,
-)
+from ..studies import jax_settings
+from ..studies import schema_command as schema
+from ..studies.cases import life_command as life
+from ..studies.cases import sweep_command as sweep
+from ..studies.catalogue import command as catalogue
+from ..studies.catalogue import examples_command as examples
+from ..studies.catalogue import new_command as new
+from ..studies.contact import command as contact
+from ..studies.noise import command as noise
+from ..studies.optimise import command as optimise
+from ..studies.rotor import command as rotor
+from ..studies.shaft import command as shaft
+from ..studies.skid import command as skid
+from ..studies.solve import command as solve
+from ..studies.solve import compare_command as compare
+from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 from .execute import execute
-from .status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 
 _SOLVING = (
     solve,

@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from .outcome import Draw, Outcome, Stage, Tools
-from .outputs import (
+from ..studies.outcome import Draw, Outcome, Stage, Tools
+from ..studies.outputs import (
     OUTPUTS,
     check_outputs,
     check_table,
@@ -22,7 +22,7 @@ from .outputs import (
     sources_of,
     write_outputs,
 )
-from .status import BAD_INPUT, NOT_SOLVED, SOLVED, complain
+from ..studies.status import BAD_INPUT, NOT_SOLVED, SOLVED, complain
 
 
 def execute(command: Any, options: Any) -> int:

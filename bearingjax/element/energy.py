@@ -14,7 +14,7 @@ Source: Sorokin, Zhang, Ivannikov (2018) for rollers; the textbook equations of 
     the derivatives of `ball_energy`.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -32,13 +32,9 @@ from .rolling_element import (
     split,
 )
 
-if TYPE_CHECKING:
-    from .balls.ball import Ball
-    from .roller import Roller
-
 
 def roller_energy(
-    self: "Roller",
+    self: Any,
     rings: RingMotion,
     x: Unknowns,
     contact_response: Expansion | None = None,
@@ -49,7 +45,7 @@ def roller_energy(
     at the end from tilt), and with each rib, in one.
 
     Args:
-        self: The roller.
+        self: The `element.roller.Roller`.
         rings: Motions of the rings in roller axes, (t, m, θ) each [m, rad].
         x: Place of the roller from the mean of the rings, tilt times L/2 (3,) [m].
         contact_response: Contact response there, if available.
@@ -62,7 +58,7 @@ def roller_energy(
 
 
 def ball_energy(
-    self: "Ball",
+    self: Any,
     rings: RingMotion,
     x: Unknowns,
     contact_response: Expansion | None = None,
@@ -73,7 +69,7 @@ def ball_energy(
     against that of the groove. The contact angle follows from it.
 
     Args:
-        self: The ball.
+        self: The `element.balls.ball.Ball`.
         rings: Motions of the rings in the ball's axes [m, rad].
         x: Place of the ball's centre (z, r), from where the rings take it (2,) [m].
         contact_response: Contact response there, if available.

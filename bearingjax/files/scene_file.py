@@ -103,6 +103,18 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
     return data
 
 
+def has_cases(source: str | Path, settings: Iterable[str] = ()) -> bool:
+    """Whether the scene of a bearing has [cases].
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: If it cannot be read.
+    """
+    return "cases" in parse_bearing(find_scene(source), settings)
+
+
 def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
     """Return the other scenes from which a rotor takes its bearings.
 

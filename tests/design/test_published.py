@@ -16,7 +16,7 @@ from bearingjax.catalogue.entry import catalogue_entries
 from bearingjax.design.published import is_as_published, rated_dimensions
 from bearingjax.life import equivalent_load, rating, ratings
 from bearingjax.optimise.variable import changed
-from bearingjax.scene import read_scene
+from bearingjax.studies.bearing.read_scene import read_scene
 
 LOAD = np.array([2e3, 0.0, 4e3, 0.0, 0.0, 0.0])
 

@@ -13,6 +13,7 @@ import pytest
 import bearingjax as bj
 from bearingjax.numerics.compiled import programs
 from bearingjax.numerics.compiled.structure import UnknownStructure, structure
+from bearingjax.studies.solve.run import run_scene
 
 # Every choice of a scene that is not a number, beside the choice that it replaces.
 OF_ROLLERS = (
@@ -66,7 +67,7 @@ def name_of(monkeypatch, store):
         pass
 
     def name(name, function, given, _):
-        if function.__module__.startswith("bearingjax.scene."):
+        if function.__module__.startswith("bearingjax.studies."):
             raise Named(name)
         return function(*given[0], **given[1])  # such as a rating, while it is read
 
@@ -74,7 +75,7 @@ def name_of(monkeypatch, store):
 
     def call(scene, *settings):
         with pytest.raises(Named) as found:
-            bj.scene.run_scene(bj.read_scene(scene, settings))
+            run_scene(bj.read_scene(scene, settings))
         return found.value.args[0]
 
     return call

@@ -18,7 +18,7 @@ from bearingjax.catalogue.designation import split_designation
 from bearingjax.catalogue.entry import _names
 from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.files.quantity import KINDS, to_si
-from bearingjax.scene import STUDIES, study_of
+from bearingjax.studies.study import STUDIES, study_of
 
 _DEG, _TURN = math.pi / 180, 2 * math.pi
 UNITS = {

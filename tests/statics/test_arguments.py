@@ -12,6 +12,7 @@ import pytest
 from sweep_in_process import small_element
 
 import bearingjax as bj
+from bearingjax.studies.solve import run
 
 ELEMENT = small_element()
 BEARING = ELEMENT.bearing
@@ -34,7 +35,7 @@ PACKAGES = {
     "stiffness_table": bj.rotor,
     "to_ross": bj.rotor,
     "optimise": bj.optimise,
-    "run_scene": bj.scene,
+    "run_scene": run,
 }
 
 

@@ -1,0 +1,1 @@
+"""Runs that scenes describe: a folder each with reader, run, report, command line."""

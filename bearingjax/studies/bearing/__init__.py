@@ -1,0 +1,1 @@
+"""Tables of a bearing that several kinds of scene share."""

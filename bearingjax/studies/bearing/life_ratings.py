@@ -1,0 +1,91 @@
+"""Conditions of the life of a scene's bearing, and the origins of its ratings."""
+
+import dataclasses
+from collections.abc import Iterable
+from typing import Any
+
+from ...design import BearingSet, rows_of, shares_rings
+from ...life.life import LifeConditions
+from ...life.rating import GIVEN, PUBLISHED
+from .read_scene import Scene
+
+
+def life_conditions(scene: Scene, turning: bool = True) -> LifeConditions:
+    """Return the conditions of the rating life of a scene.
+
+    Ratings that [life] does not give are those that the bearing carries, published or
+    from its geometry (`life.ratings`).
+
+    Args:
+        scene: The scene.
+        turning: Whether the rings have a relative speed; without it there is no film
+            and no modified life.
+    """
+    own = LifeConditions() if scene.life is None else scene.life
+    if not turning:
+        own = dataclasses.replace(own, viscosity=None, contamination=None)
+    return own
+
+
+_OF_ROWS = {
+    "dynamic_capacity": ("dynamic_source", "by ISO 281"),
+    "static_capacity": ("static_source", "by ISO 76"),
+    "fatigue_load_limit": ("limit_source", "in proportion to C0"),
+}
+"""Source of each rating, and the rule by which that of several rows follows."""
+
+
+def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
+    """Describe the origins of ratings that are not computed, by their name.
+
+    Args:
+        scene: The scene.
+        ratings: Its `Ratings`.
+
+    Returns:
+        The [life] of the scene, or the published bearing, the designation that is
+        listed as it, and any scaling; ratings from the geometry are left out.
+    """
+    sources = {name: getattr(ratings, source) for name, (source, _) in _OF_ROWS.items()}
+    found = {
+        name: "given in [life]" for name, source in sources.items() if source == GIVEN
+    }
+    if scene.catalogue is None:
+        return found
+    entry, bearing = scene.catalogue.entry, scene.element.bearing
+    words = f"published for {entry.designation}"
+    if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
+        words = "published for the bearing of its rows"
+    rows = ""
+    if isinstance(bearing, BearingSet) and not shares_rings(bearing):
+        rows = f", of one row; for {len(rows_of(bearing))} rows"
+    # A plain size has the ratings of the improved design that it is listed as.
+    listed = "".join(f"; {note}" for note in entry.notes if " is listed as " in note)
+    for name, source in sources.items():
+        if source == PUBLISHED:
+            how = f"{rows} {_OF_ROWS[name][1]}" if rows else ""
+            found[name] = f"{words}{how}{listed}"
+    return found
+
+
+def not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
+    """Explain in a line why the published ratings are not used, if they are not.
+
+    Args:
+        scene: The scene.
+        varied: Keys varied by its cases.
+    """
+    if scene.catalogue is None:
+        return []
+    entry, changed = scene.catalogue.entry, scene.catalogue.varied(varied).rerated
+    if entry.dynamic_capacity is None:
+        if scene.life is not None and scene.life.dynamic_capacity is not None:
+            return []
+        return [
+            f"  (those of {entry.designation} are {entry.sources['capacity']}; from the"
+            " balls of another one they may be some 20 % too high)"
+        ]
+    if not changed:
+        return []
+    words = f"{entry.designation}: {', '.join(changed)} differs"
+    return [f"  (not the published ones of {words})"]

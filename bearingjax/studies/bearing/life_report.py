@@ -1,0 +1,196 @@
+"""Rating life of a scene as text, and as numbers in SI."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...element.frame import RINGS
+from ...life.life import LIFE_OUTPUTS, Life
+from ...report.json_output import to_json
+from ...report.report_model import Column, Grid, Part
+from ...statics.solution import RollerSolution, Solution
+from .life_ratings import not_published, rating_origins
+from .read_scene import Scene
+
+_SOURCES = {
+    "dynamic_capacity": "dynamic_source",
+    "static_capacity": "static_source",
+    "fatigue_load_limit": "limit_source",
+}
+_SHOWN = ("C", "C0", "C_u")
+
+
+def life_as_dict(life: Life, scene: Scene) -> dict[str, Any]:
+    """Return the numbers of a rating life in SI, by name; infinite ones are null.
+
+    Args:
+        life: In NumPy.
+        scene: Its scene.
+
+    Returns:
+        The available numbers of `LIFE_OUTPUTS`, the ratings as in
+        `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
+        `standards` that results follow.
+    """
+    found = ratings_as_dict(life.ratings, rating_origins(scene, life.ratings))
+    for name in (*LIFE_OUTPUTS, "reliability_factor"):
+        found[name] = to_json(getattr(life, name))
+    row, ring, track = life.weakest
+    found["weakest"] = {"row": row, "ring": ring, "track": track}
+    return {**found, "standards": dict(life.standards)}
+
+
+def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
+    """Return ratings [N] by name, each with its `..._source`, "given", "published" or
+    the standard, and its `..._origin` in words, `None` of a computed rating; and the
+    source of the factors of axial load in P and P0.
+
+    Args:
+        ratings: `Ratings`, in NumPy.
+        origins: As in `rating_origins`.
+    """
+    found: dict[str, Any] = {}
+    for name, source in _SOURCES.items():
+        found[name] = to_json(getattr(ratings, name))
+        found[f"{name}_source"] = getattr(ratings, source)
+        found[f"{name}_origin"] = origins.get(name)
+    found["axial_factors_source"] = ratings.factors_source
+    return found
+
+
+def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]:
+    """Format C, C0 and C_u in kN, each with its origin, and that of Y and Y0.
+
+    Args:
+        ratings, origins: As in `ratings_as_dict`.
+    """
+    return {
+        shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
+        f" ({origins.get(name, getattr(ratings, source))})"
+        for shown, (name, source) in zip(_SHOWN, _SOURCES.items(), strict=True)
+    } | {"Y": f"factors of axial load, Y and Y0: {ratings.factors_source}"}
+
+
+def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
+    """Return the report section of a rating life.
+
+    Args:
+        scene: Solved scene.
+        solution: Its solution, in NumPy.
+        life: Its life, in NumPy.
+    """
+    r, axially = life.ratings, "axial" if life.ratings.axial else "radial"
+    lives = {
+        "basic, ISO 281": life.basic_rating_life,
+        "reference, ISO/TS 16281": life.reference_rating_life,
+    }
+    factors_line = []
+    if life.modified_rating_life is not None:
+        lives["modified (a1, a_ISO)"] = life.modified_rating_life
+        factors = {
+            "viscosity ratio": life.viscosity_ratio,
+            "e_C": life.contamination_factor,
+            "a_ISO": life.a_iso,
+            "a1": life.reliability_factor,
+        }
+        parts = (f"{name} {np.asarray(x):.4g}" for name, x in factors.items())
+        factors_line.append(", ".join(parts))
+    elif life.reliability_factor < 0.999999:
+        a1 = float(life.reliability_factor)
+        lives[f"reference, a1 {a1:.4g}"] = a1 * life.reference_rating_life
+    per_turn = _hours_per_turn(solution)
+    hours = None if per_turn is None else {k: per_turn * x for k, x in lives.items()}
+    return [
+        lives_grid(lives, hours),
+        *factors_line,
+        f"{axially} ratings",
+        *(
+            f"  {words}"
+            for words in ratings_in_words(r, rating_origins(scene, r)).values()
+        ),
+        *not_published(scene),
+        f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
+        f" {_kilo(life.reference_load)} kN",
+        f"static safety C0/P0 {life_number(life.static_safety)}, P0"
+        f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
+        *limits(solution, life),
+        turning(life.turns_against_load, solution.speed is None),
+    ]
+
+
+def lives_grid(lives: Mapping[str, Any], hours: Mapping[str, Any] | None) -> Grid:
+    """Tabulate lives by their names.
+
+    Args:
+        lives: Lives in revolutions.
+        hours: Lives in hours; `None` at rest.
+    """
+    columns = [
+        Column("rating life", list(lives)),
+        Column("", list(map(float, lives.values())), "rev"),
+    ]
+    if hours is not None:
+        columns.append(Column("", list(map(float, hours.values())), "h"))
+    return Grid(columns)
+
+
+def limits(solution: Solution, life: Life) -> list[str]:
+    """Describe the contact that limits the reference life.
+
+    Args:
+        solution: In NumPy.
+        life: Its life, in NumPy.
+    """
+    share = np.asarray(life.damage_share)
+    if not share.any():
+        return ["no contact is loaded: no fatigue"]
+    row, ring, track = life.weakest
+    rows = len(solution.row_sizes)
+    place = f"{ring} raceway" + (f" of row {row}" if rows > 1 else "")
+    size = 100.0 * share[row, RINGS.index(ring)].sum()
+    words = f"limited by the {place}: {size:.3g} % of the fatigue"
+    tracks = share.shape[2]
+    if isinstance(solution, RollerSolution):
+        position = np.asarray(solution.position)
+        at = 1e3 * np.reshape(position, (-1, position.shape[-1]))[0][2 * track + 1]
+        most = 100.0 * share[row, RINGS.index(ring), track]
+        words += (
+            f", most in lamina {track + 1} of {tracks} at {at:.3g} mm ({most:.3g} %)"
+        )
+    elif tracks > 1:
+        words += f", most in arc {track + 1}"
+    return [words]
+
+
+def turning(turns: Any, at_rest: bool) -> str:
+    """Describe which rings rotate relative to the load, or are assumed to at rest.
+
+    Args:
+        turns: As `Life.turns_against_load`.
+        at_rest: Whether there is no speed.
+    """
+    rings = [ring for ring, t in zip(RINGS, np.asarray(turns), strict=True) if t]
+    words = f"{' and '.join(rings)} ring{'s' if len(rings) > 1 else ''}"
+    if at_rest:
+        return (
+            f"at rest: no life in hours; the {words} is taken as the one that turns"
+            " against the load"
+        )
+    return f"turning against the load: {words}"
+
+
+def _hours_per_turn(solution) -> float | None:
+    speed = solution.speed
+    if speed is None or float(speed.inner) == float(speed.outer):
+        return None
+    return 2.0 * np.pi / 3600.0 / abs(float(speed.inner) - float(speed.outer))
+
+
+def life_number(value: Any) -> str:
+    """Format a life or safety factor, or "infinite"."""
+    return f"{float(value):.5g}" if np.isfinite(value) else "infinite"
+
+
+def _kilo(value) -> str:
+    return f"{1e-3 * float(value):.5g}"

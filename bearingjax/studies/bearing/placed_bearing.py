@@ -1,0 +1,178 @@
+"""A bearing of a machine, [bearings.NAME], read as the scene of a bearing alone."""
+
+import contextlib
+import dataclasses
+import re
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...catalogue.entry import catalogue_entry
+from ...files.quantity import SceneError
+from ...files.table import Table, text_of
+from ...rotor import Shaft
+from .catalogue_keys import FromCatalogue
+from .fits import Fits
+from .read_bearing import EXTRA_KEYS
+from .read_design import BALLS
+from .read_scene import Scene, scene_of
+
+_CONTROL = ("raceway_control", "friction_coefficient")
+"""Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""
+_AT_REST = "constant_angle"
+"""Kinematics that know no speed."""
+_SAME = 1e-3
+"""Difference of diameters over the bore above which shafts count as different [1]."""
+_COMMON = ("life", "lubricant")
+"""Tables of the machine that a bearing may have for itself."""
+
+
+def placed_bearing(
+    top: Table,
+    table: Table,
+    name: str,
+    path: Path,
+    other_keys: tuple[str, ...] = (),
+    speed: float = 1.0,
+    known: dict[str, Any] | None = None,
+) -> Scene:
+    """Read [bearings.NAME] as a scene, with [life] and [lubricant] of the machine.
+
+    Args:
+        top: Scene of the machine.
+        table: `[bearings.NAME]`.
+        name: NAME.
+        path: Path of the scene.
+        other_keys: Keys of the table that the machine reads itself.
+        speed: Speed of the inner ring [rad/s]; lives and fits take that of the machine.
+        known: Scenes read before, by what was read; added to.
+
+    Raises:
+        SceneError: For keys that are missing, unknown or not allowed; the message names
+            the keys of the machine.
+    """
+    known = {} if known is None else known
+    own = {k: v for k, v in table.keys_given().items() if k not in other_keys}
+    table.skip(*own)
+    inside = (*EXTRA_KEYS, *_COMMON)
+    data: dict[str, Any] = {
+        "bearing": {k: v for k, v in own.items() if k not in inside},
+        **{k: v for k, v in own.items() if k in EXTRA_KEYS and k not in _CONTROL},
+        "operating": {k: own[k] for k in _CONTROL if k in own},
+    }
+    numerics = data.get("numerics")
+    held = isinstance(numerics, Mapping) and numerics.get("kinematics") == _AT_REST
+    if speed and not held:
+        data["operating"]["inner_speed"] = f"{speed!r} rad/s"
+    for key in (*_COMMON, "output"):
+        both = []
+        if key in top:
+            both.append(top.raw(key))
+            top.fill(key, both[0])
+        if key in own and key != "output":
+            both.append(own[key])
+        if all(isinstance(one, Mapping) for one in both):
+            data |= (
+                {key: {k: v for one in both for k, v in one.items()}} if both else {}
+            )
+        else:
+            data[key] = both[-1]
+    if isinstance(data.get("life"), dict) and _is_ball(own):
+        data["life"].pop("edge_stress", None)
+    mark = repr(data)
+    if mark not in known:
+        known[mark] = _scene(data, name, path, own, (*inside, *other_keys))
+    scene = known[mark]
+    for key, value in echoed(scene.inputs).items():
+        table.fill(key, value)
+    for key in _COMMON:
+        if key in own:
+            table.fill(key, own[key])
+    return scene
+
+
+def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert the inputs of a scene to those of one [bearings.NAME].
+
+    Args:
+        inputs: `Scene.inputs`.
+    """
+    tables = {key: dict(inputs[key]) for key in EXTRA_KEYS if key in inputs}
+    tables.get("numerics", {}).pop("tolerance", None)  # of its own load solve
+    operating = inputs.get("operating", {})
+    chosen = {key: operating[key] for key in EXTRA_KEYS if key in operating}
+    return {**inputs["bearing"], **tables, **chosen}
+
+
+def check_seat(
+    name: str,
+    fits: Fits | None,
+    catalogue: FromCatalogue | None,
+    shaft: Shaft,
+    station: int,
+) -> None:
+    """Warn if the shaft of a bearing or its fit differs from that at its station.
+
+    Args:
+        name: Name of the bearing.
+        fits, catalogue: As in `Scene`.
+        shaft: The shaft.
+        station: Its station with the bearing.
+    """
+    segments = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
+    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
+    there = diameters[:, segments].T
+    if fits is not None:
+        seat = fits.mounting
+        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+        has = (
+            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
+            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
+        )
+        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
+    elif catalogue is not None:
+        entry = catalogue.entry
+        wanted, there = np.array([entry.bore]), there[:, :1]
+        has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
+        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
+    else:
+        return
+    if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
+        return
+    warnings.warn(
+        f"{name}: {has}; at station {station} the shaft has {sizes} mm",
+        stacklevel=2,
+    )
+
+
+def _scene(
+    data: dict[str, Any], name: str, path: Path, own: Any, other_keys: tuple[str, ...]
+) -> Scene:
+    # The message names tables of a bearing alone: [bearing], `fit.bore`; not hints.
+    tables = [key for key in (*EXTRA_KEYS, *_COMMON) if key in own]
+    pattern = (
+        rf"(?<!did you mean `)(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
+    )
+
+    def renamed(match: re.Match) -> str:
+        inside = "" if match[1] == "bearing" else f".{match[1]}"
+        return f"bearings.{name}{inside}"
+
+    try:
+        return dataclasses.replace(
+            scene_of(data, path, other_keys=other_keys), name=name
+        )
+    except SceneError as error:
+        raise SceneError(re.sub(pattern, renamed, str(error))) from error
+
+
+def _is_ball(own: Mapping[str, Any]) -> bool:
+    """Whether the keys of a bearing are of one with balls."""
+    kind, name = own.get("type"), text_of(own.get("designation"))
+    if kind is None and isinstance(name, str):
+        with contextlib.suppress(ValueError):
+            kind = catalogue_entry(name).type
+    return kind in BALLS

@@ -1,0 +1,184 @@
+"""The [life] table of a scene: conditions of the rating life."""
+
+import dataclasses
+from typing import Any
+
+from ...design import AbstractBearing, BearingSet, rows_of
+from ...element import Speed
+from ...files.schema import Keys, read_keys, scene_key
+from ...files.table import Table
+from ...life.life import FRAMES, LifeConditions
+from ...life.life_factor import CLEANLINESS
+from ...life.rating import rated_axially
+from ...life.reference_life import LEAST_LAMINAE
+from .oil import Oil, read_oil
+
+_RATED = "published for the `designation`, else from the geometry"
+
+
+class LifeKeys(Keys):
+    """[life]: conditions of the rating life, in addition to the bearing."""
+
+    dynamic_capacity: float | None = scene_key(
+        "basic dynamic load rating C", "force", above=0, otherwise=_RATED
+    )
+    static_capacity: float | None = scene_key(
+        "basic static load rating C0", "force", above=0, otherwise=_RATED
+    )
+    fatigue_load_limit: float | None = scene_key(
+        "fatigue load limit Cu", "force", above=0, otherwise=_RATED
+    )
+    reliability: float = scene_key(
+        "share of bearings that reach the life",
+        default=0.9,
+        least=0.9,
+        most=0.9995,
+        hint="a share, not %",
+    )
+    load_fixed_to: str = scene_key(
+        "`space`, or the ring that the load turns with", choices=FRAMES, default="space"
+    )
+    edge_stress: bool = scene_key(
+        "whether the ends of rollers are stressed more, by ISO/TS 16281", default=True
+    )
+    contamination: float | str | None = scene_key(
+        "contamination factor e_C, or a class of ISO 281: the modified life is told",
+        least=0,
+        most=1,
+        choices=tuple(CLEANLINESS),
+        hint="e_C, or a class of ISO 281",
+    )
+    viscosity: float | None = scene_key(
+        "of the oil in operation",
+        "kinematic viscosity",
+        above=0,
+        below=1,
+        otherwise="that of [lubricant] at its temperature",
+    )
+
+    def check(self) -> None:
+        if self.viscosity is not None and self.contamination is None:
+            problem = "is missing; the modified life needs it beside `viscosity`"
+            raise self.table.error("contamination", problem)
+
+
+def read_life(
+    top: Table, bearing: AbstractBearing | BearingSet, speed: Speed | None, points: int
+) -> LifeConditions | None:
+    """Read the conditions of the rating life; `None` without a [life] table.
+
+    Args:
+        top: The scene.
+        bearing: Bearing of the scene.
+        speed: Ring speeds, or `None` at rest; [cases] may have others.
+        points: Number of positions along the rollers.
+
+    Raises:
+        SceneError: For keys that are missing, unknown or not allowed.
+    """
+    if "life" not in top:
+        return None
+    keys = read_keys(LifeKeys, top.table("life"))
+    table = keys.table
+    if bearing.is_ball:
+        if "edge_stress" in table:
+            raise table.error("edge_stress", "is for rollers; balls have no ends")
+        table.fill("edge_stress", None)
+    viscosity = None if keys.contamination is None else _viscosity(top, keys)
+    if viscosity is not None and not _turns(speed) and "cases" not in top:
+        problem = "needs a speed of one ring against the other, for its film"
+        raise table.error("contamination", problem)
+    _check_points(top, bearing, points)
+    table.finish()
+    names = [field.name for field in dataclasses.fields(LifeConditions)]
+    values = {name: getattr(keys, name) for name in names}
+    with table.building():
+        rated_axially(bearing)  # which refuses sets of unlike rows
+        return LifeConditions(**{**values, "viscosity": viscosity})
+
+
+_USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit": 0.07}
+"""Typical ratings over the load of `_usual_load`, averaged over all types."""
+
+
+def rating_warnings(
+    life: LifeConditions | None, bearing: AbstractBearing | BearingSet
+) -> tuple[str, ...]:
+    """Warn of ratings that differ twentyfold from typical ones, a line each.
+
+    Args:
+        life: From `read_life`.
+        bearing: The design.
+    """
+    usual = sum(_usual_load(row.bearing) for row in rows_of(bearing))
+    found = []
+    for name, share in _USUAL.items():
+        value = getattr(life, name, None)
+        if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
+            found.append(
+                f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
+                f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
+            )
+    return tuple(found)
+
+
+def _usual_load(row: Any) -> float:
+    """Estimate C and C0 [N]: 18 N per mm² of all balls, 40 N per mm² of rollers."""
+    if row.is_ball:
+        return 18e6 * row.n_elements * float(row.ball_diameter) ** 2
+    area = float(row.roller_diameter) * float(row.roller_length)
+    return 40e6 * row.n_elements * area
+
+
+def _turns(speed) -> bool:
+    return speed is not None and float(speed.inner) != float(speed.outer)
+
+
+def _viscosity(top: Table, keys: LifeKeys) -> float:
+    """Return the kinematic viscosity of the oil, given or of [lubricant] [m²/s]."""
+    if keys.viscosity is not None:
+        if "lubricant" in top:
+            problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
+            raise keys.table.error("viscosity", problem)
+        return keys.viscosity
+    if "lubricant" not in top:
+        problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
+        raise keys.table.error("viscosity", problem)
+    oil, _ = read_oil(top.table("lubricant"))
+    return float(oil.lubricant.kinematic_viscosity(oil.temperature))
+
+
+def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
+    """Warn if one of contamination and supply is for grease, the other for oil.
+
+    Args:
+        top: The scene.
+        oil: From `read_oil`.
+    """
+    dirt = top.table("life").word("contamination") if "life" in top else None
+    greased = dirt is not None and dirt.startswith("grease")
+    if oil is None or dirt is None or greased == (oil.supply == "grease"):
+        return ()
+    given = "" if "supply" in top.table("lubricant") else ", the default"
+    cure = (
+        'write `supply = "grease"`, or choose a class of oil'
+        if greased
+        else "choose a class of grease, or another supply"
+    )
+    return (
+        f'life: `contamination` is "{dirt}", but `lubricant.supply` is "{oil.supply}"'
+        f"{given}: {cure}",
+    )
+
+
+def _check_points(
+    top: Table, bearing: AbstractBearing | BearingSet, points: int
+) -> None:
+    least = 2 * LEAST_LAMINAE + 1
+    if bearing.is_ball or (points % 2 and points >= least):
+        return
+    problem = (
+        f"{points} is not allowed with [life]; odd and at least {least}: every second"
+        " position is the middle of a lamina"
+    )
+    raise top.table("output").error("points", problem)

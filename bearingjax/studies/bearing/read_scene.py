@@ -1,0 +1,280 @@
+"""Scenes: a bearing, its load and speeds, and the numerics of its solve."""
+
+import dataclasses
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ...catalogue.entry import catalogue_entry
+from ...design import AbstractBearing, BearingSet, rows_of
+from ...element import RINGS, BearingElement, ConstantAngle, Speed
+from ...files.quantity import SceneError
+from ...files.scene_file import (
+    find_scene,
+    is_scene,
+    need_float64,
+    parse_bearing,
+    shipped_scenes,
+)
+from ...files.schema import read_keys
+from ...files.table import Table
+from ...life.life import LifeConditions
+from ...numerics.compiled.programs import called
+from ...statics.installed import Installed
+from ...statics.options import DEFAULT_TOLERANCE
+from .catalogue_keys import FromCatalogue
+from .fits import Fits, fit_warnings, installed
+from .leftover_keys import leftover_warnings
+from .oil import Oil, read_oil
+from .preload_of_set import PreloadOfSet
+from .read_bearing import designated, read_bearing
+from .read_choices import KINEMATICS, read_choices
+from .read_fit import read_fits
+from .read_life import lubrication_warnings, rating_warnings, read_life
+from .read_operating import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """Contents of a scene file, in SI.
+
+    Attributes:
+        name: Name of the file without its ending.
+        element: The bearing with its law and numerics, before preloading and
+            mounting.
+        preload_force: Preload force to which its rows are ground [N], or `None`.
+        fits: Seats and temperatures, or `None`: solved with the drawing dimensions.
+        oil: Its lubricant, or `None`: no friction or films are reported.
+        load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
+        prescribed: Displacements given by freedom name [m, rad].
+        free: Free freedoms, or `None` for all that the bearing restrains.
+        fixed_ring: "outer" or "inner".
+        speed: Ring speeds, or `None` if both rings are at rest.
+        tolerance: Relative residual of the load solve, or `None` for the default.
+        points: Positions along the rollers at which loads are reported.
+        life: Conditions of its rating life, or `None`: not requested.
+        warnings: Warnings of suspicious but possible values.
+        catalogue: Catalogue entry of its `designation`, or `None` without one.
+        inputs: The scene as it was read, all quantities in SI, defaults filled in, in
+            the form of a scene file.
+        preload_of_set: Preload of a set on its seats, or `None`: not computed
+            (`with_set_preload`).
+    """
+
+    name: str
+    element: BearingElement[Any]
+    preload_force: float | None
+    fits: Fits | None
+    oil: Oil | None
+    load: tuple[float, ...]
+    prescribed: dict[str, float]
+    free: tuple[str, ...] | None
+    fixed_ring: str
+    speed: Speed | None
+    tolerance: float | None
+    points: int
+    life: LifeConditions | None
+    warnings: tuple[str, ...]
+    catalogue: FromCatalogue | None = None
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+    preload_of_set: PreloadOfSet | None = None
+
+    @property
+    def moving_ring(self) -> str:
+        """Name of the loaded ring."""
+        return RINGS[1 - RINGS.index(self.fixed_ring)]
+
+    @property
+    def installed(self) -> Installed:
+        """The bearing with its preload, seats and temperatures."""
+        return installed(self.element, self.preload_force, self.fits, self.catalogue)
+
+    def ground(self) -> Installed:
+        """Return the installed bearing with its rows ground to their preload.
+
+        Fails: offsets are NaN where the preload was not reached.
+        """
+        if self.preload_force is None:
+            return self.installed
+        return called(_ground, self.installed)
+
+    def running(self) -> BearingElement[Any]:
+        """Return the element that all commands solve: ground, mounted, in operation."""
+        return self.ground().at()
+
+
+def _ground(bearing: Installed) -> Installed:
+    return bearing.ground(throw=False)
+
+
+def load_bearing(source: str | Path) -> Any:
+    """Load the bearing of a scene file, as drawn, or of the catalogue.
+
+    Args:
+        source: Path of a `.toml` scene, the name of a shipped one, or a designation
+            such as "6205" or "NJ 206 ECP/C3" (see `catalogue_entry`).
+
+    Raises:
+        SceneError: If the scene cannot be read, or nothing has this name.
+        TypeError: If `source` is neither a string nor a path.
+    """
+    if not isinstance(source, str | Path):
+        problem = 'it must be a text such as "6205", or a path'
+        raise TypeError(f"load_bearing: `source` is {source!r}; {problem}.")
+    if is_scene(source):
+        return read_scene(source).element.bearing
+    need_float64()
+    try:
+        return catalogue_entry(str(source)).bearing
+    except ValueError as error:
+        scenes = ", ".join(shipped_scenes())
+        problem = f"{error}; nor is it a .toml file or a shipped scene ({scenes})"
+        raise SceneError(problem) from error
+
+
+def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
+    """Read a scene file.
+
+    Args:
+        source: Path of a `.toml` file, or the name of a shipped scene.
+        settings: Changes "dotted.key=value" to the scene; the value is
+            TOML, or text without quotes ("operating.load.Fz=-6 kN").
+
+    Returns:
+        The scene, validated.
+
+    Raises:
+        SceneError: One line with file, key, fault and the allowed values.
+    """
+    path = find_scene(source)
+    return with_speed_warnings(scene_of(parse_bearing(path, settings), path))
+
+
+def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
+    """Add warnings of speeds above those of the catalogue to a scene.
+
+    Args:
+        scene: From `scene_of`.
+        turns: Relative speed of the rings, of one or many cases [rad/s]; `None`: that
+            of the scene.
+    """
+    if turns is None:
+        turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
+    texts = scene.installed.speed_warnings(turns)
+    return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
+
+
+def scene_of(
+    data: dict[str, Any],
+    path: Path,
+    varied: Iterable[str] = (),
+    other_keys: Iterable[str] = (),
+) -> Scene:
+    """Build the scene of parsed data.
+
+    Args:
+        data: From `parse_scene`.
+        path: Path of the file, for messages.
+        varied: Keys varied by its cases: these count as given, even where equal to
+            the catalogue.
+        other_keys: Keys of the table of the bearing that are read elsewhere.
+
+    Raises:
+        SceneError: As `read_scene`.
+    """
+    top = Table(data, path.name)
+    # Tables of other commands.
+    top.skip("cases", "optimise", "cage", "dynamics")
+    top.skip("deviations", "vibration")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        table = top.table("bearing", required=True)
+        table.know(*other_keys)
+        found = designated(table)
+        if found is not None:
+            found = found[0], found[1].varied(varied)
+        bearing, preload = read_bearing(table, top, found)
+    catalogue = None if found is None else found[1]
+    warned = tuple(str(w.message) for w in caught)
+    if found is not None:
+        warned += leftover_warnings(*found, varied)
+    scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
+    top.finish()
+    return dataclasses.replace(scene, inputs=top.echo())
+
+
+def read_element(
+    bearing: AbstractBearing | BearingSet,
+    contact: Table,
+    operating: Table,
+    numerics: Table,
+) -> BearingElement[Any]:
+    """Return a bearing with the laws and numerics chosen by a scene.
+
+    Args:
+        bearing: The design.
+        contact, operating, numerics: As in `read_choices`.
+    """
+    choices = read_choices(contact, operating, numerics, bearing)
+    with numerics.building():
+        element = BearingElement(bearing, **choices)
+    for name, kind in KINEMATICS.items():
+        if type(element.kinematics) is kind:
+            numerics.fill("kinematics", name)
+    return element
+
+
+def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
+    numerics, asked = top.table("numerics"), read_keys(SolveKeys, top.table("numerics"))
+    operating = read_keys(OperatingKeys, top.table("operating"))
+    speed = operating.speed
+    oil = None
+    if "lubricant" in top:
+        oil, assumed = read_oil(top.table("lubricant"))
+        warned += assumed
+    bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
+    element = read_element(bearing, top.table("contact"), operating.table, numerics)
+    numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
+    points = 2 if bearing.is_ball else _points(top.table("output"), bearing)
+    held = bearing.is_ball and isinstance(element.kinematics, ConstantAngle)
+    if held and speed is not None:
+        problem = "constant_angle is for balls at rest; leave out the speeds"
+        raise numerics.error("kinematics", problem)
+    operating.fill_free(bearing)
+    life = read_life(top, bearing, speed, points)
+    if fits is not None:
+        fixed_to = "space" if life is None else life.load_fixed_to
+        warned += tuple(fit_warnings(fits, fixed_to))
+    warned += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
+    return Scene(
+        name=name,
+        element=element,
+        preload_force=preload,
+        fits=fits,
+        oil=oil,
+        load=operating.loads,
+        prescribed=operating.held,
+        free=operating.free,
+        fixed_ring=operating.fixed_ring,
+        speed=speed,
+        tolerance=asked.tolerance,
+        points=points,
+        life=life,
+        warnings=warned,
+        catalogue=catalogue,
+    )
+
+
+def _points(output: Table, bearing) -> int:
+    """Read the number of positions along a roller."""
+    points = read_keys(OutputKeys, output).points
+    if points > MOST_POINTS:
+        rollers = sum(row.bearing.n_elements for row in rows_of(bearing))
+        size = 4 * 20e-6 * rollers * points
+        problem = (
+            f"{points} is too many, {size:.3g} MB of JSON for {rollers} rollers; at"
+            f" most {MOST_POINTS}, which is closer than a roller's surface is known"
+        )
+        raise output.error("points", problem)
+    return points

@@ -1,0 +1,1 @@
+"""A bearing under many cases: sweeps and life under a load spectrum."""

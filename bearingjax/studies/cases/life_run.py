@@ -1,0 +1,327 @@
+"""Rating life under the cases of a scene, a load spectrum: computation and report."""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
+from ...cases.sweep import Sweep
+from ...cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
+from ...design.published import with_published
+from ...files.quantity import SceneError
+from ...life.life import LIFE_OUTPUTS, turns_against_load
+from ...life.rating import Ratings, ratings
+from ...numerics.result import Result
+from ...numerics.units import shown_count
+from ...report.json_output import run_json
+from ...report.report_model import NEWTONS, Column, Grid, Part, Report
+from ..bearing.life_ratings import life_conditions, not_published, rating_origins
+from ..bearing.life_report import (
+    life_number,
+    lives_grid,
+    ratings_as_dict,
+    ratings_in_words,
+    turning,
+)
+from ..solve.report import design_sections
+from .case_words import case_words, differing
+from .read_cases import CaseTable
+from .sweep_run import all_warnings, design_columns, run_cases
+
+LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
+_SHOWN = 12
+"""Most cases listed in a report."""
+
+
+@dataclasses.dataclass(frozen=True)
+class LifeRun:
+    """Life under the cases of a scene.
+
+    Attributes:
+        table: The cases of the scene.
+        solved: The solved cases and their lives.
+        lives: Life under all cases, by its name in `LIVES`.
+        asked: Life at the requested reliability: modified, or without a lubricant the
+            reference life times a1.
+        ratings: Ratings of the bearing; for several designs those of the scene.
+    """
+
+    table: CaseTable
+    solved: Sweep
+    lives: dict[str, SpectrumLife]
+    asked: SpectrumLife
+    ratings: Ratings
+
+    @property
+    def converged(self) -> bool:
+        """Whether all cases were solved; otherwise there is no life."""
+        return bool(self.solved.converged.all())
+
+    @functools.cached_property
+    def warnings(self) -> list[str]:
+        """Warnings of the scene, of its cases and of their lives."""
+        return all_warnings(self.table, self.solved)
+
+    @property
+    def origins(self) -> dict[str, str]:
+        """Origins of the given ratings, from `rating_origins`."""
+        return rating_origins(self.table.scene, self.ratings)
+
+    @property
+    def asked_name(self) -> str:
+        """Name of the life whose damage is reported, "modified" or "reference"."""
+        return "modified" if "modified_rating_life" in self.lives else "reference"
+
+    @property
+    def clearance(self) -> np.ndarray | None:
+        """Radial clearance of each case in operation [m]; `None` without [fit]."""
+        return self.solved.outputs.get(OPERATING_CLEARANCE)
+
+    @property
+    def preload(self) -> np.ndarray | None:
+        """Preload of each case [N]; `None` except for sets with [fit]."""
+        return self.solved.outputs.get(OPERATING_PRELOAD)
+
+    def words(self, case: int) -> list[str]:
+        """Describe the settings that distinguish a case, such as "Fy -2.5 kN"."""
+        return case_words(differing(self.table), case)
+
+    def least_safety(self) -> str:
+        """Describe the least static safety of all cases and the case that has it."""
+        safety = np.asarray(self.solved.static_safety)
+        case, hours = int(np.argmin(safety)), self.table.cases.hours
+        spent = hours is not None and float(hours[case]) == 0.0
+        which = f"case {case}{', of 0 h' if spent else ''}"
+        return f"{life_number(safety[case])} ({which})"
+
+    def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the cases with the largest damage; all must be solved.
+
+        Args:
+            most: Largest number of cases.
+
+        Returns:
+            Their indices, the worst first, and their shares in the damage.
+        """
+        share = np.asarray(self.asked.damage_share)
+        order = np.argsort(-share, kind="stable")[:most]
+        return order, share[order]
+
+
+def run_life(
+    table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
+) -> LifeRun:
+    """Solve the cases of a scene for their lives, and sum their damage.
+
+    Args:
+        table: From `read_cases`.
+        progress: Show a progress bar.
+        stop: As in `sweep`.
+
+    Raises:
+        SceneError: For cases whose life cannot be computed.
+    """
+    scene = table.scene
+    conditions = life_conditions(scene)
+    turning = revolutions_per_hour(table.cases, np) is not None
+    oiled = conditions.viscosity is not None
+    if oiled and not turning:
+        raise SceneError(
+            f"{scene.name}: `life.contamination`: needs a speed, in [operating] or in"
+            " the cases, for the film"
+        )
+    left_out = {"damage_share"}
+    if not turning:
+        left_out |= {"life_hours"}
+    if not oiled:
+        left_out |= {
+            "modified_rating_life",
+            "viscosity_ratio",
+            "contamination_factor",
+            "a_iso",
+        }
+    outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
+    bearing = scene.element.bearing
+    if scene.catalogue is not None and scene.catalogue.varied(table.varied).rerated:
+        bearing = with_published(bearing, None)
+    given = (
+        conditions.dynamic_capacity,
+        conditions.static_capacity,
+        conditions.fatigue_load_limit,
+    )
+    try:
+        rated = ratings(bearing, *given)
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    wanted = dataclasses.replace(table, outputs=tuple(outputs))
+    solved = run_cases(wanted, progress, stop)
+    lives = {
+        name: spectrum_life(table.cases, 1.0 / np.asarray(getattr(solved, name)))
+        for name in LIVES
+        if name in outputs
+    }
+    asked_for = spectrum_life(table.cases, np.asarray(solved.damage))
+    return LifeRun(table, solved, lives, asked_for, rated)
+
+
+def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
+    """Return the life under the cases as plain numbers and lists, in SI.
+
+    Returns:
+        Ratings as in `ratings_as_dict`, lives under all cases and the damage shares of
+        the cases; `equivalent_load` is the constant load with the same basic life,
+        `static_safety` the least of all cases. Columns of the cases; counts, warnings,
+        inputs, version. Infinite is null; no lives if a case was not solved.
+    """
+    found = ratings_as_dict(run.ratings, run.origins)
+    if run.converged:
+        for name, life in run.lives.items():
+            found[name] = life.rating_life
+        found.setdefault("modified_rating_life", None)
+        found["equivalent_load"] = equivalent_load(run)
+        found["static_safety"] = np.min(run.solved.static_safety)
+        found["life_hours"] = run.asked.life_hours
+        found["damage_share"] = run.asked.damage_share
+    found["columns"] = life_columns(run, exact=True)
+    found["counts"] = run.solved.counts()
+    return run_json(found, run.warnings, run.table.inputs)
+
+
+def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
+    """Return the cases and their lives as columns by header, in SI.
+
+    Args:
+        run: From `run_life`.
+        exact: As in `sweep_table.columns`.
+    """
+    return columns(run.solved, design_columns(run.table), exact=exact)
+
+
+def equivalent_load(run: LifeRun) -> float:
+    """Return the constant equivalent load with the basic life of the cases [N].
+
+    Args:
+        run: Run with all cases solved.
+    """
+    power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
+    life = float(run.lives["basic_rating_life"].rating_life) / 1e6
+    return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
+
+
+def spectrum_report(run: LifeRun) -> Report:
+    """Return the readable report of the life under the cases.
+
+    Args:
+        run: Run with all cases solved.
+    """
+    return Report({"Rating life": _lives(run)}, run.warnings)
+
+
+def spectrum_page(run: LifeRun) -> Report:
+    """Return the report of the life under the cases, with the bearing and its fits.
+
+    Args:
+        run: Run with all cases solved.
+    """
+    report = spectrum_report(run)
+    sections = {**report.sections, **design_sections(run.table.scene)}
+    fits = "Fits and clearance"
+    if run.clearance is not None:
+        sections[fits] = [
+            "These are the fits as [operating], [fit] and [temperature] of the scene"
+            f" have them; over the cases {_on_seats(run)}.",
+            *sections[fits],
+        ]
+    return Report(sections, report.warnings)
+
+
+def _lives(run) -> list[Part]:
+    table = run.table
+    rated = ratings_in_words(run.ratings, run.origins)
+    lives = {name.removesuffix("_rating_life"): x for name, x in run.lives.items()}
+    a1 = float(run.asked.rating_life) / float(lives["reference"].rating_life)
+    if "modified" not in lives and a1 < 0.999999:
+        lives[f"reference, a1 {a1:.4g}"] = run.asked
+    revolutions, hours = (
+        {name: getattr(life, what) for name, life in lives.items()}
+        for what in ("rating_life", "life_hours")
+    )
+    at_rest = run.asked.life_hours is None
+    parts: list[Part] = [
+        f"{table.scene.name}: life under {shown_count(table.cases.count, 'case')} over"
+        f" {', '.join(table.varied)}",
+        rated["C"],
+        rated["C0"],
+        rated["Y"],
+        *not_published(table.scene, table.varied),
+        "",
+        lives_grid(revolutions, None if at_rest else hours),
+        f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
+        f" static safety {run.least_safety()}",
+    ]
+    if at_rest:
+        fixed_to = life_conditions(table.scene).load_fixed_to
+        parts.append(turning(turns_against_load(None, fixed_to), True))
+    parts += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
+    return [*parts, *_by_case(run)]
+
+
+def _on_seats(run) -> str:
+    """Format the ranges of radial clearance and preload of the cases in operation."""
+    text = f"the operating radial clearance is {_ends(1e6 * run.clearance)} µm"
+    if run.preload is None:
+        return text
+    text += f", the preload of the set, unloaded, {_ends(run.preload)} N"
+    ground = run.table.scene.preload_force
+    return text if ground is None else f"{text} (ground to {ground:.4g} N)"
+
+
+def _ends(values: np.ndarray) -> str:
+    ends = (f"{end(values):.4g}" for end in (np.min, np.max))
+    return " to ".join(dict.fromkeys(ends))
+
+
+def _by_case(run) -> list[Part]:
+    """Tabulate the worst cases, each as if it acted alone, and their distinguishing
+    settings."""
+    order, shares = run.worst(_SHOWN)
+    solved, hours = run.solved, run.table.cases.hours
+    spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
+    columns = [
+        Column("case", order),
+        Column("hours", spent),
+        Column("P", np.asarray(solved.equivalent_load)[order], "N", ".4g"),
+    ]
+    if run.clearance is not None:
+        columns.append(Column("clearance", run.clearance[order], "m", ".4g"))
+    if run.preload is not None:
+        columns.append(Column("preload", run.preload[order], "N", ".4g", NEWTONS))
+    for name in run.lives:
+        word, values = name.removesuffix("_rating_life"), getattr(solved, name)
+        columns.append(Column(word, np.asarray(values)[order], "rev"))
+    name = f"damage ({run.asked_name})"
+    columns.append(Column(name, shares, "1", ".4g", (100.0, "%")))
+    parts: list[Part] = ["", Grid(columns, "each case alone")]
+    more = run.table.cases.count - len(order)
+    if more:
+        parts.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
+    found = differing(run.table)
+    if found:
+        # Non-breaking spaces keep a setting in one line.
+        apart = [
+            ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
+            for k in order
+        ]
+        parts += ["", Grid([Column("case", order), Column("what differs", apart)])]
+    return parts
+
+
+def unsolved(run: LifeRun) -> str:
+    """List the cases that were not solved, in words."""
+    codes = np.asarray(run.solved.result)
+    lost = np.flatnonzero(codes != Result.CONVERGED)
+    first = Result(int(codes[lost[0]])).label
+    return f"{len(lost)} of {len(codes)} cases not solved (case {lost[0]}: {first})"

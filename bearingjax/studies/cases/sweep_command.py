@@ -1,0 +1,117 @@
+"""`bearingjax sweep`."""
+
+import shlex
+import signal
+import time
+
+import numpy as np
+
+from .. import jax_settings
+from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from ..outcome import Outcome, Tools
+from ..outputs import check_table
+from ..status import NOT_SOLVED, SOLVED
+
+
+def add(commands):
+    """Add the command and its options."""
+    command = commands.add_parser(
+        "sweep",
+        help="many cases: loads, displacements, speeds, designs",
+        description="Solve the [cases] of a scene file.",
+        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
+        " holds a result for each case), 130 interrupted (what is solved is kept).",
+    )
+    add_scene(command)
+    add_table(command, "case")
+    command.add_argument(
+        "--resume",
+        action="store_true",
+        help="solve only the cases that the table lacks, after an interruption",
+    )
+    add_plot(command)
+    add_report(command, "cases")
+    add_quiet(command)
+    command.add_argument(
+        "--devices",
+        metavar="N",
+        type=int,
+        default=None,
+        help="parts of the processor to spread the cases over; default: all its cores",
+    )
+    return command
+
+
+def run(options, tools: Tools) -> Outcome:
+    """Solve the cases of a scene."""
+    from ...cases import sweep_table
+    from ...files import SceneError
+    from ...numerics import Result
+    from .interrupt import Interrupt
+    from .read_cases import read_cases
+    from .resume import resume_cases
+    from .sweep_run import (
+        cases_with_set_preload,
+        design_columns,
+        run_cases,
+        sweep_as_dict,
+        sweep_report,
+    )
+
+    jax_settings.devices(options)
+    if options.resume and options.table is None:
+        raise SceneError("--resume takes up a table; name it with --table")
+    begin = time.perf_counter()
+    table = read_cases(options.scene, options.set)
+    check_table(options, table.cases.count)
+    table = cases_with_set_preload(table)
+    interrupt = tools.until_written(Interrupt())
+    if options.resume and options.table.exists():
+        solved = resume_cases(table, options.table, tools.shown, interrupt)
+    else:
+        solved = run_cases(table, tools.shown, interrupt)
+    seconds = time.perf_counter() - begin
+
+    def draw():
+        from ...plot import sweep_overview
+
+        return sweep_overview(solved, design_columns(table), table.scene.name)
+
+    left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
+    lost = int((~solved.converged).sum())
+
+    words = f"{lost} of {solved.cases.count} cases not solved"
+
+    def interrupted():
+        if not left and interrupt.number is None:
+            return None
+        if not left:  # struck during the last cases, or while files were written
+            told = f"; {words}" if lost else ""
+            told = f"interrupted, but all cases were run{told}"
+            return told, NOT_SOLVED if lost else SOLVED
+        status = 128 + (interrupt.number or signal.SIGINT)
+        return _how_to_go_on(options, left, solved.cases.count), status
+
+    return Outcome(
+        table.scene.name,
+        table.inputs,
+        lambda: sweep_as_dict(table, solved),
+        sweep_report(table, solved, seconds),
+        lambda: sweep_table.columns(solved, design_columns(table)),
+        {"Results over the cases": draw} if solved.converged.any() else {},
+        table_on_page=True,
+        problems=[words] if lost else [],
+        interrupted=interrupted,
+    )
+
+
+def _how_to_go_on(options, left: int, count: int) -> str:
+    """Return the message on how to resume an interrupted sweep."""
+    words = f"interrupted: {left} of {count} cases not run"
+    if options.table is not None:
+        given = [word for word in options.given if word != "--resume"]
+        again = shlex.join(["bearingjax", *given, "--resume"])
+        words += f"; go on with: {again}"
+    else:
+        words += "; with --table what is solved is kept, and --resume goes on from it"
+    return words

@@ -1,0 +1,271 @@
+"""Solve the cases of a scene, and report them."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import numpy as np
+
+from ...cases.cases import Cases
+from ...cases.sweep import Sweep, sweep
+from ...cases.sweep_program import not_run
+from ...cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
+from ...design import rows_of
+from ...files.quantity import SceneError
+from ...fits import radial_clearance
+from ...life.life import LIFE_OUTPUTS, LifeConditions
+from ...numerics.units import display_unit, shown_count
+from ...report.json_output import run_json
+from ...report.report_model import Column, Grid, Part, Report
+from ...statics.preload import is_opposed, pressed
+from ..bearing.life_ratings import life_conditions
+from ..bearing.preload_of_set import preload_warnings, range_warnings
+from ..solve.run import with_set_preload
+from .read_cases import CaseTable, DesignGroup, turns_of
+
+OUTPUTS = (
+    "displacement",
+    "largest_load",
+    "peak_pressure",
+    "n_loaded",
+    "iterations",
+    "residual",
+)
+"""Default outputs kept of each case."""
+
+
+def run_cases(
+    table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
+) -> Sweep:
+    """Solve the cases of a scene.
+
+    Args:
+        table: From `read_cases`.
+        progress: Show a progress bar.
+        stop: As in `sweep`.
+
+    Returns:
+        Sweep with a result code for each case; for a scene with [fit] also with the
+        outputs `OPERATING_CLEARANCE` and, for a set, `OPERATING_PRELOAD`.
+
+    Raises:
+        SceneError: For outputs that do not exist or exceed the memory.
+    """
+    done: list[tuple[np.ndarray, Sweep]] = []
+    for part in table.design_groups:
+        mine = part.of(table.cases)
+        # A sweep polls after its first block; once stopped, no other sweep is started.
+        stopped = bool(done) and stop is not None and stop()
+        if mine.size and not stopped:
+            done.append((mine, _run(table, part, mine, progress, stop)))
+    if len(table.design_groups) == 1:
+        return done[0][1]
+    return _merged(table, done)
+
+
+def _run(table, part, mine, progress, stop) -> Sweep:
+    scene, cases = table.scene, table.cases
+    if part.designs is not None:
+        cases = jax.tree.map(lambda a: np.asarray(a)[mine], cases)
+        number = np.searchsorted(part.designs, np.asarray(cases.design))
+        cases = dataclasses.replace(cases, design=number)
+    try:
+        solved = sweep(
+            part.element,
+            cases,
+            outputs=OUTPUTS if table.outputs is None else table.outputs,
+            free=scene.free,
+            fixed_ring=scene.fixed_ring,
+            points=scene.points,
+            tolerance=scene.tolerance,
+            progress=progress,
+            stop=stop,
+            life=_life(table, part),
+        )
+    except ValueError as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    return _on_seats(part, solved)
+
+
+def _life(table: CaseTable, part: DesignGroup) -> LifeConditions | None:
+    """Return the conditions of lives that are output, or checked; otherwise `None`.
+
+    Without speeds a life is checked as by `solve`, which then has no film.
+    """
+    if set(LIFE_OUTPUTS) & set(table.outputs or ()):
+        return life_conditions(part.scene)
+    if part.scene.life is None:
+        return None
+    return life_conditions(part.scene, turning=bool(turns_of(table.cases).any()))
+
+
+def _on_seats(part: DesignGroup, solved: Sweep) -> Sweep:
+    """Add to the sweep of a structure the radial clearance in operation [m] and, for a
+    set, the preload [N] of each case."""
+    if part.scene.fits is None:
+        return solved
+    cases = solved.cases
+    design = np.zeros(cases.count, int)
+    if part.designs is not None:
+        design = np.asarray(cases.design)
+    row = rows_of(part.element.bearing)[0].bearing
+    find = radial_clearance if part.designs is None else jax.vmap(radial_clearance)
+    left = {OPERATING_CLEARANCE: np.atleast_1d(find(row))}
+    if is_opposed(part.element.bearing):
+        left[OPERATING_PRELOAD] = _preloads(part, cases)
+    return dataclasses.replace(
+        solved,
+        outputs=solved.outputs
+        | {k: np.where(solved.converged, v[design], np.nan) for k, v in left.items()},
+    )
+
+
+def cases_with_set_preload(table: CaseTable) -> CaseTable:
+    """Apply `with_set_preload` to the cases of one design, including the range over
+    the seat tolerances; cases of several designs are returned unchanged.
+
+    Args:
+        table: From `read_cases`.
+    """
+    if table.cases.design is not None:
+        return table
+    scene = with_set_preload(table.scene)
+    part = dataclasses.replace(table.design_groups[0], scene=scene)
+    return dataclasses.replace(table, scene=scene, design_groups=(part,))
+
+
+def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
+    """Return the preload force between the rows of each design, without load, at the
+    speeds of its first case (design,) [N]."""
+    if part.scene.preload_of_set is not None:
+        return np.array([part.scene.preload_of_set.operating])
+    if part.designs is None:
+        first, design = np.zeros(1, int), None
+    else:
+        design, first = np.unique(np.asarray(cases.design), return_index=True)
+    inner, outer = (
+        None if speed is None else np.asarray(speed)[first]
+        for speed in (cases.inner_speed, cases.outer_speed)
+    )
+    unloaded = Cases(
+        np.zeros((first.size, 6)), inner_speed=inner, outer_speed=outer, design=design
+    )
+    found = sweep(part.element, unloaded, outputs=_pressed, free=["uz"])
+    force = np.asarray(found.outputs["preload"])
+    if design is None:
+        return force
+    of_all = np.full(design.max() + 1, np.nan)  # designs that no case has
+    of_all[design] = force
+    return of_all
+
+
+def _pressed(solution):
+    return {"preload": pressed(solution)}
+
+
+def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
+    """Merge the sweeps of the structures; cases without a sweep were not run."""
+    outputs: dict[str, np.ndarray] = {}
+    for mine, solved in done:
+        for name, values in solved.outputs.items():
+            if name not in outputs:
+                shape = (table.cases.count, *values.shape[1:])
+                nothing = not_run(name, values.dtype)
+                outputs[name] = np.full(shape, nothing, values.dtype)
+            outputs[name][mine] = values
+    first = done[0][1]
+    common = {
+        name: tuple(n for n in names if all(n in dict(s.zeros)[name] for _, s in done))
+        for name, names in first.zeros
+    }
+    ring = first.moving_ring
+    return Sweep(table.cases, outputs, ring, tuple(common.items()))
+
+
+def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
+    """Report the counts of result codes, and the range of every output.
+
+    Args:
+        table: The cases of the scene.
+        solved: The solved sweep.
+        seconds: Run time [s].
+    """
+    counts = ", ".join(f"{n} {label}" for label, n in solved.counts().items())
+    count = solved.cases.count
+    parts: list[Part] = [
+        f"{table.scene.name}: {shown_count(count, 'case')} over"
+        f" {', '.join(table.varied)}",
+        f"{counts}; {seconds:.3g} s, compiling included",
+    ]
+    if len(table.settings) > 1:
+        kinds = len(table.design_groups)
+        of = f" of {kinds} structures, solved one after the other"
+        parts.append(f"{len(table.settings)} designs{of if kinds > 1 else ''}")
+    if OPERATING_PRELOAD in solved.outputs and table.scene.preload_of_set is None:
+        words = "at `fit.at` alone, not over the tolerances of the seats"
+        parts.append(f"preload of the set in operation: {words} (`solve` tells those)")
+    rows = []
+    for header, pair in _spans(solved).items():
+        name, _, unit = header.partition(" [")
+        factor, shown = display_unit(unit.rstrip("]"))
+        rows.append((name, *(factor * x for x in pair), shown))
+    if rows:
+        names = "result", "least", "largest", "unit"
+        given = zip(names, zip(*rows, strict=True), strict=True)
+        parts += ["", Grid([Column(name, found) for name, found in given])]
+    return Report({"Cases": parts}, all_warnings(table, solved))
+
+
+def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
+    """Return the range of each result over the solved cases, without those of zero."""
+    spans = {}
+    for header, column in columns(solved).items():
+        values = np.asarray(column)
+        if values.dtype.kind not in "fi" or header == "design":
+            continue
+        values = values[solved.converged & np.isfinite(values)]
+        if values.any():
+            spans[header] = values.min(), values.max()
+    return spans
+
+
+def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+    """Return the warnings of the scene, of the preload of its set and of its cases."""
+    return [*table.warnings, *set_warnings(table, solved), *solved.warnings]
+
+
+def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+    """Return warnings about the preload of a set in the cases, one sentence each."""
+    if table.scene.preload_of_set is not None:
+        return preload_warnings(table.scene.preload_of_set)
+    preload = solved.outputs.get(OPERATING_PRELOAD)
+    if preload is None or not np.isfinite(preload).any():
+        return []
+    ground = table.scene.preload_force
+    if ground is None:
+        return []
+    ends = float(np.nanmin(preload)), float(np.nanmax(preload))
+    return range_warnings(ground, *ends)
+
+
+def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
+    """Return the design settings of each case, by "key [unit]": numbers in SI, texts as
+    written in the scene; without numbers that are zero in all cases."""
+    if table.cases.design is None:
+        return {}
+    design = np.asarray(table.cases.design)
+    found = {
+        key: np.array([made.get(key) for made in table.settings])[design]
+        for key in table.settings[0]
+    }
+    return {k: v for k, v in found.items() if v.dtype.kind not in "fi" or v.any()}
+
+
+def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:
+    """Return a sweep as plain lists by column, in SI; null where a case failed."""
+    numbers = {
+        "columns": columns(solved, design_columns(table), exact=True),
+        "counts": solved.counts(),
+    }
+    return run_json(numbers, all_warnings(table, solved), table.inputs)

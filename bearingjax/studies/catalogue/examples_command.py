@@ -1,0 +1,30 @@
+"""`bearingjax examples`."""
+
+from ..status import SOLVED
+
+
+def add(commands):
+    """Add the command and its options."""
+    command = commands.add_parser(
+        "examples",
+        help="the scenes that come with the package",
+        description="List the shipped scenes, or print one.",
+        epilog="Exit status: 0, or 2 for bad input.",
+    )
+    command.add_argument("name", metavar="NAME", nargs="?")
+    return command
+
+
+def run(options) -> int:
+    """List the shipped scenes, or print one."""
+    from ...files import SceneError, not_among, shipped_scenes
+    from .catalogue_report import scene_list
+
+    if options.name is None:
+        print(scene_list(), flush=True)
+        return SOLVED
+    scenes = shipped_scenes()
+    if options.name not in scenes:
+        raise SceneError(f"examples: {not_among(options.name, tuple(scenes))}")
+    print(scenes[options.name].read_text(encoding="utf-8"), end="", flush=True)
+    return SOLVED

@@ -1,0 +1,1 @@
+"""One roller on a raceway."""

@@ -1,0 +1,102 @@
+"""`bearingjax contact`."""
+
+from ..options import add_plot, add_report, add_scene
+from ..outcome import Outcome, Tools
+from ..solve.solution_outcome import why_unsolved
+
+
+def add(commands):
+    """Add the command and its options."""
+    command = commands.add_parser(
+        "contact",
+        help="one roller on one raceway, its ends included",
+        description="Solve the contact of one roller and one raceway, both elastic"
+        " half-spaces, cell by cell; beside it what independent slices give.",
+        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
+    )
+    add_scene(command)
+    command.add_argument(
+        "--roller",
+        type=int,
+        help="of a bearing's scene; default: the one with the largest load",
+    )
+    command.add_argument(
+        "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
+    )
+    command.add_argument(
+        "--free-ends",
+        action="store_true",
+        help="likewise: the roller's end faces bear no stress",
+    )
+    add_plot(command)
+    add_report(command, "pictures")
+    return command
+
+
+def run(options, tools: Tools) -> Outcome:
+    """Solve a single contact, or one of a bearing."""
+    from ...files import SceneError
+    from ..bearing.read_scene import read_scene
+    from ..bearing.solved import SolvedScene
+    from ..solve.output import as_dict
+    from ..solve.run import run_scene
+    from .read import is_bearing, read_contact
+    from .report import contact_as_dict, contact_report, contact_warnings
+    from .run import run_contact, run_refined
+
+    if is_bearing(options.scene, options.set):
+        bearing = read_scene(options.scene, options.set)
+        found = SolvedScene(bearing, run_scene(bearing))
+        if not found.converged:
+            return Outcome(
+                bearing.name,
+                bearing.inputs,
+                lambda: as_dict(found),
+                problems=[why_unsolved(found)],
+            )
+        scene, cases = run_refined(
+            bearing, found.solution, options.roller, options.raceway, options.free_ends
+        )
+    elif options.roller is not None or options.raceway is not None:
+        raise SceneError("--roller and --raceway are for the scene of a bearing")
+    elif options.free_ends:
+        cure = "a contact's scene has `free_ends` in its [roller]"
+        raise SceneError(f"--free-ends is for the scene of a bearing; {cure}")
+    else:
+        scene = read_contact(options.scene, options.set)
+        cases = run_contact(scene)
+    lost = _lost(scene, cases)
+
+    def draw():
+        from ...plot import contact_overview
+
+        return contact_overview(
+            [case.solution for case in cases],
+            [case.slices for case in cases],
+            title=scene.name,
+        )
+
+    none = len(lost) == len(cases)
+    warned = contact_warnings(scene, cases) if none else []
+    return Outcome(
+        scene.name,
+        scene.inputs,
+        lambda: contact_as_dict(scene, cases),
+        None if none else contact_report(scene, cases),
+        pictures={} if lost else {"Pressures": draw},
+        problems=[*(f"warning: {one}" for one in warned), *lost],
+    )
+
+
+def _lost(scene, cases) -> list[str]:
+    """Return the reasons why loads of a contact were not solved, by load."""
+    from ...contact.halfspace.pressure import message
+    from ...numerics import Result
+
+    found = []
+    for given, case in zip(scene.cases, cases, strict=True):
+        if not case.solution.converged:
+            where = f" {given['load']:.5g} N:" if scene.listed else ""
+            label = Result(int(case.solution.result)).label
+            found.append(f"{label}:{where} {message(case.solution)}")
+    return found

@@ -1,0 +1,117 @@
+"""Solve the scene of one contact, or one roller contact of a bearing's scene."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from ...contact.halfspace import ConjugateGradients, FreeEnds
+from ...contact.line import Palmgren
+from ...contact.slices import Compared, slices
+from ...element import RINGS
+from ...files.quantity import SceneError
+from ...numerics.compiled.programs import program
+from ...statics.refine import refine
+from ...statics.solution import Solution
+from ...statics.warning import warnings
+from ..bearing.read_scene import Scene
+from .read import ContactScene
+
+
+def run_contact(scene: ContactScene) -> list[Compared]:
+    """Solve the contact of a scene for each of its loads.
+
+    Args:
+        scene: From `read_contact`.
+
+    Returns:
+        A case for each load, in order; a failed solve does not raise.
+
+    Fails: as `solve_pressure`.
+    """
+    contact, cases = scene.contact, scene.cases
+    widths = [
+        contact.grid_half_width(case) if scene.half_width is None else scene.half_width
+        for case in cases
+    ]
+    given = {name: jnp.asarray([case[name] for case in cases]) for name in cases[0]}
+    solver = ConjugateGradients(scene.tolerance, scene.max_steps)
+    sizes = (scene.across, scene.along, scene.grading)
+    solved = _solved(contact, jnp.asarray(widths), given, solver, sizes)
+    sliced = _sliced(contact, solved, scene.law)
+    return [Compared(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
+
+
+def run_refined(
+    scene: Scene,
+    solution: Solution,
+    roller: int | None = None,
+    raceway: str | None = None,
+    free_ends: bool = False,
+) -> tuple[ContactScene, list[Compared]]:
+    """Solve the contact of one roller of a bearing's scene, on the default grid.
+
+    Args:
+        scene: From `read_scene`.
+        solution: From `run_scene`, converged.
+        roller, raceway: As in `refine`; default: the inner raceway.
+        free_ends: Whether the roller's end faces are free, modelled by `FreeEnds()`.
+
+    Returns:
+        The scene of that contact, and its single case.
+
+    Raises:
+        SceneError: For a bearing with balls, or an unknown or unloaded roller.
+
+    Fails: as `solve_pressure`.
+    """
+    try:
+        found = refine(
+            solution.element,
+            solution,
+            roller,
+            "inner" if raceway is None else raceway,
+            speed=scene.speed,
+            free_ends=FreeEnds() if free_ends else None,
+            throw=False,
+        )
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{scene.name}: {error}") from error
+    solved = found.solution
+    across, along = solved.grid.n_across, solved.grid.shape[1]
+    contact = ContactScene(
+        name=f"{scene.name}, roller {found.roller}, {found.raceway} raceway",
+        contact=found.contact,
+        loads=(float(solution.roller_load[found.roller, RINGS.index(found.raceway)]),),
+        tilt=float(solved.tilt),
+        law=scene.element.line_law or Palmgren(),
+        across=across,
+        along=along,
+        grading=2.0,
+        max_steps=ConjugateGradients().max_steps,
+        warnings=(*scene.warnings, *warnings(solution)),
+        inputs=scene.inputs,
+    )
+    return contact, [found]
+
+
+@program(quick=True)
+def _solved(contact, widths, given, solver, sizes):
+    def solve(width, case):
+        grid = contact.grid(width, *sizes)
+        return contact.solve(**case, grid=grid, solver=solver, throw=False)
+
+    return jax.vmap(solve)(widths, given)
+
+
+@program(quick=True)
+def _sliced(contact, solved, law):
+    def slice_(one):
+        return slices(contact, one.load, one.tilt, one.grid.y, law)
+
+    return eqx.filter_vmap(slice_)(solved)
+
+
+def _one(tree: Any, k: int) -> Any:
+    return jax.tree.map(lambda leaf: leaf[k], tree)

@@ -1,0 +1,298 @@
+"""The [vibration] table of a scene: a bearing on its test rig, and the measurement."""
+
+import dataclasses
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...design import BearingSet, CylindricalThrustRollerBearing, FormErrors, rows_of
+from ...element import FREEDOMS, RINGS
+from ...element.bearing_element import BearingElement
+from ...files.scene_file import find_scene, parse_bearing
+from ...files.schema import Keys, direction_json, read_keys, scene_key
+from ...files.table import Table
+from ...noise import (
+    REFERENCE_ACCELERATION,
+    Hann,
+    NoiseModel,
+    Rectangular,
+    Sensor,
+    octave_bands,
+    third_octave_bands,
+)
+from ...noise.level import NORM
+from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
+from .read_deviations import read_deviations
+from .read_tolerance import ToleranceKeys, read_tolerance
+from .scene import AXES, NoiseScene
+
+BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
+WINDOWS = {"hann": Hann, "rectangular": Rectangular}
+NORMS = {"85-176211": NORM}
+"""Largest allowed levels, by bearing."""
+HELD = "held"
+"""Value of `tilting_inertia` for a ring that does not tilt."""
+MOST_SAMPLES = 200_000
+"""Most samples of a record: about 20 MB as JSON."""
+
+
+class VibrationKeys(Keys):
+    """[vibration]: the test rig of a bearing, the record and its evaluation."""
+
+    mass: float = scene_key("mass of the moving ring", "mass")
+    moving_ring: str | None = scene_key(
+        "ring that the load acts on",
+        choices=RINGS,
+        otherwise="the one that is not `operating.fixed_ring`; without either `outer`",
+    )
+    tilting_inertia: float | str | None = scene_key(
+        "moment of inertia of the moving ring about a diameter; `held`: it does not"
+        " tilt, as with `operating.prescribed` gx and gy at 0",
+        "moment of inertia",
+        choices=(HELD,),
+        otherwise="that of a ring of this mass",
+    )
+    bridging: bool = scene_key(
+        "whether contacts average waves over their width, as they do in fact;"
+        " otherwise shorter waves are met as they are, with a warning",
+        default=False,
+    )
+    retardation: float | None = scene_key(
+        "retardation time of the contacts' damping; whole bearings have 2.5 to 25 us"
+        " (Krämer 1993)",
+        "time",
+        otherwise="10 us",
+    )
+    sensor_stiffness: float | None = scene_key(
+        "stiffness of the sensor that holds the moving ring", "stiffness"
+    )
+    sensor_damping: float | None = scene_key("damping of the sensor", "damping")
+    sensor_direction: list[float] = scene_key(
+        "line of the sensor: x, y, z, or its three components",
+        default=None,
+        needs=("sensor_stiffness", "sensor_damping"),
+        otherwise="y",
+        reader=lambda table, name: _direction(table, name),
+        json=direction_json(AXES),
+    )
+    turns: int = scene_key("turns of the record", default=8)
+    settle: int = scene_key("turns that settle before it", default=2, least=0)
+    samples: int = scene_key(
+        "samples of a turn, an even number", default=2048, least=16
+    )
+    steps: int | None = scene_key(
+        "steps of the integration between two samples",
+        otherwise="as many as the stiffest contact needs",
+    )
+    reference: float = scene_key(
+        "acceleration of 0 dB",
+        "acceleration",
+        default=REFERENCE_ACCELERATION,
+        above=0.0,
+    )
+    bands: str = scene_key(
+        "bands of the levels", choices=tuple(BANDS), default="octave"
+    )
+    norm: str | None = scene_key(
+        "largest allowed levels, by the bearing that they are for", choices=tuple(NORMS)
+    )
+    window: str = scene_key(
+        "window of the spectrum", choices=tuple(WINDOWS), default="hann"
+    )
+    tolerance: ToleranceKeys | None = scene_key(
+        "how bearings off the line scatter, for `--monte-carlo`"
+    )
+
+    def check(self) -> None:
+        if self.samples % 2:
+            problem = f"{self.samples} is odd; it must be even"
+            raise self.table.error("samples", problem)
+        turns = self.turns + self.settle
+        if turns * self.samples > MOST_SAMPLES:
+            number = f"{turns} turns of {self.samples} are too many"
+            problem = f"{number}; at most {MOST_SAMPLES} samples"
+            raise self.table.error("samples", problem)
+        if self.norm is None:
+            return
+        if self.bands != "octave":
+            raise self.table.error("norm", "is of octaves; take `bands` = octave")
+        if self.reference != REFERENCE_ACCELERATION:
+            problem = f"counts from {REFERENCE_ACCELERATION:g} m/s²; leave out"
+            raise self.table.error("norm", f"{problem} `reference`")
+
+    @property
+    def sensor(self) -> Sensor | None:
+        """Sensor on the moving ring, or `None`."""
+        stiffness, damping = self.sensor_stiffness, self.sensor_damping
+        if stiffness is None and damping is None:
+            return None
+        with self.table.building():
+            return Sensor(stiffness or 0.0, damping or 0.0, self.sensor_direction)
+
+
+def read_noise(
+    source: str | Path, settings: Iterable[str] = (), *, bearings: int = 0
+) -> NoiseScene:
+    """Read a scene of the noise of a bearing.
+
+    Args:
+        source, settings: As in `read_scene`.
+        bearings: Number of additional random bearings.
+
+    Raises:
+        SceneError: One line with file, key, fault and the allowed values.
+    """
+    path = find_scene(source)
+    data = parse_bearing(path, settings)
+    top = Table(data, path.name)
+    scene = with_speed_warnings(scene_of(data, path))
+    vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
+    operating, deviations = top.table("operating"), top.table("deviations")
+    row = rows_of(scene.element.bearing)[0].bearing
+    if isinstance(row, CylindricalThrustRollerBearing):
+        problem = "'cylindrical_thrust_roller' has no noise here: it does not hold the"
+        raise top.table("bearing").error("type", f"{problem} shaking ring radially")
+    _check_operating(operating, scene)
+    element = scene.running()
+    bearing: Any = element.bearing
+    counts = tuple(row.bearing.n_elements for row in rows_of(bearing))
+    errors, common = read_deviations(deviations, counts, path.parent)
+    deviations.finish()
+    values = {
+        "mass": vibration.mass,
+        "load": scene.load,
+        "speed": scene.speed,
+        "errors": _of_rows(errors),
+        "sensor": vibration.sensor,
+        "moving_ring": _moving_ring(vibration, operating),
+        **_tilting(vibration, scene),
+    }
+    if vibration.retardation is not None:
+        values["retardation"] = vibration.retardation
+    with vibration.table.building():
+        model = NoiseModel(element, **values)
+        # Through the scene, so that the echo has it.
+        model = dataclasses.replace(model, tilting_inertia=model.inertia)
+        line = dataclasses.replace(
+            model, element=_nominal(element), errors=_of_rows(common)
+        )
+    random = vibration.tolerance
+    if random is None and bearings:
+        random = read_keys(
+            ToleranceKeys, vibration.table.table("tolerance", required=True)
+        )
+    tolerances, tighter = (
+        (None, ()) if random is None else read_tolerance(random, bearing)
+    )
+    norm = None if vibration.norm is None else np.array(NORMS[vibration.norm])
+    found = NoiseScene(
+        scene=scene,
+        model=model,
+        line=line,
+        bridging=vibration.bridging,
+        turns=vibration.turns,
+        settle=vibration.settle,
+        samples=vibration.samples,
+        steps=vibration.steps,
+        reference=vibration.reference,
+        bands=BANDS[vibration.bands](),
+        norm=norm,
+        window=WINDOWS[vibration.window](),
+        tolerances=tolerances,
+        tighter=tighter,
+        seed=0 if random is None else random.seed,
+        bearings=bearings,
+        warnings=scene.warnings,
+    )
+    vibration.table.finish()
+    inertia = model.inertia
+    vibration.fill(
+        moving_ring=model.moving_ring,
+        retardation=float(model.retardation),
+        tilting_inertia=HELD if inertia is None else float(inertia),
+    )
+    own = {"deviations": deviations.echo(), "vibration": vibration.table.echo()}
+    inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
+    return dataclasses.replace(found, inputs=inputs)
+
+
+def _of_rows(errors: tuple[FormErrors, ...]) -> FormErrors | tuple[FormErrors, ...]:
+    first, *more = errors
+    return errors if more else first
+
+
+def _nominal(element: BearingElement) -> BearingElement:
+    """Return the bearing with identical rolling elements."""
+    fields = "ball_deviation", "roller_deviation", "azimuth_deviation"
+
+    def even(bearing):
+        mine = {k: None for k in fields if getattr(bearing, k, None) is not None}
+        return dataclasses.replace(bearing, **mine) if mine else bearing
+
+    bearing: Any = element.bearing
+    if isinstance(bearing, BearingSet):
+        rows = [
+            dataclasses.replace(row, bearing=even(row.bearing)) for row in bearing.rows
+        ]
+        return dataclasses.replace(element, bearing=BearingSet(tuple(rows)))
+    return dataclasses.replace(element, bearing=even(bearing))
+
+
+def _held(scene: Scene, moving: str) -> dict[str, Any]:
+    """Return the echo of [operating] without supports (see `tilting_inertia`)."""
+    kept = dict(scene.inputs["operating"])
+    for key in ("free", "prescribed"):
+        kept.pop(key, None)
+    return {**kept, "fixed_ring": RINGS[1 - RINGS.index(moving)]}
+
+
+def _check_operating(operating: Table, scene: Scene) -> None:
+    """Require rotating rings, and no held freedoms except both tilts, at zero."""
+    tilts, moving = set(FREEDOMS[3:5]), set(FREEDOMS[:5])
+    words = "the ring shifts in ux, uy and uz; only gx and gy may be held, both at 0"
+    if set(scene.free or moving) not in (moving, moving - tilts):
+        raise operating.error("free", f"is not that of a vibration: {words}")
+    held = {name: x for name, x in scene.prescribed.items() if name != "gz" or x}
+    if set(held) not in (set(), tilts) or any(held.values()):
+        raise operating.error("prescribed", f"is not that of a vibration: {words}")
+    if scene.speed is None:
+        problem = "is zero" if "inner_speed" in operating else "is missing"
+        rest = "and so is `outer_speed`; nothing vibrates at rest"
+        raise operating.error("inner_speed", f"{problem}, {rest}")
+
+
+def _tilting(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
+    """Return whether the moving ring tilts, and its inertia if given."""
+    held = "gx" in scene.prescribed or "gx" not in (scene.free or FREEDOMS)
+    inertia = vibration.tilting_inertia
+    if inertia == HELD:
+        return {"tilts": False}
+    if held and inertia is not None:
+        problem = "is given, but [operating] holds gx and gy; choose one"
+        raise vibration.table.error("tilting_inertia", problem)
+    return {"tilts": not held, "tilting_inertia": inertia}
+
+
+def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
+    """Return the loaded ring; the outer one unless the scene names the other."""
+    fixed, moving = operating.word("fixed_ring"), vibration.moving_ring
+    if fixed is None:
+        return moving or "outer"
+    if moving == fixed:
+        problem = f"{moving!r} is the `fixed_ring` of [operating]; it must be the other"
+        raise vibration.table.error("moving_ring", problem)
+    return RINGS[1 - RINGS.index(fixed)]
+
+
+def _direction(table: Table, name: str) -> list[float]:
+    given = table.raw(name, "y")
+    if isinstance(given, list):
+        real = [isinstance(x, int | float) and not isinstance(x, bool) for x in given]
+        if real == [True] * 3:
+            return [float(one) for one in given]
+    elif given in AXES:
+        return [float(given == axis) for axis in AXES]
+    problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
+    raise table.error(name, problem)

@@ -1,0 +1,274 @@
+"""Compute the noise of the bearing of a scene."""
+
+import contextlib
+import dataclasses
+from collections.abc import Callable
+
+import jax
+import numpy as np
+
+from ...design import rows_of
+from ...noise import (
+    ContactStates,
+    Line,
+    MonteCarlo,
+    NaturalModes,
+    SourceContributions,
+    Spectrum,
+    Vibration,
+    band_levels,
+    bridged,
+    contact_states,
+    contribution_warnings,
+    level,
+    line_causes,
+    model_warnings,
+    monte_carlo,
+    name_lines,
+    natural_modes,
+    record_warnings,
+    ring_modes,
+    rounding,
+    source_contributions,
+    spectrum,
+    total_root_mean_square,
+    vibration,
+)
+from ...noise.static_start import why
+from ...numerics.result import Result
+from .scene import AXES, NoiseScene
+
+LARGEST_LINES = 12
+"""Number of largest spectral lines reported regardless of their neighbours."""
+_KEPT = 64
+"""Most random bearings whose records are kept for the sources of noise, not made anew:
+50 MB of 16 turns with 2048 samples."""
+_TOO_LONG = "its steps are too long for the contacts under their largest load"
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseAnalysis:
+    """Evaluation of a record.
+
+    Attributes:
+        record: The vibration.
+        spectrum: Spectrum of the acceleration, amplitudes (line, direction) [m/s²].
+        level: Level of the acceleration about its mean, from the spectrum like the
+            bands (direction,) [dB].
+        band_level: (band, direction) [dB]; NaN for bands outside the record.
+        lines: Prominent spectral lines.
+        causes: Possible causes of each line.
+        states: Contact states of the rolling elements.
+    """
+
+    record: Vibration
+    spectrum: Spectrum
+    level: np.ndarray
+    band_level: np.ndarray
+    lines: tuple[Line, ...]
+    causes: tuple[tuple[str, ...], ...]
+    states: ContactStates
+
+    @property
+    def acceleration(self) -> np.ndarray:
+        """Acceleration of the moving ring (time, direction) [m/s²]."""
+        return np.asarray(self.record.acceleration)[:, : len(AXES)]
+
+
+@dataclasses.dataclass(frozen=True)
+class RandomBearings:
+    """Evaluation of many random bearings.
+
+    Attributes:
+        levels: Levels of each bearing.
+        contributions: Share of each source of scatter in the mean square, from a subset
+            of the bearings; `None` if none of these was solved.
+    """
+
+    levels: MonteCarlo
+    contributions: SourceContributions | None
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseRun:
+    """Result of a noise run.
+
+    Attributes:
+        task: The noise scene.
+        result: The worst result code.
+        message: Cause and remedy in words.
+        modes: Natural modes, in NumPy; `None` without an equilibrium.
+        steps: Integration steps per sample.
+        analysis: Evaluation of the record; `None` if it was not solved.
+        many: Evaluation of random bearings; `None` if none were requested.
+        warnings: Warnings of doubtful results.
+    """
+
+    task: NoiseScene
+    result: Result
+    message: str
+    modes: NaturalModes | None = None
+    steps: int = 0
+    analysis: NoiseAnalysis | None = None
+    many: RandomBearings | None = None
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether all parts were solved."""
+        return self.result is Result.CONVERGED
+
+
+def run_noise(
+    task: NoiseScene, on_stage: Callable[..., None] | None = None
+) -> NoiseRun:
+    """Simulate and evaluate the vibration of the bearing of a scene.
+
+    Args:
+        task: From `read_noise`.
+        on_stage: Called with the name of each stage as it begins, and for random
+            bearings after each batch, with the share done [1].
+
+    Returns:
+        The run with its result code; a failed solve does not raise.
+    """
+    model = task.model
+    _tell(on_stage, "natural modes")
+    modes = jax.device_get(natural_modes(model))
+    result = Result(int(modes.result))
+    if result is not Result.CONVERGED:
+        words = f"standing under the load: {why(model)}"
+        return NoiseRun(task, result, words, warnings=task.warnings)
+    if task.bridging:
+        width = bridged(model).half_width
+        models = (
+            dataclasses.replace(one, half_width=width) for one in (model, task.line)
+        )
+        model, line = models
+        task = dataclasses.replace(task, model=model, line=line)
+    tolerances = task.tolerances if task.bearings else None
+    _tell(on_stage, "vibration")
+    record = vibration(model, **task.counts, steps=task.steps, throw=False)
+    result, steps = Result(int(record.result)), record.steps
+    asked = model_warnings(model, task.samples, steps, tolerances)
+    warned = (*task.warnings, *asked)
+    if result is not Result.CONVERGED:
+        grew = result is Result.NON_FINITE
+        words = (
+            f"vibration: {'the motion grew beyond all numbers' if grew else _TOO_LONG};"
+            " leave out `vibration.steps`, or give more of them, or another"
+            " `vibration.retardation`"
+        )
+        return NoiseRun(task, result, words, modes, steps, warnings=warned)
+    analysis = analyse(task, record, modes)
+    doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
+    warned += tuple(doubtful)
+    many = _many(task, steps, on_stage) if task.bearings else None
+    if many is not None and many.levels.failed:
+        warned += (
+            f"{many.levels.failed} of {task.bearings} random bearings were not solved",
+        )
+    if many is not None and many.contributions is not None:
+        warned += tuple(contribution_warnings(many.contributions))
+    return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
+
+
+def _tell(on_stage, stage, *share):
+    if on_stage is not None:
+        on_stage(stage, *share)
+
+
+def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
+    """Evaluate random bearings, and on a subset the share of each scatter source."""
+    tolerances = task.tolerances
+    assert tolerances is not None  # checked when it was read
+    counts = task.counts | {"steps": steps}
+    given = task.line, tolerances
+    key = jax.random.key(task.seed)
+    batch = min(16, task.bearings)
+    # Each source is switched off once: this takes about as long as the levels.
+    fewer = max(-(-task.bearings // len(tolerances.sources)), batch)
+    unchanged = [] if fewer <= _KEPT else None
+    runs = len(tolerances.sources) + (unchanged is None)
+    whole = task.bearings + fewer * runs
+
+    def keep(acceleration, result):
+        if unchanged is not None and batch * len(unchanged) < fewer:
+            unchanged.append((acceleration, result))
+
+    def progress(before):
+        def tell(done, _):
+            _tell(on_stage, "random bearings", (before + done) / whole)
+
+        return tell
+
+    _tell(on_stage, "random bearings", 0.0)
+    levels = monte_carlo(
+        *given,
+        task.bearings,
+        key,
+        **counts,
+        bands=task.bands,
+        window=task.window,
+        reference=task.reference,
+        batch=batch,
+        on_records=keep,
+        progress=progress(0),
+    )
+    sensor = task.line.sensor
+    along = None if sensor is None else np.asarray(sensor.direction)
+    with contextlib.suppress(FloatingPointError):
+        made = source_contributions(
+            *given,
+            fewer,
+            levels.keys[:fewer],
+            **counts,
+            direction=along,
+            bands=task.bands,
+            gradient=False,
+            batch=batch,
+            unchanged=unchanged,
+            progress=progress(task.bearings),
+        )
+        return RandomBearings(levels, made)
+    return RandomBearings(levels, None)
+
+
+def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAnalysis:
+    """Evaluation of a record.
+
+    Args:
+        task: The noise scene.
+        record: The vibration.
+        modes: Natural modes, in NumPy.
+    """
+    acceleration = np.asarray(record.acceleration)[:, : len(AXES)]
+    shaft = float(record.shaft_frequency)
+    found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
+    bearing = task.model.element.bearing
+    speed = task.model.speed
+    # Unequal rolling elements excite many harmonics of the cage rotation.
+    largest = max(row.bearing.n_elements for row in rows_of(bearing))
+    harmonics = max(10, 6 * largest)
+    natural = dict(ring_modes(modes, task.model))
+    lines = name_lines(
+        found,
+        bearing,
+        speed,
+        natural=natural,
+        harmonics=harmonics,
+        floor=rounding(task.model, record),
+        largest=LARGEST_LINES,
+    )
+    causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
+    highest = float(record.bandwidth)
+    of_bands = band_levels(found, task.bands, task.reference, highest)
+    return NoiseAnalysis(
+        record=record,
+        spectrum=found,
+        level=np.asarray(level(total_root_mean_square(found), task.reference)),
+        band_level=np.asarray(of_bands),
+        lines=lines,
+        causes=causes,
+        states=contact_states(record),
+    )

@@ -1,0 +1,1 @@
+"""Optimised bearings and systems of shafts."""

@@ -1,0 +1,483 @@
+"""The [optimise] table of a scene: variables, objective and constraints."""
+
+import dataclasses
+from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ...cases.cases import Cases
+from ...design import BearingSet, rows_of
+from ...element import FREEDOMS, BearingElement
+from ...files.quantity import SceneError, kind_of, scene_number
+from ...files.scene_file import find_scene, parse_bearing
+from ...files.schema import Keys, read_keys, scene_key
+from ...files.table import Table, not_among
+from ...fits.fits import PARTS
+from ...numerics.units import unit_of
+from ...optimise.constraint import Constraint
+from ...optimise.life import RatingLife
+from ...optimise.measure import (
+    Displacement,
+    EdgeLoad,
+    MeanPressure,
+    PeakPressure,
+    Stiffness,
+    StiffnessTarget,
+)
+from ...optimise.search import METHODS
+from ...optimise.smooth import EXPONENT
+from ...optimise.variable import Variable, check_variables, design_numbers
+from ..bearing.life_ratings import life_conditions
+from ..bearing.read_fit import no_expansion, read_temperature
+from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
+from ..cases.read_cases import DESIGN, read_cases, turns_of
+
+OBJECTIVES = (
+    "peak_pressure",
+    "mean_pressure",
+    "edge_load",
+    "displacement",
+    "stiffness",
+    "rating_life",
+)
+
+
+OF_FITS = (
+    "shaft_interference",
+    "housing_interference",
+    "shaft_bore",
+    "housing_diameter",
+    "drive_up",
+)
+"""Numbers of a [fit] that may be variables."""
+
+WARMTH = {f"temperature.{part}": part for part in PARTS}
+"""Temperatures that may be variables in addition to a [fit]."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SearchTask:
+    """Search that [optimise] asks for, of a bearing or of shafts, as in `optimise`.
+
+    Attributes:
+        variables: The variables, named as in the scene.
+        objective: Measure to be minimised.
+        constraints: Bounds on measures.
+        method: Search method, or `None` for the default.
+        max_steps: Step limit.
+        tolerance: Gradient at which the search ends.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
+    """
+
+    variables: tuple[Variable, ...]
+    objective: Any
+    constraints: tuple[Constraint, ...]
+    method: str | None
+    max_steps: int
+    tolerance: float
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Optimisation(SearchTask):
+    """Optimisation task of the scene of a bearing.
+
+    Attributes:
+        scene: The scene without [optimise].
+        cases: Its operating cases; without [cases] the one of [operating].
+    """
+
+    scene: Scene
+    cases: Cases
+
+
+OF_FREEDOM = ("displacement", "stiffness")
+"""Objectives that refer to one freedom."""
+_QUANTITY: dict[str, Any] = {"type": "string"}
+
+
+def _later(table: Table, name: str) -> Any:
+    """Return the raw value of a key whose unit depends on the measure."""
+    return table.raw(name, None)
+
+
+def _freedom(of: str) -> Any:
+    return scene_key(
+        "freedom of the displacement or stiffness",
+        choices=FREEDOMS[:5],
+        only={of: OF_FREEDOM},
+    )
+
+
+def bound_key(end: str, bare: str = "") -> Any:
+    """Return a bound of a measure as a key.
+
+    Args:
+        end: Which one, in words.
+        bare: Measure whose bound is a bare number; empty: none.
+    """
+    about = f"{end} bound, in the unit of the measure"
+    if not bare:
+        return scene_key(about, default=None, reader=_later, json=_QUANTITY)
+    both = {"anyOf": [_QUANTITY, {"type": "number"}]}
+    about = f"{about}; of `{bare}` a bare number"
+    return scene_key(about, default=None, reader=_later, json=both)
+
+
+class BoundKeys(Keys):
+    """[[optimise.constraints]]: a bound on a measure."""
+
+    measure: str
+    at_least: Any
+    at_most: Any
+
+    def check(self) -> None:
+        if self.at_least is None and self.at_most is None:
+            problem = "give `at_least`, `at_most` or both"
+            raise self.table.error("measure", problem)
+
+    def bound(self, measure: Any, kind: str) -> Constraint:
+        """Build the constraint.
+
+        Args:
+            measure: What is bounded.
+            kind: Kind of its quantity; empty for a pure number.
+        """
+        table = self.table
+        ends = [
+            table.quantity(key, kind, None) if kind else table.number(key, None)
+            for key in ("at_least", "at_most")
+        ]
+        with table.building():
+            return Constraint(measure, *ends)
+
+
+class ConstraintKeys(BoundKeys):
+    """[[optimise.constraints]]: a bound on a measure."""
+
+    measure: str = scene_key("what is bounded", choices=OBJECTIVES)
+    at_least: Any = bound_key("lower")
+    at_most: Any = bound_key("upper")
+    freedom: str | None = _freedom("measure")
+
+
+class SearchKeys(Keys):
+    """[optimise]: variables and the search for the best design."""
+
+    objective: str
+    exponent: float = scene_key(
+        "of the norm that stands for a maximum over rolling elements and cases",
+        default=EXPONENT,
+    )
+    variables: Any = scene_key(
+        "free numbers by their key in the scene, in quotes: `{ from, to, start }`",
+        reader=lambda table, name: table.table(name),
+        json={"type": "object", "additionalProperties": {"type": "object"}},
+    )
+    constraints: tuple[Any, ...]
+    method: str | None = scene_key(
+        "search", choices=METHODS, otherwise="by the constraints and variables"
+    )
+    max_steps: int = scene_key("step limit", default=200)
+    tolerance: float = scene_key(
+        "gradient at which the search ends", default=1e-5, above=0, below=0.1
+    )
+
+    def check(self) -> None:
+        if self.constraints and self.method not in (None, "slsqp"):
+            problem = f'{self.method!r} keeps no constraints; take "slsqp" or leave it'
+            raise self.table.error("method", f"{problem} out")
+
+
+class OptimiseKeys(SearchKeys):
+    """[optimise]: variables, objective and constraints."""
+
+    objective: str = scene_key(
+        "what is made least; a life in hours is made largest", choices=OBJECTIVES
+    )
+    freedom: str | None = _freedom("objective")
+    target: Any = scene_key(
+        "stiffness that is wanted, with its unit",
+        default=None,
+        only={"objective": ("stiffness",)},
+        reader=_later,
+        json=_QUANTITY,
+    )
+    constraints: tuple[ConstraintKeys, ...] = scene_key(
+        "bounds on measures", default=()
+    )
+
+
+def read_bearing_optimisation(
+    source: str | Path, settings: Iterable[str] = ()
+) -> Optimisation:
+    """Read the scene of a bearing with [optimise].
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line with file, key, fault and the allowed values.
+    """
+    settings = tuple(settings)
+    path = find_scene(source)
+    data = parse_bearing(path, settings)
+    check_present(data, path)
+    begun = _begun(data)
+    if begun:
+        settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
+        data = parse_bearing(path, settings)
+    top = Table(data, path.name)
+    scene = scene_of(data, path)
+    cases, inputs = _operating(scene), scene.inputs
+    if "cases" in data:
+        listed = read_cases(source, settings)
+        cases, inputs = listed.cases, listed.inputs
+        makers = [key for key in listed.varied if key.partition(".")[0] in DESIGN]
+        if makers:
+            problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
+            raise top.error("cases", problem)
+        # On its seats a bearing has the clearance at the speeds of each case.
+        cases = dataclasses.replace(cases, design=None)
+    scene = with_speed_warnings(scene, turns_of(cases))
+    table = top.table("optimise")
+    task = _optimisation(top, table, scene, cases, set(begun))
+    table.finish()
+    inputs = {**inputs, "optimise": table.echo()}
+    return dataclasses.replace(task, inputs=inputs)
+
+
+def check_present(data: dict[str, Any], path: Path) -> None:
+    """Raise SceneError unless a scene has [optimise].
+
+    Args:
+        data: The scene.
+        path: Its path.
+    """
+    if "optimise" not in data:
+        raise SceneError(
+            f"{path.name}: `optimise` is missing; it must be a table that names"
+            " `objective` and `variables`"
+        )
+
+
+def _begun(data: dict[str, Any]) -> dict[str, Any]:
+    """Return start values of the variables of [fit] that the table does not give: an
+    optimised interference needs neither a value nor a tolerance class there."""
+    fit, table = data.get("fit"), data["optimise"]
+    free = table.get("variables") if isinstance(table, dict) else None
+    found: dict[str, Any] = {}
+    if not (isinstance(fit, dict) and isinstance(free, dict)):
+        return found
+    for name in OF_FITS:
+        ends = free.get(f"fit.{name}")
+        stands = {name, name.removesuffix("_interference")} & set(fit)
+        if isinstance(ends, dict) and "from" in ends and not stands:
+            found[f"fit.{name}"] = ends.get("start", ends["from"])
+    return found
+
+
+def _operating(scene: Scene) -> Cases:
+    speed = scene.speed
+    return Cases(
+        [scene.load],
+        prescribed=scene.prescribed,
+        inner_speed=None if speed is None else speed.inner,
+        outer_speed=None if speed is None else speed.outer,
+    )
+
+
+def _optimisation(
+    top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
+) -> Optimisation:
+    keys, balls = read_keys(OptimiseKeys, table), scene.element.bearing.is_ball
+    with table.building():
+        PeakPressure(keys.exponent)
+    measured = _Measured(keys.exponent, balls, _life(scene, cases))
+    objective = measured.objective(keys)
+    table.table("variables", required=True)
+    return Optimisation(
+        scene=scene,
+        cases=cases,
+        variables=_variables(keys.variables, top.table("fit"), scene, begun),
+        objective=objective,
+        constraints=tuple(measured.constraint(one) for one in keys.constraints),
+        method=keys.method,
+        max_steps=keys.max_steps,
+        tolerance=keys.tolerance,
+    )
+
+
+def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
+    """Return the design numbers by their scene key, with their paths in the element.
+
+    Args:
+        element: The bearing; a key applies to all rows of a set.
+    """
+    row = rows_of(element.bearing)[0].bearing
+    in_set = isinstance(element.bearing, BearingSet)
+    rows = range(len(element.bearing.rows)) if in_set else ()
+    heads = [f"bearing.rows.{k}.bearing" for k in rows] or ["bearing"]
+    found: dict[str, tuple[str, ...]] = {}
+    for name in design_numbers(row):
+        # The rows of a self-aligning bearing are staggered.
+        if name == "first_azimuth" and in_set:
+            continue
+        paths = tuple(f"{head}.{name}" for head in heads)
+        head, _, rest = name.partition(".")
+        if head.endswith("_raceway_profile"):
+            head = f"raceway_profile.{head.removesuffix('_raceway_profile')}"
+        key = f"bearing.{head}.{rest}" if rest else f"bearing.{head}"
+        found[key] = paths
+        if head == "ribs":
+            common = f"bearing.rib.{rest.partition('.')[2]}"
+            found[common] = (*found.get(common, ()), *paths)
+    return found
+
+
+def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Return the numbers of a bearing in its place by their scene key, with their paths
+    in `Scene.installed`.
+
+    Args:
+        scene: The bearing.
+    """
+    numbers = {
+        key: tuple(f"drawing.{path}" for path in paths)
+        for key, paths in scene_numbers(scene.element).items()
+    }
+    if scene.preload_force is not None:
+        numbers["set.preload_force"] = ("preload",)
+    if scene.fits is not None:
+        numbers |= {f"fit.{name}": (f"mounting.{name}",) for name in OF_FITS}
+        numbers |= {key: (f"conditions.{part}",) for key, part in WARMTH.items()}
+    return numbers
+
+
+def _variables(
+    table: Table, fit: Table, scene: Scene, begun: set[str]
+) -> tuple[Variable, ...]:
+    unknown = {} if scene.fits is None else scene.fits.unknown
+    for key in table.keys():
+        if (warm := WARMTH.get(key)) in unknown:
+            raise no_expansion(fit, warm, unknown[warm])
+    return read_variables(table, scene.installed, installed_numbers(scene), begun)
+
+
+def read_variables(
+    table: Table,
+    design: Any,
+    numbers: dict[str, tuple[str, ...]],
+    begun: Collection[str] = (),
+) -> tuple[Variable, ...]:
+    """Read the free numbers of a design.
+
+    Args:
+        table: `[optimise.variables]`.
+        design: The design.
+        numbers: Its numbers by their scene key, with their paths in it.
+        begun: Keys that start in the middle of their range unless a start is given.
+
+    Raises:
+        SceneError: For keys that are missing, unknown or not allowed.
+    """
+    variables = []
+    for key in table.keys():
+        if key not in numbers:
+            raise table.error(key, _no_number(key, table, numbers))
+        part = table.table(key)
+        unit = unit_of(design, numbers[key][0])
+        if unit == "K":
+            low, high = (read_temperature(part, word) for word in ("from", "to"))
+            start = read_temperature(part, "start", None)
+        else:
+            low, high = (part.real(word, unit) for word in ("from", "to"))
+            start = part.real("start", unit, None)
+            if start is None and key in begun:
+                start = 0.5 * (low + high)
+        if unit and start is not None and low < high and not low <= start <= high:
+            words = (scene_number(x, kind_of(unit)) for x in (start, low, high))
+            problem = "{} must lie between `from`, {}, and `to`, {}".format(*words)
+            raise part.error("start", problem)
+        with part.building():
+            variables.append(Variable(numbers[key], low, high, start, key))
+    with table.building():
+        check_variables(design, variables)
+    return tuple(variables)
+
+
+def _no_number(key, table, numbers):
+    if isinstance(table.raw(key), Mapping) and "from" not in table.raw(key):
+        example = next(iter(numbers))
+        return f'write the dotted key in quotes, such as "{example}" = {{from, to}}'
+    near, head = tuple(numbers), key
+    while "." in head:
+        head = head.rpartition(".")[0]
+        if inner := [name for name in numbers if name.startswith(f"{head}.")]:
+            near = tuple(inner)
+            break
+    return not_among(key, near)
+
+
+def _life(scene: Scene, cases: Cases) -> RatingLife | None:
+    """Return the rating life in hours by [life], or `None` without speeds."""
+    if cases.inner_speed is None and cases.outer_speed is None:
+        return None
+    return RatingLife(life_conditions(scene), True)
+
+
+class _Measured(NamedTuple):
+    """Measures of a bearing.
+
+    Attributes:
+        exponent: Exponent of the norms.
+        balls: Whether its rolling elements are balls.
+        life: Its rating life in hours, or `None` without a speed.
+    """
+
+    exponent: float
+    balls: bool
+    life: RatingLife | None
+
+    def objective(self, keys: OptimiseKeys) -> Any:
+        """Build the objective."""
+        if keys.objective != "stiffness":
+            return self._measure(keys, "objective")
+        kind = _kind_of(self._measure(keys, "objective"))
+        wanted = keys.table.quantity("target", kind)
+        with keys.table.building():
+            return StiffnessTarget(wanted, keys.freedom or "")
+
+    def constraint(self, keys: ConstraintKeys) -> Constraint:
+        """Build a bound on a measure."""
+        measure = self._measure(keys, "measure")
+        return keys.bound(measure, _kind_of(measure))
+
+    def _measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
+        kind = getattr(keys, key)
+        if kind == "rating_life":
+            if self.life is None:
+                problem = "rating_life is in hours: it needs a speed in [operating]"
+                raise keys.table.error(key, problem)
+            return self.life
+        if kind == "peak_pressure":
+            return PeakPressure(self.exponent)
+        if kind == "mean_pressure":
+            return MeanPressure(self.exponent)
+        if kind == "edge_load":
+            if self.balls:
+                problem = "balls have no ends; `edge_load` is for rollers"
+                raise keys.table.error(key, problem)
+            return EdgeLoad(self.exponent)
+        freedom = keys.freedom or keys.table.choice("freedom", FREEDOMS[:5])
+        of = Displacement if kind == "displacement" else Stiffness
+        return of(freedom, self.exponent)
+
+
+def _kind_of(measure) -> str:
+    if isinstance(measure, EdgeLoad):
+        return "line load"
+    if isinstance(measure, RatingLife):
+        return "duration"
+    tilting = isinstance(measure, Stiffness) and measure.unit == "N m"
+    return "tilting stiffness" if tilting else kind_of(measure.unit)

@@ -1,0 +1,75 @@
+"""Optimise the bearing, or the system of shafts, of a scene."""
+
+import dataclasses
+from functools import partial
+
+from ...files.quantity import SceneError
+from ...optimise.life import OfLife, RatingLife
+from ...optimise.optimise import Optimised, optimise
+from ..bearing.life_ratings import life_conditions
+from ..cases.read_cases import turns_of
+from .read_optimise import Optimisation
+from .read_shaft_optimise import ShaftOptimisation
+
+
+def run_optimisation(
+    task: Optimisation | ShaftOptimisation, progress: bool = False
+) -> Optimised:
+    """Optimise the bearing, or the system of shafts, of a scene.
+
+    Args:
+        task: From `read_optimisation`.
+        progress: Show a progress bar on standard error.
+
+    Returns:
+        The best design; read its `result`.
+
+    Raises:
+        SolveError: If the design of the scene does not solve.
+        SceneError: For choices that contradict each other.
+    """
+    name, more = task.scene.name, {}
+    if isinstance(task, ShaftOptimisation):
+        design = task.design
+    else:
+        scene, design = task.scene, task.scene.installed
+        more = {
+            "points": scene.points,
+            "free": scene.free,
+            "fixed_ring": scene.fixed_ring,
+            "solve_tolerance": scene.tolerance,
+        }
+    try:
+        found = optimise(
+            design,
+            task.cases,
+            task.variables,
+            task.objective,
+            task.constraints,
+            task.method,
+            max_steps=task.max_steps,
+            tolerance=task.tolerance,
+            progress=progress,
+            **more,
+        )
+    except ValueError as error:
+        raise SceneError(f"{name}: {error}") from error
+    return found if isinstance(task, ShaftOptimisation) else _judged(task, found)
+
+
+def _judged(task: Optimisation, found: Optimised) -> Optimised:
+    """Add the warnings about rating lives that `solve` gives for the same designs,
+    with [life], whatever the measures."""
+    scene = task.scene
+    measures = task.objective, *(c.measure for c in task.constraints)
+    if scene.life is None or any(isinstance(m, OfLife) for m in measures):
+        return found
+    turning = bool(turns_of(task.cases).any())
+    life = RatingLife(life_conditions(scene, turning))
+    sides = {"before": found.initial, "after": found.element}
+    judged = {}
+    for side, design in sides.items():
+        outcome = getattr(found, side)
+        doubts = partial(life.warnings, design, outcome.solution)
+        judged[side] = outcome._replace(doubts=doubts)
+    return dataclasses.replace(found, **judged)

@@ -1,0 +1,339 @@
+"""Read the scene of a rotor: shaft, discs, loads, bearings and analyses."""
+
+import dataclasses
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...design import Material
+from ...element.frame import LOADS
+from ...files.quantity import scene_number
+from ...files.scene_file import find_scene, is_rotor, parse_scene
+from ...files.schema import Keys, read_keys, scene_key
+from ...files.table import Table, written_numbers
+from ...numerics.gravity import GRAVITY
+from ...rotor import (
+    AbstractDamping,
+    AbstractPart,
+    Disc,
+    ModalDamping,
+    PointMass,
+    ProportionalDamping,
+    RotorLoads,
+    Shaft,
+    StationForce,
+    Unbalance,
+)
+from ..bearing.read_design import read_material
+from .mounts import MountKeys, read_mounts
+from .scene import RotorScene
+from .tasks import CampbellKeys, ResponseKeys, TransientKeys
+
+AXES = {
+    "horizontal": (0.0, -GRAVITY, 0.0),
+    "vertical": (0.0, 0.0, -GRAVITY),
+    "none": (0.0, 0.0, 0.0),
+}
+"""Gravity by shaft axis [m/s²]."""
+MOST_ELEMENTS = 200
+"""Most elements of a shaft: eigenvalues of 2000 states take minutes."""
+
+
+def _material(table: Table, key: str) -> Material:
+    """Read a material, by default steel; the echo gets its numbers."""
+    material = read_material(table, key) or Material()
+    table.fill(key, written_numbers(material))
+    return material
+
+
+MATERIAL: Any = {
+    "default": None,
+    "otherwise": "steel",
+    "reader": _material,
+    "json": {"$ref": "#/$defs/material"},
+}
+
+
+class SegmentKeys(Keys):
+    """[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends."""
+
+    length: float = scene_key("length", "length", above=0)
+    outer_diameter: float = scene_key("outer diameter", "length", above=0)
+    bore: float = scene_key("bore", "length", default=0.0, least=0)
+    divisions: int = scene_key(
+        f"elements of the segment; at most {MOST_ELEMENTS} of all", default=1
+    )
+    material: Material = scene_key("material, or its numbers", **MATERIAL)
+
+    def check(self) -> None:
+        if not self.bore < self.outer_diameter:
+            bore, most = (
+                scene_number(x, "length") for x in (self.bore, self.outer_diameter)
+            )
+            allowed = f"from 0 to below the outer diameter, {most}"
+            raise self.table.error("bore", f"{bore} is not allowed; {allowed}")
+
+
+_OF_DISC: Any = {"without": {"mass": "give either `mass` or the sizes of a disc"}}
+_OF_MASS: Any = {"least": 0, "needs": ("mass",)}
+
+
+class DiscKeys(Keys):
+    """[[rotor.discs]]: discs, by their sizes or inertia, and point masses."""
+
+    station: int = scene_key("station of the shaft", least=0)
+    mass: float | None = scene_key(
+        "mass, in place of sizes; alone that of a point", "mass", least=0
+    )
+    polar_inertia: float | None = scene_key(
+        "moment of inertia about the shaft", "moment of inertia", **_OF_MASS
+    )
+    diametral_inertia: float | None = scene_key(
+        "moment of inertia about a diameter", "moment of inertia", **_OF_MASS
+    )
+    outer_diameter: float | None = scene_key(
+        "outer diameter", "length", above=0, **_OF_DISC
+    )
+    width: float | None = scene_key("width", "length", above=0, **_OF_DISC)
+    bore: float = scene_key(
+        "bore", "length", default=0.0, least=0, needs=("outer_diameter",), **_OF_DISC
+    )
+    material: Material = scene_key(
+        "material, or its numbers", needs=("outer_diameter",), **MATERIAL, **_OF_DISC
+    )
+
+    @property
+    def part(self) -> AbstractPart:
+        """Disc or point mass."""
+        table, sizes = self.table, ("outer_diameter", "width")
+        inertias = "polar_inertia", "diametral_inertia"
+        with table.building():
+            if self.mass is None:
+                outer, width = (table.quantity(name, "length") for name in sizes)
+                return Disc.of_size(
+                    self.station, outer, width, self.bore, self.material
+                )
+            if self.polar_inertia is None and self.diametral_inertia is None:
+                return PointMass(self.station, self.mass)
+            both = (table.quantity(name, "moment of inertia") for name in inertias)
+            return Disc(self.station, self.mass, *both)
+
+
+class DampingKeys(Keys):
+    """[rotor.damping]: damping in proportion to mass and stiffness of the shaft."""
+
+    mass_factor: float = scene_key("damping over mass", "rate", default=0.0, least=0)
+    stiffness_factor: float = scene_key(
+        "damping over stiffness", "time", default=0.0, least=0
+    )
+
+
+class UnbalanceKeys(Keys):
+    """[[rotor.excitation.unbalance]]: masses off the axis."""
+
+    station: int = scene_key("station of the shaft", least=0)
+    moment: float = scene_key("mass times eccentricity", "unbalance", least=0)
+    phase: float = scene_key("azimuth at time 0, from x to y", "angle", default=0.0)
+
+
+class ForceKeys(Keys):
+    """[[rotor.excitation.forces]]: constant forces and moments."""
+
+    station: int = scene_key("station of the shaft", least=0)
+    Fx: float = scene_key("force along x", "force", default=0.0)
+    Fy: float = scene_key("force along y", "force", default=0.0)
+    Fz: float = scene_key("force along z", "force", default=0.0)
+    Mx: float = scene_key("moment about x", "moment", default=0.0)
+    My: float = scene_key("moment about y", "moment", default=0.0)
+
+    def check(self) -> None:
+        if not any(self.force):
+            self.table.finish()
+            problem = f"is missing; give one at least of {', '.join(LOADS[:5])}"
+            raise self.table.error("Fy", problem)
+
+    @property
+    def force(self) -> tuple[float, ...]:
+        """Force and moment (5,) [N, N m]."""
+        return self.Fx, self.Fy, self.Fz, self.Mx, self.My
+
+
+class BaseKeys(Keys):
+    """[rotor.excitation.base_acceleration]: amplitude along each axis."""
+
+    x: float = scene_key("along x", "acceleration", default=0.0)
+    y: float = scene_key("along y", "acceleration", default=0.0)
+    z: float = scene_key("along z", "acceleration", default=0.0)
+
+
+class ExcitationKeys(Keys):
+    """[rotor.excitation]: loads on the rotor in addition to its weight."""
+
+    unbalance: tuple[UnbalanceKeys, ...] = scene_key("masses off the axis", default=())
+    forces: tuple[ForceKeys, ...] = scene_key("constant forces and moments", default=())
+    base_acceleration: BaseKeys = scene_key(
+        "amplitude of the base that shakes at the frequency of the excitation",
+        default=BaseKeys,
+    )
+
+    def loads(self, gravity: tuple[float, ...]) -> RotorLoads:
+        """Build the loads.
+
+        Args:
+            gravity: Gravity along x, y and z [m/s²].
+        """
+        unbalances = tuple(Unbalance(**one.given) for one in self.unbalance)
+        forces = tuple(StationForce(one.station, one.force) for one in self.forces)
+        base = [*self.base_acceleration.given.values()]
+        with self.table.building():
+            return RotorLoads(unbalances, forces, gravity, base)
+
+
+class RotorKeys(Keys):
+    """[rotor]: a shaft on its bearings."""
+
+    speed: float = scene_key("speed of the rotor, from x to y", "speed", default=0.0)
+    rigid: bool = scene_key("whether the shaft does not bend", default=False)
+    axis: str = scene_key(
+        "where weight pulls: `horizontal` along -y, `vertical` along -z",
+        choices=tuple(AXES),
+        default="horizontal",
+    )
+    damping_ratio: float | None = scene_key(
+        "damping ratio of all modes", least=0, below=1
+    )
+    damping: DampingKeys | None = scene_key(
+        "damping in proportion to mass and stiffness of the shaft",
+        without={"damping_ratio": ""},
+    )
+    modes: int = scene_key("number of modes that are reported", default=10)
+    shaft: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
+    discs: tuple[DiscKeys, ...] = scene_key("discs and point masses", default=())
+    bearings: tuple[MountKeys, ...] = scene_key("what holds the shaft")
+    excitation: ExcitationKeys = scene_key(
+        "what acts on the rotor beside its weight", default=ExcitationKeys
+    )
+    campbell: CampbellKeys | None = scene_key("Campbell diagram")
+    response: ResponseKeys | None = scene_key("periodic vibration")
+    transient: TransientKeys | None = scene_key("motion in time")
+
+    def check(self) -> None:
+        total, last, loads = 0, len(self.shaft), self.excitation
+        for segment in self.shaft:
+            total += segment.divisions
+            if total > MOST_ELEMENTS:
+                problem = f"{total} elements are too many; at most {MOST_ELEMENTS}"
+                raise segment.table.error("divisions", problem)
+        tasks = [one for one in (self.response, self.transient) if one is not None]
+        of_loads = *loads.unbalance, *loads.forces
+        for one in (*self.discs, *self.bearings, *of_loads, *tasks):
+            if one.station is not None and one.station > last:
+                problem = f"{one.station} is not a station of the shaft; from 0 to"
+                raise one.table.error("station", f"{problem} {last}")
+        shaken = any(loads.base_acceleration.given.values())
+        if self.response is not None and not loads.unbalance and not shaken:
+            problem = "is missing, and so is `base_acceleration`; nothing excites"
+            raise loads.table.error("unbalance", f"{problem} the rotor")
+        for task in tasks:
+            if self.rigid and task.reduction is not None:
+                problem = "is for a shaft that bends, not a `rigid` one"
+                raise task.table.error("reduction", problem)
+        if self.transient is not None:
+            run_up = self.transient.table, "speed_to", self.transient.speed_to
+            for place, key, value in ((self.table, "speed", self.speed), run_up):
+                if value is not None and value < 0.0:
+                    problem = "is not allowed with a motion in time; 0 or more"
+                    raise place.error(key, f"{scene_number(value, 'speed')} {problem}")
+
+    @property
+    def own_damping(self) -> AbstractDamping | None:
+        """Damping in addition to that of the bearings."""
+        if self.damping is not None:
+            return ProportionalDamping(**self.damping.given)
+        return ModalDamping(self.damping_ratio) if self.damping_ratio else None
+
+    @property
+    def shown(self) -> int:
+        """Station shown by default in report and plot."""
+        for part in (*self.excitation.unbalance, *self.discs):
+            return part.station
+        return len(self.shaft) // 2
+
+
+def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
+    """Read the scene of a rotor.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line with file, key, fault and the allowed values.
+    """
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    top = Table(data, path.name)
+    if not is_rotor(data):
+        key = "bearing" if "bearing" in data else "rotor"
+        problem = "the scene of a rotor has a [rotor], and its bearings as [bearings.…]"
+        raise top.error(key, problem)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = _scene(top, path)
+    top.finish()
+    warned = tuple(dict.fromkeys(str(w.message) for w in caught))
+    return dataclasses.replace(scene, warnings=warned, inputs=top.echo())
+
+
+def _scene(top: Table, path: Path) -> RotorScene:
+    keys = read_keys(RotorKeys, top.table("rotor"))
+    shaft = _shaft(keys)
+    discs = tuple(disc.part for disc in keys.discs)
+    mounts = read_mounts(top, keys.bearings, shaft, keys.speed, path)
+    loads = keys.excitation.loads(AXES[keys.axis])
+    response, transient = keys.response, keys.transient
+    if response is not None:
+        response = response.with_defaults(station=keys.shown)
+        _warn_of_speeds(keys.speed, response.speed, bool(loads.unbalances))
+    if transient is not None:
+        transient = transient.with_defaults(station=keys.shown)
+    return RotorScene(
+        name=path.stem,
+        shaft=shaft,
+        discs=discs,
+        mounts=mounts,
+        damping=keys.own_damping,
+        rigid=keys.rigid,
+        speed=keys.speed,
+        axis=keys.axis,
+        loads=loads,
+        n_modes=keys.modes,
+        campbell=None if keys.campbell is None else keys.campbell.speeds,
+        response=response,
+        transient=transient,
+    )
+
+
+def _shaft(keys: RotorKeys) -> Shaft:
+    rows = [(s.outer_diameter, s.bore, s.material, s.divisions) for s in keys.shaft]
+    stations = np.cumsum([0.0, *(segment.length for segment in keys.shaft)])
+    with keys.table.building():
+        return Shaft(stations, *zip(*rows, strict=True))
+
+
+def _warn_of_speeds(rotor: float, response: float | None, unbalanced: bool) -> None:
+    if response is not None and unbalanced:
+        warnings.warn(
+            "`rotor.response.speed` is fixed, so that its unbalance turns at another"
+            " speed, that of the excitation",
+            stacklevel=2,
+        )
+    if response is None and rotor < 0.0:
+        warnings.warn(
+            "`rotor.speed` is negative, but in the response the rotor turns with its"
+            " excitation, from x towards y; give `rotor.response.speed` for the other"
+            " sense",
+            stacklevel=2,
+        )

@@ -1,0 +1,363 @@
+"""Run the analyses of a rotor scene."""
+
+import contextlib
+import dataclasses
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ...element import Speed
+from ...files.quantity import SceneError
+from ...life.life import Life, life_of
+from ...life.life_warning import life_warnings
+from ...numerics.result import Result, SolveError
+from ...numerics.types import as_array
+from ...report.report_model import rpm
+from ...rotor import (
+    BearingSupport,
+    CriticalSpeeds,
+    Modes,
+    Onset,
+    Rotor,
+    StaticEquilibrium,
+    campbell,
+    critical_speeds,
+    instability_onsets,
+    modes,
+    static_equilibrium,
+    static_equilibrium_over,
+)
+from ...statics.load_result import solution_at
+from ..bearing.fits import fits_at_speed
+from ..bearing.life_ratings import life_conditions
+from .motion import RotorResponse, RotorTransient, respond, run_in_time
+from .scene import Mount, RotorScene
+from .supports import support_of
+
+
+@dataclasses.dataclass(frozen=True)
+class Failure:
+    """A part of a run that was not solved.
+
+    Attributes:
+        part: "preload", "static", "modes", "campbell", "response" or "transient".
+        result: Result code.
+        message: Cause and remedy in words.
+    """
+
+    part: str
+    result: Result
+    message: str
+
+
+@dataclasses.dataclass(frozen=True)
+class RotorRun:
+    """Result of a rotor run.
+
+    Parts not requested or not solved are `None`.
+
+    Attributes:
+        task: The rotor scene.
+        rotor: The rotor on its bearings, preloaded, before static equilibrium.
+        settled: Static equilibrium at the speed of the scene; read its `result`.
+        lives: Rating life there of each mount with [life], in NumPy.
+        modes: Modes at that speed.
+        critical: Critical speeds.
+        campbell: Modes over `task.campbell`, the speeds [rad/s].
+        onsets: Onsets of instability of its modes.
+        response: Periodic vibration over the frequency.
+        transient: Motion in time.
+        failures: Parts that were not solved.
+        warnings: Warnings of doubtful results.
+    """
+
+    task: RotorScene
+    rotor: Rotor | None
+    settled: StaticEquilibrium | None = None
+    lives: tuple[tuple[Mount, Life], ...] = ()
+    modes: Modes | None = None
+    critical: CriticalSpeeds | None = None
+    campbell: Modes | None = None
+    onsets: tuple[Onset, ...] = ()
+    response: RotorResponse | None = None
+    transient: RotorTransient | None = None
+    failures: tuple[Failure, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether all parts were solved."""
+        return not self.failures
+
+
+_DRIFT = 0.5e-6
+"""Change of radial clearance over the speed above which a warning is given [m]."""
+_COARSE = 1e-3
+"""Error of the stiffness over the speed above which a warning is given [1]."""
+_STAGES = {
+    "preload": "bearings",
+    "static": "static equilibrium",
+    "modes": "modes",
+    "critical speeds": "critical speeds",
+    "campbell": "Campbell diagram",
+    "response": "response",
+    "transient": "motion in time",
+}
+
+
+class _Parts:
+    """Collected results, failures and warnings of the parts of a run."""
+
+    def __init__(self, on_stage: Callable[[str], None] | None):
+        self.found: dict[str, Any] = {}
+        self.failures: list[Failure] = []
+        self.warnings: list[str] = []
+        self._on_stage = on_stage
+
+    @contextlib.contextmanager
+    def part(self, name: str) -> Iterator[None]:
+        """Context that records a SolveError as the failure of this part."""
+        if self._on_stage is not None:
+            self._on_stage(_STAGES[name])
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            try:
+                yield
+            except SolveError as error:
+                self.failed(name, error.result or Result.STEP_LIMIT, str(error))
+        self.warnings += dict.fromkeys(str(w.message) for w in caught)
+
+    def failed(self, part: str, result: Result, message: str) -> None:
+        """Record a failure."""
+        self.failures.append(Failure(part, result, message))
+
+
+def run_rotor(
+    task: RotorScene, on_stage: Callable[[str], None] | None = None
+) -> RotorRun:
+    """Run the analyses of a rotor scene.
+
+    Args:
+        task: From `read_rotor`.
+        on_stage: Called with the name of each stage as it begins.
+
+    Returns:
+        The run; a part that fails does not raise.
+
+    Raises:
+        SceneError: For errors found only when the rotor is assembled.
+    """
+    parts = _Parts(on_stage)
+    with _naming(task):
+        rotor = _rotor(task, parts)
+        if rotor is not None:
+            _static(task, rotor, parts)
+            if "settled" in parts.found:
+                _lives(task, rotor, parts)
+                linear = _linear(task, rotor, parts)
+                _nonlinear(task, rotor, linear, parts)
+    return RotorRun(
+        task=task,
+        rotor=rotor,
+        failures=tuple(parts.failures),
+        warnings=(*task.warnings, *parts.warnings, *task_warnings(task)),
+        **parts.found,
+    )
+
+
+@contextlib.contextmanager
+def _naming(task: RotorScene) -> Iterator[None]:
+    """Context that adds the scene name to the ValueError of a constructor."""
+    try:
+        yield
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+
+
+def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:
+    with parts.part("preload"):
+        supports = [support_of(mount) for mount in task.mounts]
+        return Rotor(task.shaft, task.discs, supports, task.damping, task.rigid)
+    return None
+
+
+def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
+    with parts.part("static"):
+        parts.found["settled"] = static_equilibrium(
+            rotor, task.loads, as_array(task.speed, float)
+        )
+
+
+def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
+    """Compute the lives of the bearings under the loads of the equilibrium."""
+    settled, found = parts.found["settled"], []
+    moved = np.asarray(rotor.at_supports()) @ np.asarray(settled.motion)
+    for mount, support, motion in zip(task.mounts, rotor.supports, moved, strict=True):
+        scene = mount.scene
+        if scene is None or scene.life is None:
+            continue
+        if not isinstance(support, BearingSupport):
+            parts.warnings.append(f"{mount.name}: a `law` has no life; leave it out")
+            continue
+        turns = -task.speed if mount.turned else task.speed
+        speed = Speed(as_array(turns, float)) if task.speed else None
+        solution = solution_at(
+            support.element,
+            support.rings(jnp.asarray(motion)),
+            speed if mount.inertia else None,
+            scene.points,
+        )
+        conditions = life_conditions(scene, speed is not None)
+        life = life_of(support.element, solution, conditions, speed=speed)
+        found.append((mount, jax.device_get(life)))
+        bearing = support.element.bearing
+        for text in life_warnings(bearing, found[-1][1].ratings, vars(found[-1][1])):
+            parts.warnings.append(f"{mount.name}: {text}")
+    parts.found["lives"] = tuple(found)
+
+
+def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
+    """Compute modes, critical speeds, Campbell diagram; return the linear rotor."""
+    found, count = parts.found, task.n_modes
+    settled = found["settled"]
+    with parts.part("modes"):
+        found["modes"] = _as_numpy(modes(settled.rotor, task.speed, count=count))
+    highest = top_speed(task)
+    follows = _following(task, rotor, settled, highest, parts)
+    if follows is None:
+        return None
+    with parts.part("critical speeds"):
+        found["critical"] = _as_numpy(
+            critical_speeds(follows, count=count, operating_speed=task.speed)
+        )
+    if follows is not settled.rotor and (found["critical"].speed > highest).any():
+        parts.warnings.append(
+            f"above {rpm(highest)} critical speeds are those of the stiffness"
+            " that bearings have there; it is known to the highest speed of"
+            " [rotor.campbell] and [rotor.response], or to twice the speed"
+        )
+    if task.campbell is not None:
+        with parts.part("campbell"):
+            lines = campbell(follows, task.campbell, count=count)
+            found["campbell"] = _as_numpy(lines)
+            found["onsets"] = instability_onsets(
+                follows, task.campbell, found["campbell"]
+            )
+    return follows
+
+
+def _following(task, rotor, settled, highest, parts) -> Rotor | None:
+    """Return the linear rotor over speed, resettled if its bearings depend on speed."""
+    if not any(mount.inertia for mount in task.mounts):
+        return settled.rotor
+    with parts.part("static"):
+        over = static_equilibrium_over(rotor, task.loads, as_array(highest, float))
+        if float(over.error) > _COARSE:
+            parts.warnings.append(
+                f"the stiffness of the bearings over the speed is known to"
+                f" {100.0 * float(over.error):.2g} % between rest and"
+                f" {rpm(highest)}, in critical speeds and"
+                " Campbell diagram"
+            )
+        return over.rotor
+    return None
+
+
+def top_speed(task: RotorScene) -> float:
+    """Return the highest speed for speed-dependent bearings [rad/s].
+
+    Args:
+        task: From `read_rotor`.
+    """
+    speeds = [2.0 * abs(task.speed)]
+    if task.campbell is not None:
+        speeds.append(float(np.abs(task.campbell).max()))
+    asked = task.response
+    if asked is not None:
+        ends = asked.begin, asked.end
+        speeds += ends if asked.speed is None else [abs(asked.speed)]
+    return max(*speeds, 1.0)
+
+
+def task_warnings(task: RotorScene) -> Iterator[str]:
+    """Yield warnings about the bearings at the speeds of the scene.
+
+    Args:
+        task: From `read_rotor`.
+    """
+    top = max(map(abs, (task.speed, *_run_to(task))))
+    for mount in {mount.name: mount for mount in task.mounts}.values():
+        if mount.installed is not None:
+            for text in mount.installed.speed_warnings(top):
+                yield f"{mount.name}: {text}"
+    yield from held_fits(task)
+
+
+def held_fits(task: RotorScene) -> Iterator[str]:
+    """Yield warnings of fits whose clearance changes notably over the speeds, which
+    the solves neglect.
+
+    Args:
+        task: From `read_rotor`.
+    """
+    for mount, _ in task.seats:
+        left = {
+            speed: float(fits.facts.operating.radial_clearance)
+            for speed in (task.speed, *_ends(task))
+            if (fits := fits_at_speed(mount.fits, speed)) is not None
+        }
+        far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
+        if abs(left[far] - left[task.speed]) > _DRIFT:
+            yield (
+                f"{mount.name}: all speeds are solved with the radial clearance at"
+                f" {rpm(task.speed)}, {1e6 * left[task.speed]:.4g} µm; at"
+                f" {rpm(far)} its fits leave {1e6 * left[far]:.4g} µm"
+            )
+
+
+def _ends(task: RotorScene) -> list[float]:
+    """Return the end speeds of all analyses of a scene [rad/s]."""
+    lines = task.campbell
+    return [*(() if lines is None else map(float, lines[[0, -1]])), *_run_to(task)]
+
+
+def _run_to(task: RotorScene) -> list[float]:
+    """Return the end speeds of response and motion, besides the scene's [rad/s]."""
+    ends: list[float] = []
+    asked, motion = task.response, task.transient
+    if asked is not None:
+        ends += (asked.begin, asked.end) if asked.speed is None else (asked.speed,)
+    if motion is not None and motion.speed_to is not None:
+        ends.append(motion.speed_to)
+    return ends
+
+
+def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> None:
+    """Compute response and motion in time."""
+    found = parts.found
+    there = linear is not None or getattr(task.response, "method", "") != "linear"
+    if task.response is not None and there:
+        with parts.part("response"):
+            response = respond(task, rotor, linear, found["settled"], found["modes"])
+            if len(response.frequency):
+                found["response"] = response
+            if response.stopped is not None:
+                parts.failed("response", *response.stopped)
+    if task.transient is not None:
+        with parts.part("transient"):
+            motion = run_in_time(task, rotor, found["settled"], found["modes"])
+            if motion.reached:
+                found["transient"] = motion
+            if motion.stopped is not None:
+                parts.failed("transient", *motion.stopped)
+
+
+def _as_numpy(tree: Any) -> Any:
+    """Convert to NumPy: JAX would compile every small operation."""
+    return jax.tree.map(
+        lambda leaf: np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf, tree
+    )

@@ -1,0 +1,83 @@
+"""Preloaded supports of the rotor of a scene."""
+
+import dataclasses
+
+import numpy as np
+
+from ...numerics.types import as_array
+from ...rotor import (
+    AbstractSupport,
+    BearingSupport,
+    LinearSupport,
+    Rotor,
+    StaticEquilibrium,
+    preload_offset,
+)
+from ...rotor.nonlinear import LawSupport
+from .mounts import LAWS
+from .scene import Mount
+
+_AT_LEAST = 1e-5
+"""Least unit of length, for rotors without preload or load [m]."""
+
+
+def support_of(mount: Mount) -> AbstractSupport:
+    """Build the support of a mount, with stationary rolling elements.
+
+    Args:
+        mount: Mount of the scene.
+
+    Raises:
+        SolveError: If a bearing cannot carry its preload.
+    """
+    housing = mount.housing
+    if mount.installed is None:
+        return LinearSupport(
+            mount.station, mount.stiffness, mount.damping, housing=housing
+        )
+    element = mount.installed.at()
+    offset = as_array(mount.offset, float)
+    if mount.preload is not None:
+        offset = preload_offset(element, as_array(mount.preload, float))
+    if mount.law is not None:
+        law = LAWS[mount.law].of_bearing(element, offset)
+        return LawSupport(
+            mount.station, law, mount.damping, housing=housing, turned=mount.turned
+        )
+    return BearingSupport(
+        mount.station,
+        element,
+        as_array([0.0, 0.0, 0.0, 0.0, 0.0], float).at[2].set(offset),
+        mount.damping,
+        housing=housing,
+        turned=mount.turned,
+        inertia=mount.inertia,
+    )
+
+
+def with_passage(support: AbstractSupport) -> AbstractSupport:
+    """Return a support whose rolling elements orbit as the rotor turns.
+
+    Args:
+        support: Any support; without rolling elements it is returned unchanged.
+    """
+    if not isinstance(support, BearingSupport):
+        return support
+    return dataclasses.replace(support, passage=True)
+
+
+def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
+    """Return the unit of length: the largest displacement of preload, equilibrium [m].
+
+    Args:
+        rotor: Rotor on its nonlinear bearings.
+        settled: Its static equilibrium.
+    """
+    sizes = [_AT_LEAST, float(np.max(np.abs(settled.displacement[:, :3])))]
+    for support in rotor.supports:
+        if isinstance(support, BearingSupport):
+            sizes.append(float(np.max(np.abs(support.offset[:3]))))
+        law = getattr(support, "law", None)
+        sizes.append(float(getattr(law, "preload_displacement", 0.0)))
+        sizes.append(float(getattr(law, "preload_approach", 0.0)))
+    return max(sizes)

@@ -1,0 +1,330 @@
+"""JSON Schema of complete scenes: of a bearing, of one contact, of a rotor."""
+
+from typing import Any
+
+from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
+from ..element import RINGS
+from ..element.frame import LOADS
+from ..files.quantity import SceneError
+from ..files.schema import Keys
+from ..files.schema_text import (
+    DIALECT,
+    attribute_texts,
+    class_schema,
+    classes_schema,
+    first_line,
+    key_tables,
+    number_schema,
+    object_schema,
+    table_schema,
+)
+from ..files.table import not_among
+from ..shafts import ShaftLoad, ThermalPaths
+from .bearing.read_bearing import SetKeys
+from .bearing.read_choices import (
+    BallNumericsKeys,
+    ControlKeys,
+    LineContactKeys,
+    PointContactKeys,
+    RollerNumericsKeys,
+)
+from .bearing.read_design import (
+    BALLS,
+    PROFILES,
+    ROLLERS,
+    SPHERES,
+    WITH_LETTERS,
+    required_numbers,
+)
+from .bearing.read_fit import FitKeys, TemperatureKeys
+from .bearing.read_life import LifeKeys
+from .bearing.read_lubricant import LubricantKeys
+from .bearing.read_operating import OperatingKeys, OutputKeys, SolveKeys
+from .cases.read_cases import CasesKeys
+from .contact.read import (
+    ContactNumericsKeys,
+    ContactOperatingKeys,
+    ContactOutputKeys,
+    RacewayKeys,
+    RollerKeys,
+    SliceLawKeys,
+)
+from .noise.read import VibrationKeys
+from .noise.read_deviations import DeviationsKeys
+from .optimise.read_optimise import OptimiseKeys
+from .optimise.read_shaft_optimise import ShaftOptimiseKeys
+from .rotor.mounts import SpringKeys
+from .rotor.read import RotorKeys
+from .shaft.read import PARTS, DriveKeys, HousingKeys, SeatKeys, ShaftKeys, SystemKeys
+from .shaft.read_heat import HeatKeys
+from .skid.read_dynamics import CageKeys, DynamicsKeys
+
+
+def scene_schema() -> dict[str, Any]:
+    """Return the JSON Schema of all scenes."""
+    numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
+    defs = {
+        "bearing": _bearing(),
+        "set": _set(),
+        "contact": _merged("laws of the contacts", LineContactKeys, PointContactKeys),
+        "fit": table_schema(FitKeys),
+        "temperature": table_schema(TemperatureKeys),
+        "material": numbers,
+        "profile": {"anyOf": _profiles()},
+        "rib": class_schema(Rib),
+        "life": table_schema(LifeKeys),
+        "lubricant": table_schema(LubricantKeys),
+        "output": table_schema(OutputKeys),
+        "cases": table_schema(CasesKeys),
+    }
+    head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
+    kinds = [_bearing_scene(), _contact_scene(), _rotor_scene(), _shaft_scene()]
+    return {**head, "anyOf": kinds, "$defs": defs}
+
+
+def key_guide(name: str = "") -> str:
+    """Return the tables of scene keys, in Markdown.
+
+    Args:
+        name: Dotted name of one table, such as "operating.load", or of those that hold
+            tables of any name, such as "bearings"; empty for all.
+
+    Raises:
+        SceneError: If there is no such table.
+    """
+    schema, found, pages = scene_schema(), [], []
+    for kind in schema["anyOf"]:
+        found.append((f"Scenes of {kind['description']}", [*key_tables(kind)]))
+    parts = [t for word, one in schema["$defs"].items() for t in key_tables(one, word)]
+    found.append(("Parts of several scenes", parts))
+    for title, tables in found:
+        named = name, f"{name}.NAME"
+        chosen = [text for path, text in tables if not name or path in named]
+        pages += chosen if name else [f"## {title}\n", *chosen]
+    if not pages:
+        names = dict.fromkeys(path for _, tables in found for path, _ in tables)
+        raise SceneError(f"schema: {not_among(name, tuple(names))}")
+    return "\n".join(pages)
+
+
+def _bearing_scene() -> dict[str, Any]:
+    """Schema of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
+    tables = {
+        "bearing": _ref("bearing"),
+        "set": _ref("set"),
+        "contact": _ref("contact"),
+        "operating": _merged("load, support and speeds", OperatingKeys, ControlKeys),
+        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
+        "fit": _ref("fit"),
+        "temperature": _ref("temperature"),
+        "lubricant": _ref("lubricant"),
+        "life": _ref("life"),
+        "output": _ref("output"),
+        "cases": _ref("cases"),
+        "optimise": table_schema(OptimiseKeys),
+        "cage": table_schema(CageKeys),
+        "dynamics": table_schema(DynamicsKeys),
+        "deviations": table_schema(DeviationsKeys),
+        "vibration": table_schema(VibrationKeys),
+    }
+    return object_schema(tables, ["bearing"], "a bearing")
+
+
+def _contact_scene() -> dict[str, Any]:
+    """Schema of one roller on one raceway: `contact`."""
+    tables = {
+        "roller": table_schema(RollerKeys),
+        "raceway": table_schema(RacewayKeys),
+        "operating": table_schema(ContactOperatingKeys),
+        "numerics": table_schema(ContactNumericsKeys),
+        "contact": table_schema(SliceLawKeys),
+        "output": table_schema(ContactOutputKeys),
+    }
+    return object_schema(tables, ["roller"], "one roller on one raceway")
+
+
+def _rotor_scene() -> dict[str, Any]:
+    """Schema of a shaft on its bearings: `rotor`."""
+    within = {
+        "set": _ref("set", "as of a bearing alone"),
+        "contact": _ref("contact", "as of a bearing alone"),
+        "fit": _ref("fit", "as of a bearing alone"),
+        "temperature": _ref("temperature", "as of a bearing alone"),
+        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys),
+        **table_schema(ControlKeys)["properties"],
+    }
+    within |= {"life": _ref("life"), "lubricant": _ref("lubricant")}
+    tables = {
+        "rotor": table_schema(RotorKeys),
+        "bearings": _by_name({**_ref("bearing", _NAMED), "properties": within}),
+        **{name: _ref(name) for name in ("life", "lubricant", "output")},
+    }
+    return object_schema(tables, ["rotor"], "a shaft on its bearings")
+
+
+_NAMED = "a bearing by its name: the keys of a bearing, and beside them"
+
+
+def _by_name(schema: dict[str, Any]) -> dict[str, Any]:
+    """Schema of tables by name."""
+    return {"type": "object", "additionalProperties": schema}
+
+
+def _shaft_scene() -> dict[str, Any]:
+    """Schema of a system of shafts: `shaft`, `optimise`."""
+    place = {
+        "shaft": {"type": "string", "description": "name of its shaft"},
+        "position": {
+            **number_schema("length"),
+            "description": "place along the shaft, from its first segment",
+        },
+        "station": {
+            "type": "integer",
+            "minimum": 0,
+            "description": "in place of it: 0 is the start, k the end of segment k",
+        },
+    }
+    tables = {"shaft": _by_name(table_schema(ShaftKeys))}
+    for key, (kind, words) in PARTS.items():
+        here = dict(place) if key != "coupling" else {"shaft": place["shaft"]}
+        texts = attribute_texts(kind)
+        more: dict[str, Any] = {
+            word: {"enum": [*choices]} if choices else {"type": "string"}
+            for word, choices in words.items()
+        }
+        if key == "gear":
+            more["teeth"] = {"type": "integer", "minimum": 1}
+        more = {
+            k: {**v, "description": texts[k].split("; `")[0]} for k, v in more.items()
+        }
+        if kind is ShaftLoad:
+            units = ["force"] * 3 + ["moment"] * 3
+            loads = dict(zip(LOADS, map(number_schema, units), strict=True))
+            tables[key] = _by_name(object_schema(here | loads, [], first_line(kind)))
+            continue
+        found = class_schema(kind, **{**here, **more})
+        must = [k for k in found["required"] if k not in place]
+        must += ["teeth"] if key == "gear" else []
+        tables[key] = _by_name({**found, "required": must})
+    heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
+    own = {
+        **place,
+        "preload": {
+            **number_schema("force"),
+            "description": "axial force with which it is adjusted in the cold",
+        },
+        "axial_offset": {
+            **number_schema("length"),
+            "description": "axial displacement as adjusted; negative: play",
+        },
+        **table_schema(SeatKeys)["properties"],
+        "heat": heat,
+    }
+    within = _rotor_scene()["properties"]["bearings"]["additionalProperties"]
+    bearing = {**within, "properties": own | within["properties"]}
+    springs = {**place, "stiffness": table_schema(SpringKeys)}
+    springs["housing"] = own["housing"]
+    springs = object_schema(springs, ["stiffness"], "springs in place of a bearing")
+    del own["stiffness"]
+    tables |= {
+        "bearings": _by_name({"anyOf": [bearing, springs]}),
+        "drive": table_schema(DriveKeys),
+        "housing": table_schema(HousingKeys),
+        "system": table_schema(SystemKeys),
+        "heat": table_schema(HeatKeys),
+        "optimise": table_schema(ShaftOptimiseKeys),
+        "life": _ref("life"),
+        "lubricant": _ref("lubricant"),
+        "output": _ref("output"),
+        "cases": _ref("cases"),
+    }
+    return object_schema(tables, ["shaft", "bearings"], "a system of shafts")
+
+
+def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:
+    """Schema of a table whose keys are read by several classes."""
+    first, *more = (table_schema(kind) for kind in kinds)
+    properties = dict(first["properties"])
+    for one in more:
+        properties |= one["properties"]
+    return object_schema(properties, [], about)
+
+
+def _set() -> dict[str, Any]:
+    """Schema of a [set], whose rows may define separate bearings."""
+    found = table_schema(SetKeys)
+    row = found["properties"]["rows"]["items"]
+    row["properties"]["bearing"] = _ref("bearing", "bearing of this row alone")
+    return found
+
+
+def _bearing() -> dict[str, Any]:
+    """Schema of a [bearing]: of each type, or by designation."""
+    variants = [_of_type(word, kind) for word, kind in {**BALLS, **ROLLERS}.items()]
+    every: dict[str, Any] = {}
+    for one in variants:
+        every |= one["properties"]
+    every["type"] = {"enum": [*BALLS, *ROLLERS]}
+    name = {"type": "string", "description": "bearing of the catalogue"}
+    about = "a bearing of the catalogue, of which single keys may be given otherwise"
+    designated = object_schema({"designation": name, **every}, ["designation"], about)
+    # A table with a bearing may hold further keys (`_ref`).
+    open_ones = [
+        {key: part for key, part in one.items() if key != "additionalProperties"}
+        for one in (*variants, designated)
+    ]
+    return {"anyOf": open_ones}
+
+
+def _of_type(word: str, kind: type) -> dict[str, Any]:
+    count = "n_balls" if word in BALLS else "n_rollers"
+    more: dict[str, Any] = {
+        count: {"type": "integer", "minimum": 1, "description": "rolling elements"}
+    }
+    if word in ROLLERS:
+        raceway = _ref("profile", "profile of the raceway")
+        ribs = {name: _ref("rib") for name in RIB_NAMES}
+        more |= {
+            "roller_profile": _ref("profile", "profile of the rollers"),
+            "raceway_profile": object_schema(dict.fromkeys(RINGS, raceway), []),
+        }
+        if word != "crossed_roller":
+            more["ribs"] = object_schema(ribs, [], "ribs by name")
+        if word == "spherical_roller":
+            about = "whether rollers of one row stand between those of the other"
+            more["staggered"] = {
+                "type": "boolean",
+                "description": about,
+                "default": True,
+            }
+        if word in WITH_LETTERS:
+            letters, play = {"enum": [*ARRANGEMENTS]}, number_schema("length")
+            more |= {
+                "arrangement": {**letters, "description": "letters of the ribs"},
+                "rib": _ref("rib", "every rib of the `arrangement`"),
+                "axial_internal_clearance": {
+                    **play,
+                    "description": "axial play between the ribs",
+                },
+            }
+    more["material"] = _ref("material", "material of the rolling elements")
+    more["ring_material"] = _ref("material", "material of the rings, if another")
+    found = class_schema(kind, word, **more)
+    must = dict.fromkeys(("type", count, *required_numbers(word), *found["required"]))
+    if word in SPHERES:
+        either = ("pitch_diameter", "outer_raceway_radius")
+        found["properties"][either[0]]["x-otherwise"] = f"that of `{either[1]}`"
+        found["anyOf"] = [{"required": [one]} for one in either]
+        del must[either[0]]
+    return {**found, "required": [*must]}
+
+
+def _profiles() -> list[dict[str, Any]]:
+    return [one for one in classes_schema(PROFILES)["anyOf"] if "properties" in one]
+
+
+def _ref(name: str, about: str = "") -> dict[str, Any]:
+    found: dict[str, Any] = {"$ref": f"#/$defs/{name}"}
+    if name == "bearing":
+        found["unevaluatedProperties"] = False
+    return {**found, "description": about} if about else found

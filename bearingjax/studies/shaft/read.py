@@ -1,0 +1,549 @@
+"""Read the scene of a system of shafts: shafts, wheels, bearings, housing, drive."""
+
+import copy
+import dataclasses
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...cases.cases import check_hours
+from ...design import Material
+from ...element.frame import LOADS
+from ...files.output_files import read_matrix
+from ...files.quantity import SceneError, scene_number, to_si
+from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
+from ...files.schema import Keys, direction_json, read_keys, scene_key
+from ...files.table import Table
+from ...life.life import LifeConditions
+from ...numerics.gravity import GRAVITY
+from ...shafts import (
+    Coupling,
+    Drive,
+    Gear,
+    HeatNetwork,
+    HousingStiffness,
+    Pulley,
+    Seat,
+    ShaftLine,
+    ShaftLoad,
+    ShaftSystem,
+)
+from ...shafts.duty import alike
+from ...shafts.parts import APEXES, HANDS
+from ..bearing.life_ratings import life_conditions
+from ..bearing.placed_bearing import check_seat, placed_bearing
+from ..bearing.read_scene import Scene
+from ..cases.read_cases import CasesKeys, Varied
+from ..rotor.mounts import SpringKeys
+from ..rotor.read import MATERIAL
+from .read_heat import read_heat
+
+AXES = {
+    sign + name: tuple(factor * np.eye(3)[k])
+    for sign, factor in (("", 1.0), ("-", -1.0))
+    for k, name in enumerate("xyz")
+}
+"""Directions along the global axes, by name."""
+_MOST_CASES = 20_000
+_NAMES = {"bearing": "bearings"} | {
+    f"{name}s": name for name in ("shaft", "gear", "belt", "coupling", "load")
+}
+"""Names of tables as they may be mistaken, and the right ones."""
+
+
+def _vector(table: Table, key: str) -> tuple[float, ...]:
+    """Read a direction: a name of `AXES`, or three bare numbers."""
+    value = table.raw(key, "z")
+    if isinstance(value, str):
+        return AXES[table.choice(key, tuple(AXES), "z")]
+    numbers = isinstance(value, list) and len(value) == 3
+    if not numbers or not all(isinstance(x, int | float) for x in value):
+        problem = (
+            f"{value!r} is not a direction; one of {', '.join(AXES)}, or [x, y, z]"
+        )
+        raise table.error(key, problem)
+    if not any(value):
+        raise table.error(key, "has no direction: all three numbers are 0")
+    return tuple(map(float, value))
+
+
+def _axis(about: str) -> Any:
+    json = direction_json(AXES)
+    return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
+
+
+class SegmentKeys(Keys):
+    """[[shaft.NAME.segments]]: segments of the shaft, one after the other."""
+
+    length: float = scene_key("length", "length", above=0)
+    outer_diameter: float = scene_key("outer diameter", "length", above=0)
+    bore: float = scene_key("bore", "length", default=0.0, least=0)
+    material: Material = scene_key("material, or its numbers", **MATERIAL)
+
+    def check(self) -> None:
+        if not self.bore < self.outer_diameter:
+            bore = scene_number(self.bore, "length")
+            raise self.table.error("bore", f"{bore} is not below the outer diameter")
+
+
+class ShaftKeys(Keys):
+    """[shaft.NAME]: a shaft; positions on it count from its first segment."""
+
+    segments: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
+    axis: tuple[float, ...] = _axis("direction of the shaft in global axes")
+    position: tuple[float, ...] | None = scene_key(
+        "start of the first segment in global axes, [x, y, z]",
+        "length",
+        otherwise="not known: meshes are placed by `mesh_angle`",
+    )
+    rigid: bool = scene_key("whether the shaft does not bend", default=False)
+    speed: float | None = scene_key(
+        "speed, from local x towards local y, in place of `drive.speed`", "speed"
+    )
+
+    def check(self) -> None:
+        if self.position is not None and len(self.position) != 3:
+            problem = f"has {len(self.position)} numbers; it must have three, x, y, z"
+            raise self.table.error("position", problem)
+
+    def line(self, name: str) -> ShaftLine:
+        """Build the shaft."""
+        rows = [(s.length, s.outer_diameter, s.bore, s.material) for s in self.segments]
+        columns = zip(*rows, strict=True)
+        with self.table.building():
+            ends = dict(axis=self.axis, origin=self.position)
+            return ShaftLine(name, *columns, **ends, rigid=self.rigid)
+
+
+PARTS: dict[str, tuple[type[Any], dict[str, tuple[str, ...]]]] = {
+    "gear": (Gear, {"hand": tuple(HANDS), "apex": tuple(APEXES), "mates_with": ()}),
+    "belt": (Pulley, {"mates_with": ()}),
+    "coupling": (Coupling, {}),
+    "load": (ShaftLoad, {}),
+}
+"""Tables [KIND.NAME] of parts: their class, and its words with the choices."""
+
+
+def _part(
+    table: Table,
+    kind: type[Any],
+    name: str,
+    shafts: Mapping[str, ShaftKeys],
+    words: Mapping[str, tuple[str, ...]],
+) -> Any:
+    """Build a part from the numbers and words of its class."""
+    known = {field.name for field in dataclasses.fields(kind)}
+    values: dict[str, Any] = {"name": name, "shaft": _shaft_of(table, shafts)}
+    if "position" in known:
+        values["position"] = _position(table, values["shaft"], shafts)
+    if kind is ShaftLoad:
+        kinds = ["force"] * 3 + ["moment"] * 3
+        six = [table.quantity(n, k, 0.0) for n, k in zip(LOADS, kinds, strict=True)]
+        values |= {"force": six[:3], "moment": six[3:]}
+    else:
+        values |= table.fields(kind, left_out=("position", *words))
+    if "teeth" in known:
+        values["teeth"] = table.integer("teeth")
+    for key, choices in words.items():
+        word = table.text(key)
+        if word is None and key in table:
+            raise table.error(key, f"{table.raw(key)!r} is not a text")
+        if word is not None:
+            values[key] = table.choice(key, choices or (word,))
+    with table.building():
+        return kind(**values)
+
+
+def _shaft_of(table: Table, shafts: Mapping[str, ShaftKeys]) -> str:
+    """Return the name of the shaft of a part, by default of the only one."""
+    if "shaft" not in table and len(shafts) == 1:
+        table.fill("shaft", next(iter(shafts)))
+        return next(iter(shafts))
+    return table.choice("shaft", tuple(shafts))
+
+
+def _position(table: Table, shaft: str, shafts: Mapping[str, ShaftKeys]) -> float:
+    """Return the position of a part on its shaft, given or that of a station [m]."""
+    lengths = [segment.length for segment in shafts[shaft].segments]
+    if "station" in table:
+        if "position" in table:
+            raise table.error("station", "give either `position` or this, not both")
+        station = table.integer("station", least=0)
+        if station > len(lengths):
+            problem = f"{station} is not a station; from 0 to {len(lengths)}"
+            raise table.error("station", problem)
+        return sum(lengths[:station])
+    position = table.quantity("position", "length")
+    if not -1e-12 <= position <= sum(lengths) * (1 + 1e-9):
+        ends = f"from 0 to {1e3 * sum(lengths):.6g} mm"
+        problem = f"{1e3 * position:.6g} mm is beyond the ends of {shaft}, {ends}"
+        raise table.error("position", problem)
+    return position
+
+
+def _source(about: str, kind: str, other: str) -> Any:
+    return scene_key(about, kind, without={other: ""})
+
+
+class DriveKeys(Keys):
+    """[drive]: where power enters the system, and how fast it turns."""
+
+    into: str | None = scene_key(
+        "shaft, driven through a coupling, or wheel without a mate",
+        otherwise="the first shaft",
+    )
+    speed: float | None = scene_key("speed of that shaft", "speed")
+    torque: float | None = _source("on that shaft, about its z", "moment", "power")
+    power: float | None = _source("into that shaft", "power", "torque")
+
+
+class SeatKeys(Keys):
+    """[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing."""
+
+    turned: bool = scene_key(
+        "whether it is mounted the other way round, its +z along the shaft's -z",
+        default=False,
+    )
+    floating: bool = scene_key(
+        "whether its outer ring slides in the housing, without axial force",
+        default=False,
+    )
+    housing: tuple[float, ...] | None = scene_key(
+        "stiffness of the housing at this seat along global x, y and z",
+        "stiffness",
+        otherwise="rigid",
+    )
+    stiffness: SpringKeys | None = scene_key("springs in place of the bearing")
+
+    def check(self) -> None:
+        if self.housing is not None and len(self.housing) != 3:
+            problem = f"has {len(self.housing)} numbers; it must have three, x, y, z"
+            raise self.table.error("housing", problem)
+        if self.housing is not None and min(self.housing) < 0:
+            problem = f"{min(self.housing):g} N/m is negative; a housing resists"
+            raise self.table.error("housing", problem)
+
+    def seat(
+        self, name: str, shafts: Mapping[str, ShaftKeys], scene: Scene | None
+    ) -> Seat:
+        """Build the bearing in its place.
+
+        Args:
+            name: Name of the bearing.
+            shafts: All shafts by their names.
+            scene: The bearing alone; `None` of springs.
+        """
+        table, springs = self.table, self.stiffness
+        shaft = _shaft_of(table, shafts)
+        position = _position(table, shaft, shafts)
+        preload = table.quantity("preload", "force", None)
+        offset = table.quantity("axial_offset", "length", 0.0)
+        with table.building():
+            return Seat(
+                name,
+                shaft,
+                position,
+                None if scene is None else scene.installed,
+                preload,
+                offset,
+                self.turned,
+                self.floating,
+                None if springs is None else springs.diagonal,
+            )
+
+
+class HousingKeys(Keys):
+    """[housing]: one stiffness matrix over several seats."""
+
+    file: str = scene_key(
+        "matrix in SI, in global axes, seat by seat (ux uy uz), or with (gx gy gz):"
+        " .csv, .npy, or MatrixMarket .mtx"
+    )
+    seats: tuple[str, ...] = scene_key("bearings, in the order of the matrix")
+
+
+class SystemKeys(Keys):
+    """[system]: numbers and settings common to all shafts."""
+
+    gravity: str = scene_key(
+        "direction of the weight of the shafts in global axes",
+        choices=("none", *AXES),
+        default="none",
+    )
+
+
+@dataclasses.dataclass(frozen=True)
+class ShaftScene:
+    """Scene of a system of shafts, in SI.
+
+    Attributes:
+        name: Name of the file without its ending.
+        system: The system.
+        bearings: Scene of each bearing alone, turning as in the system; `None` of
+            springs.
+        lives: Conditions of the life of each bearing; `None` of springs.
+        heat: Paths of the friction heat, or `None`: temperatures are as given.
+        times: Times at which the warming up is reported (time,) [s], or `None`.
+        pauses: Temperatures of cases at rest, "ambient" or "mean".
+        hours: Time in this case [h]; `None` without cases.
+        cases: Each load case as a scene of its own; empty without [cases].
+        varied: Keys that vary from case to case.
+        settings: Their values as written, of each case.
+        warnings: Warnings of suspicious but possible values.
+        inputs: The scene as it was read, in SI (`Scene.inputs`).
+    """
+
+    name: str
+    system: ShaftSystem
+    bearings: tuple[Scene | None, ...]
+    heat: HeatNetwork | None
+    times: np.ndarray | None
+    pauses: str
+    warnings: tuple[str, ...]
+    lives: tuple[LifeConditions | None, ...] = ()
+    hours: float | None = None
+    cases: tuple["ShaftScene", ...] = ()
+    varied: tuple[str, ...] = ()
+    settings: tuple[dict[str, Any], ...] = ()
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+
+def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
+    """Read the scene of a system of shafts.
+
+    Args:
+        source, settings: As in `read_scene`.
+
+    Raises:
+        SceneError: One line with file, key, fault and the allowed values.
+    """
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    for key in data:
+        name = _NAMES.get(key)
+        if name is not None and ("shaft" in data or name == "shaft"):
+            problem = f"in a system of shafts write [{name}.NAME] for [{key}.NAME]"
+            raise SceneError(f"{path.name}: `{key}`: {problem}")
+    if not is_shafts(data):
+        problem = "the scene of a system of shafts has [shaft.NAME] and [bearings.NAME]"
+        raise SceneError(f"{path.name}: `shaft`: {problem}")
+    known: dict[str, Any] = {}
+    columns: list[Varied] = []
+    if "cases" in data:
+        columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
+            path
+        )
+    elsewhere = ("cases", "optimise")
+    alone = {key: value for key, value in data.items() if key not in elsewhere}
+    if not columns:
+        return _with_lives(_read(alone, path, known), path)
+    count = columns[0].index.size
+    if count > _MOST_CASES:
+        problem = f"{count} cases are too many; at most {_MOST_CASES}"
+        raise SceneError(f"{path.name}: `cases`: {problem}")
+    cases, every = [], []
+    for case in range(count):
+        changed = copy.deepcopy(alone)
+        values = {c.key: c.values[c.index[case]] for c in columns}
+        hours = values.pop("hours", None)
+        for key, value in values.items():
+            if key.partition(".")[0] not in _VARYING:
+                problem = "cannot vary; what can: `hours`, and whole keys such as"
+                problem = f'{problem} "drive.power", in quotes, of {_ALLOWED}'
+                raise SceneError(f"{path.name}: `cases.{key}`: {problem}")
+            assign(changed, key, value, path.name)
+        try:
+            one = _read(changed, path, known)
+        except SceneError as error:
+            raise SceneError(f"{error} (case {case})") from error
+        cases.append(dataclasses.replace(one, hours=_hours(hours)))
+        every.append(values)
+    try:
+        given = [one.hours for one in cases]
+        check_hours(None if None in given else given)
+        systems = alike([one.system for one in cases])
+    except ValueError as error:
+        where = "" if "Cases" not in str(error) else "`cases.hours`: "
+        raise SceneError(f"{path.name}: {where}{error}") from error
+    cases = [
+        _with_lives(dataclasses.replace(one, system=system), path)
+        for one, system in zip(cases, systems, strict=True)
+    ]
+    first = cases[0]
+    warned = dict.fromkeys(text for one in cases for text in one.warnings)
+    return dataclasses.replace(
+        first,
+        hours=None,
+        cases=tuple(cases),
+        varied=tuple(c.key for c in columns if c.key != "hours"),
+        settings=tuple(every),
+        warnings=tuple(warned),
+        inputs={**first.inputs, "cases": data["cases"]},
+    )
+
+
+_VARYING = (
+    "drive load bearings gear belt coupling shaft life lubricant system heat".split()
+)
+_ALLOWED = ", ".join(_VARYING)
+
+
+def _with_lives(scene: ShaftScene, path: Path) -> ShaftScene:
+    """Return a scene with the conditions of the lives of its bearings."""
+    turning = scene.system.inertia is not None
+    if scene.heat is not None and not turning:
+        problem = "needs a `speed` of the drive; at rest nothing warms"
+        raise SceneError(f"{path.name}: `heat`: {problem}")
+    lives = (
+        None if one is None else life_conditions(one, turning) for one in scene.bearings
+    )
+    return dataclasses.replace(scene, lives=tuple(lives))
+
+
+def _hours(value: Any) -> float | None:
+    """Return the hours of a case, of which a CSV has numbers already [h]."""
+    if value is None or not isinstance(value, str):
+        return value if value is None else float(value)
+    return to_si(value, "duration")
+
+
+def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene:
+    top = Table(data, path.name)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = _scene(top, path, known)
+    top.finish()
+    warned = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
+    return dataclasses.replace(scene, warnings=tuple(warned), inputs=top.echo())
+
+
+def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
+    tables = top.table("shaft")
+    shafts = {name: read_keys(ShaftKeys, tables.table(name)) for name in tables.keys()}
+    parts: dict[str, list[Any]] = {}
+    for key, (kind, words) in PARTS.items():
+        tables = top.table(key)
+        parts[key] = [
+            _part(tables.table(name), kind, name, shafts, words)
+            for name in tables.keys()
+        ]
+    if "bearings" not in top:
+        raise top.error("bearings", "is missing; [bearings.NAME] hold the shafts")
+    wheels = *parts["gear"], *parts["belt"]
+    drive = _drive(top, shafts, tuple(wheel.name for wheel in wheels))
+    tables = top.table("bearings")
+    own = {name: tables.table(name) for name in tables.keys()}
+    seats = {name: read_keys(SeatKeys, table) for name, table in own.items()}
+    alone = {
+        name: _bearing(top, own[name], keys, name, path, known)
+        for name, keys in seats.items()
+    }
+    system = read_keys(SystemKeys, top.table("system"))
+    pull = (0.0, 0.0, 0.0)
+    if system.gravity != "none":
+        pull = tuple(GRAVITY * x for x in AXES[system.gravity])
+    housing = _housing(top, seats, path)
+    made = [keys.seat(name, shafts, alone[name]) for name, keys in seats.items()]
+    with top.building():
+        whole = ShaftSystem(
+            [keys.line(name) for name, keys in shafts.items()],
+            made,
+            drive,
+            wheels,
+            parts["coupling"],
+            parts["load"],
+            housing,
+            pull,
+        )
+    for seat, scene in zip(made, alone.values(), strict=True):
+        if scene is not None:
+            index, station = whole.station(seat)
+            given = scene.fits, scene.catalogue, whole.beam(index), station
+            check_seat(seat.name, *given)
+    heat, keys = read_heat(top, own, alone)
+    return ShaftScene(
+        name=path.stem,
+        system=whole,
+        bearings=tuple(alone.values()),
+        heat=heat,
+        times=None if keys is None else keys.instants,
+        pauses="ambient" if keys is None else keys.pauses,
+        warnings=tuple(
+            f"{name}: {text}"
+            for name, scene in alone.items()
+            if scene is not None
+            for text in scene.warnings
+        ),
+    )
+
+
+def _drive(top: Table, shafts: Mapping[str, ShaftKeys], wheels: Any) -> Drive | None:
+    """Read the drive; the speed of any shaft may stand in place of its own."""
+    given = {
+        name: keys.speed for name, keys in shafts.items() if keys.speed is not None
+    }
+    if "drive" not in top and not given:
+        return None
+    keys = read_keys(DriveKeys, top.table("drive"))
+    into = keys.into
+    if into is None:
+        into = next(iter(given), next(iter(shafts)))
+        keys.fill(into=into)
+    if into not in (*shafts, *wheels):
+        problem = f"{into!r} is neither a shaft nor a wheel; one of"
+        raise keys.table.error("into", f"{problem} {', '.join((*shafts, *wheels))}")
+    speed = keys.speed
+    for name, value in given.items():
+        if speed is not None or name != into or len(given) > 1:
+            problem = "is given beside `drive.speed` or of a shaft that is not driven;"
+            cure = "give one speed, that of the driven shaft; the teeth give the others"
+            raise shafts[name].table.error("speed", f"{problem} {cure}")
+        speed = value
+    with keys.table.building():
+        return Drive(into, 0.0 if speed is None else speed, keys.torque, keys.power)
+
+
+def _housing(
+    top: Table, seats: Mapping[str, SeatKeys], path: Path
+) -> HousingStiffness | None:
+    springs = {
+        name: keys.housing for name, keys in seats.items() if keys.housing is not None
+    }
+    if "housing" not in top:
+        return HousingStiffness.of_seats(springs) if springs else None
+    keys = read_keys(HousingKeys, top.table("housing"))
+    if springs:
+        problem = f"stands beside `housing` of bearing {next(iter(springs))}; give one"
+        raise keys.table.error("file", problem)
+    try:
+        matrix = read_matrix(path.parent / keys.file)
+    except ValueError as error:
+        raise keys.table.error("file", error) from error
+    with keys.table.building():
+        return HousingStiffness(keys.seats, matrix)
+
+
+_OF_SEAT = ("shaft", "position", "station", "preload", "axial_offset", "heat") + tuple(
+    field.name for field in dataclasses.fields(SeatKeys) if field.name != "table"
+)
+
+
+def _bearing(
+    top: Table,
+    table: Table,
+    keys: SeatKeys,
+    name: str,
+    path: Path,
+    known: dict[str, Any],
+) -> Scene | None:
+    """Read a bearing as a scene of its own; `None` of springs."""
+    if keys.stiffness is None:
+        return placed_bearing(top, table, name, path, _OF_SEAT, known=known)
+    own = [key for key in table.keys_given() if key not in _OF_SEAT]
+    if own:
+        problem = "goes with a bearing, not with springs (`stiffness`)"
+        raise table.error(own[0], problem)
+    return None

@@ -1,0 +1,411 @@
+"""Run the scene of a system of shafts."""
+
+import dataclasses
+import functools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ...design import rows_of
+from ...files.quantity import SceneError
+from ...fits import radial_clearance
+from ...life.life import Life, life_of
+from ...life.life_warning import ALL
+from ...numerics.compiled.programs import called
+from ...numerics.result import Result
+from ...shafts import (
+    DutyResult,
+    SystemSolution,
+    ThermalState,
+    bearing_hours,
+    bearing_solutions,
+    solve_duty,
+    solve_heat,
+    system_life,
+    warm_up,
+)
+from ...shafts.doubts import load_doubts
+from ...shafts.duty import case_damage
+from ...shafts.equilibrium import searched_system, system_state, unsolved
+from ...shafts.heat import overheated, with_temperatures
+from ...shafts.seats import adjusted, speed_of
+from ...shafts.state import moving
+from ...statics.solution import Solution
+from ...statics.warning import counted
+from ..bearing.fits import fits_at_speed
+from ..bearing.oil import OilFacts, oil_facts
+from ..bearing.read_scene import Scene, with_speed_warnings
+from ..bearing.solved import solved_warnings
+from ..solve.run import with_set_preload
+from .read import ShaftScene
+
+
+@dataclasses.dataclass(frozen=True)
+class InPlace:
+    """A bearing in the solved system.
+
+    Attributes:
+        name: Its name.
+        scene: Scene of it alone, at its speed; `None` of springs.
+        solution: Its solution, in NumPy; `None` of springs.
+        life: Its life, likewise.
+        oil: Friction and films; `None` without lubricant, or at rest.
+    """
+
+    name: str
+    scene: Scene | None
+    solution: Solution | None
+    life: Life | None
+    oil: OilFacts | None
+
+    @property
+    def friction_torque(self) -> float | None:
+        """Friction torque by the model of SKF, else of Palmgren [N m], or `None`."""
+        found = None if self.oil is None else self.oil.skf or self.oil.friction
+        return None if found is None else float(found.torque)
+
+    @property
+    def clearance(self) -> float | None:
+        """Radial clearance in operation [m], of the drawing without fits; `None` of
+        springs and thrust bearings."""
+        if self.scene is None:
+            return None
+        bearing = self.scene.element.bearing
+        if self.scene.fits is None:
+            row = rows_of(bearing)[0].bearing
+            return None if row.is_thrust else float(radial_clearance(row))
+        return float(self.scene.fits.facts.operating.radial_clearance)
+
+
+@dataclasses.dataclass(frozen=True)
+class ShaftRun:
+    """Result of the scene of a system of shafts.
+
+    Attributes:
+        task: The scene.
+        solution: Equilibrium, in NumPy; of several cases that of the first.
+        bearings: Each bearing in it; empty if it was not solved.
+        thermal: Temperatures, in NumPy, of several cases those of the first; `None`
+            without [heat].
+        warming: Temperatures over `task.times`, as of `warm_up` (time, node) [K], of
+            several cases in the first.
+        duty: All cases, in NumPy; `None` without [cases].
+        rings: Temperatures of inner and outer rings in all cases (case, bearing, 2)
+            [K]; `None` without [heat] or [cases].
+        problem: Why it was not solved, in words; empty if it was.
+        warnings: Warnings of doubtful results.
+    """
+
+    task: ShaftScene
+    solution: SystemSolution
+    bearings: tuple[InPlace, ...]
+    thermal: ThermalState | None
+    warming: np.ndarray | None
+    duty: DutyResult | None
+    rings: np.ndarray | None
+    problem: str
+    warnings: tuple[str, ...]
+
+    @property
+    def converged(self) -> bool:
+        """Whether all cases were solved."""
+        return not self.problem
+
+    @functools.cached_property
+    def hours(self) -> np.ndarray:
+        """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
+        if self.duty is not None:
+            return np.asarray(bearing_hours(*self._spectrum(self.duty)))
+        found = []
+        for bearing in self.bearings:
+            life = None if bearing.life is None else bearing.life.life_hours
+            found.append(np.nan if life is None else float(life))
+        return np.array(found)
+
+    @functools.cached_property
+    def worst_cases(self) -> list[int | None]:
+        """Case with the most damage to each bearing over its hours; `None` of springs,
+        of bearings without damage, and without cases."""
+        if self.duty is None:
+            return [None] * len(self.task.system.seats)
+        damage = np.nan_to_num(case_damage(*self._spectrum(self.duty)))
+        return [int(np.argmax(of)) if of.any() else None for of in damage.T]
+
+    def _spectrum(self, duty: DutyResult) -> tuple[Any, Any, Any]:
+        """Return damage, speeds of the bearings and hours of the cases."""
+        of = [self.task.system.station(seat)[0] for seat in self.task.system.seats]
+        given = [case.hours for case in self.task.cases]
+        hours = None if None in given else np.array(given, float)
+        return duty.lives["damage"], duty.speed[:, of], hours
+
+    @property
+    def warm_nodes(self) -> dict[str, np.ndarray]:
+        """Temperatures over `task.times` by the name of ring or housing (time,) [K]."""
+        if self.warming is None:
+            return {}
+        found, seats = {}, self.task.system.seats
+        for k, seat in enumerate(seats):
+            if seat.installed is not None:
+                found[f"{seat.name} inner"] = self.warming[:, 2 * k]
+                found[f"{seat.name} outer"] = self.warming[:, 2 * k + 1]
+        if self.warming.shape[1] > 2 * len(seats):
+            found["housing"] = self.warming[:, -1]
+        return found
+
+    @property
+    def shown_case(self) -> str:
+        """Case of which a picture or a table is, in words; empty without cases."""
+        count = len(self.task.cases)
+        return f"case 0 of {count}" if self.duty is not None else ""
+
+    @property
+    def result(self) -> Result:
+        """Most severe result of all cases, or of the one."""
+        codes = [int(self.solution.result)]
+        codes += [] if self.thermal is None else [int(self.thermal.result)]
+        codes += [] if self.duty is None else [int(np.max(self.duty.result))]
+        return Result(max(codes))
+
+    @functools.cached_property
+    def system_hours(self) -> float | None:
+        """Life that all bearings reach together [h]; `None` at rest or unsolved."""
+        hours = self.hours
+        sprung = np.array([seat.installed is None for seat in self.task.system.seats])
+        if self.problem or np.isnan(hours[~sprung]).any() or sprung.all():
+            return None
+        known = np.where(sprung, np.inf, hours)
+        return float(called(system_life, self.task.system, known))
+
+
+def run_shafts(
+    task: ShaftScene, on_stage: Callable[[str], None] | None = None
+) -> ShaftRun:
+    """Run the scene of a system of shafts.
+
+    Args:
+        task: From `read_shafts`.
+        on_stage: Called with the name of each stage as it begins.
+
+    Returns:
+        The run; a system without equilibrium does not raise.
+
+    Raises:
+        SceneError: For torques that do not balance.
+    """
+    say = on_stage or (lambda name: None)
+    system, cases = task.system, task.cases
+    states, problem = [], ""
+    try:
+        if task.heat is None:
+            say("static equilibrium")
+            found, place = searched_system(system)
+            if not found.converged:
+                problem = unsolved(system, jax.device_get(found), np.asarray(place))
+        else:
+            say("thermal equilibrium")
+            states = _thermal(task)
+            found = states[0].solution
+            if int(states[0].result) != Result.CONVERGED:
+                problem = overheated(states[0])
+            else:
+                task = _warm(task, states[0])
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+    found, bearings = jax.device_get(found), ()
+    duty, rings, warming, solved = None, None, None, not problem
+    if cases and solved:
+        say("load cases")
+        duty, rings, problem = _duty(task, states)
+    if solved:
+        say("bearings")
+        speeds = found.power.speed[None] if duty is None else duty.speed
+        bearings = tuple(_in_place(task, found, np.asarray(speeds)))
+    if solved and task.heat is not None and task.times is not None:
+        say("warming up")
+        warming = np.asarray(warm_up(system, task.heat, task.times))
+    state = jax.device_get(states[0]) if states else None
+    run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
+    warned = dict.fromkeys((*task.warnings, *_warnings(run)))
+    return dataclasses.replace(run, warnings=tuple(warned))
+
+
+def _thermal(task: ShaftScene) -> list[ThermalState]:
+    """Find the temperatures of all cases, of those at rest as `pauses` has them."""
+    cases, states = task.cases or (task,), []
+    offsets: dict[Any, Any] = {}
+    for case in cases:
+        assert case.heat is not None
+        # The first keeps its preload, for the warnings.
+        system = adjusted(case.system, offsets) if states else case.system
+        states.append(solve_heat(system, case.heat, throw=False))
+    hot = any(int(state.result) != Result.CONVERGED for state in states)
+    if task.pauses == "ambient" or hot:
+        return states
+    # Rises are as linear in the heat as the network: their mean is of its mean.
+    hours = [case.hours for case in cases]
+    weights = None if None in hours else np.array(hours, float)
+    warm = {
+        name: jnp.asarray(
+            np.average([getattr(s, name) for s in states], axis=0, weights=weights)
+        )
+        for name in ("inner_ring", "outer_ring", "housing")
+    }
+    rings = jnp.stack([warm["inner_ring"], warm["outer_ring"]], axis=1).ravel()
+    for k, case in enumerate(cases):
+        if not case.system.turns and case.heat is not None:
+            rises = rings - case.heat.ambient
+            system = with_temperatures(states[k].system, case.heat, rises)
+            found, _ = system_state(adjusted(system))
+            more = {"system": system, "solution": found, "result": found.result}
+            states[k] = dataclasses.replace(states[k], **warm, **more)
+    return states
+
+
+def _duty(
+    task: ShaftScene, states: list[ThermalState]
+) -> tuple[DutyResult, np.ndarray | None, str]:
+    """Solve the load cases, each warm if there is heat.
+
+    Args:
+        task: The scene.
+        states: Temperatures in each case; empty without heat.
+
+    Returns:
+        The cases, temperatures of the rings, and what was not solved, in words.
+    """
+    cases = task.cases
+    try:
+        if states:
+            cases = [
+                _warm(case, state) if state.result == Result.CONVERGED else case
+                for case, state in zip(cases, states, strict=True)
+            ]
+        systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
+        duty = solve_duty(systems, lives)
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+    rings = None
+    if states:
+        rings = np.array([[s.inner_ring, s.outer_ring] for s in states])
+        rings = rings.transpose(0, 2, 1)
+        hot = np.array([int(s.result) for s in states])
+        lost = hot != Result.CONVERGED
+        duty = jax.tree.map(
+            lambda x: (
+                np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
+                if x.dtype.kind == "f"
+                else x
+            ),
+            duty,
+        )
+        duty = dataclasses.replace(duty, result=np.where(lost, hot, duty.result))
+    failed = np.flatnonzero(duty.result != Result.CONVERGED)
+    if not failed.size:
+        return duty, rings, ""
+    label = Result(int(duty.result[failed[0]])).label
+    if states and lost[failed[0]]:
+        label = overheated(states[failed[0]])
+    many = f"{failed.size} of {len(cases)} cases not solved"
+    return duty, rings, f"{many} (case {failed[0]}: {label})"
+
+
+def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
+    """Return a scene whose bearings and oil have the temperatures that were found."""
+    scenes, lives = [], []
+    rings = np.asarray([state.inner_ring, state.outer_ring]).mean(axis=0)
+    for k, (seat, scene) in enumerate(
+        zip(state.system.seats, task.bearings, strict=True)
+    ):
+        life, oil = task.lives[k], None if scene is None else scene.oil
+        if scene is None or seat.installed is None or life is None or oil is None:
+            scenes.append(scene)
+            lives.append(life)
+            continue
+        own = life.viscosity is not None and oil is not None
+        if own and "viscosity" not in scene.inputs.get("life", {}):
+            viscosity = oil.lubricant.kinematic_viscosity(rings[k])
+            life = dataclasses.replace(life, viscosity=viscosity)
+        fits, warm = scene.fits, jax.device_get(seat.installed.conditions)
+        if fits is not None and warm is not None:
+            fits = dataclasses.replace(fits, conditions=warm)
+        oil = dataclasses.replace(oil, temperature=float(rings[k]))
+        scenes.append(dataclasses.replace(scene, oil=oil, fits=fits))
+        lives.append(life)
+    return dataclasses.replace(
+        task, system=state.system, bearings=tuple(scenes), lives=tuple(lives)
+    )
+
+
+def _in_place(
+    task: ShaftScene, found: SystemSolution, speeds: np.ndarray
+) -> Iterator[InPlace]:
+    """Yield each bearing in the equilibrium, with life, friction and films.
+
+    Args:
+        task: The scene, warm.
+        found: Its equilibrium.
+        speeds: Of the shafts in all cases (case, shaft) [rad/s].
+    """
+    system = task.system
+    solutions = bearing_solutions(system, found)
+    for k, (seat, scene) in enumerate(zip(system.seats, task.bearings, strict=True)):
+        solution, conditions = jax.device_get(solutions[k]), task.lives[k]
+        if scene is None or solution is None or conditions is None:
+            yield InPlace(seat.name, None, None, None, None)
+            continue
+        speed = jax.device_get(speed_of(system, k, found.power.speed)[0])
+        scene = dataclasses.replace(
+            scene,
+            speed=None if system.inertia is None else speed,
+            fits=fits_at_speed(scene.fits, float(speed.inner)),
+        )
+        try:
+            life = jax.device_get(life_of(solution.element, solution, conditions))
+        except ValueError as error:
+            raise SceneError(f"{task.name}: {seat.name}: {error}") from error
+        oil = None
+        if scene.oil is not None:
+            oil = oil_facts(scene.oil, solution, scene.catalogue)
+        scene = with_speed_warnings(scene, speeds[:, system.station(seat)[0]])
+        yield InPlace(seat.name, with_set_preload(scene), solution, life, oil)
+
+
+def _warnings(run: ShaftRun) -> Iterator[str]:
+    """Yield warnings about the equilibrium and each bearing."""
+    system, found = run.task.system, run.solution
+    if run.problem and run.duty is None:
+        return
+    if np.any(found.free):
+        yield (
+            f"nothing holds {moving(system, found.free)}: it stays where it is; locate"
+            " the shaft by a bearing"
+        )
+    loads = found.load[None] if run.duty is None else run.duty.load
+    for k, bearing in enumerate(run.bearings):
+        if bearing.scene is None or bearing.solution is None:
+            continue
+        # With cases each kind once, with the worst case.
+        texts = (
+            solved_warnings(bearing.scene, bearing.solution, bearing.life)
+            if run.duty is None
+            else [*bearing.scene.warnings, *counted(run.duty.warned[k], ALL)]
+        )
+        for text in texts:
+            yield f"{bearing.name}: {text}"
+    yield from load_doubts(system, loads)
+
+
+def bearing_loss(run: ShaftRun) -> float | None:
+    """Return the power lost in all bearings [W]; `None` where a model is missing."""
+    total = 0.0
+    for bearing in run.bearings:
+        if bearing.scene is None:
+            continue
+        torque = bearing.friction_torque
+        if torque is None or bearing.scene.speed is None:
+            return None
+        total += torque * abs(float(bearing.scene.speed.inner))
+    return total

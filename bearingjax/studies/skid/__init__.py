@@ -1,0 +1,1 @@
+"""Balls and rollers that skid."""

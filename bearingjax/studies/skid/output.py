@@ -1,0 +1,245 @@
+"""Output of skidding balls or rollers: JSON and tables, in SI."""
+
+import itertools
+from typing import Any
+
+import numpy as np
+
+from ...cases.sweep_table import column_header
+from ...element import RINGS
+from ...numerics.result import Result
+from ...report.json_output import run_json
+from ...skid import by_raceway
+from ...skid.transients.transient import CAUSES
+from ...statics.solution import message
+from .run import SkidRun
+
+UNITS = {
+    "azimuth": "rad",
+    "orbit_speed": "rad/s",
+    "rolling_orbit_speed": "rad/s",
+    "slip": "",
+    "spin": "rad/s",
+    "contact_angle": "rad",
+    "contact_load": "N",
+    "film": "m",
+    "least_film": "m",
+    "sliding_speed": "m/s",
+    "contact_spin": "rad/s",
+    "heat": "W",
+    "rolling_spin": "rad/s",
+    "cage_force": "N",
+}
+"""Quantities of each ball or roller, with their units; the cage force is for rollers
+and for balls in time, the rolling spin for rollers."""
+
+OF_ONE = (
+    "azimuth",
+    "orbit_speed",
+    "rolling_orbit_speed",
+    "slip",
+    "spin",
+    "rolling_spin",
+    "cage_force",
+)
+"""Quantities with one value per ball or roller; the others have one per raceway."""
+
+OF_TIME = {
+    "time": "s",
+    "cage_speed": "rad/s",
+    "rolling_cage_speed": "rad/s",
+    "friction_torque": "N m",
+    "ring_torque": "N m",
+    "kinetic_energy": "J",
+    "potential_energy": "J",
+    "imbalance": "J",
+}
+"""Quantities at each time, with their units."""
+
+
+def skid_as_dict(run: SkidRun) -> dict[str, Any]:
+    """Return a run as plain numbers and lists, in SI.
+
+    Args:
+        run: From `run_skid`.
+
+    Returns:
+        cage_speed, rolling_cage_speed, friction_torque (on the faster ring),
+        ring_torque (outer, inner), power, and the quantities of `UNITS` for each ball
+        or roller, those of contacts per raceway (outer, inner), of two arcs for the
+        more loaded one. For a steady state they are at the positions in the solved
+        bearing, `orbit` has them at all positions, and balls have `wander`. For a
+        motion in time all have a leading axis `time`, with in addition the quantities
+        of `OF_TIME`, `work`, and `mean_friction_torque` over the last complete cage
+        revolutions, null without any; null at times that were not reached. Also
+        result, message, residual, iterations, warnings, inputs (the file can be read
+        as a scene) and version. Without a solution numbers are left out.
+    """
+    of_run = _end if run.task.steady else _motion
+    status = {
+        "result": run.result.label,
+        "message": skid_message(run),
+        "residual": _residual(run),
+        "iterations": run.found.steps,
+    }
+    numbers = of_run(run) if run.has_numbers else {}
+    return run_json({**numbers, **status}, run.warnings, run.task.inputs)
+
+
+def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
+    """Return a run as columns by header, "name [unit]": a row per orbit position.
+
+    For a motion in time a row per time reached, with columns for each ball, such as
+    "slip_3".
+
+    Args:
+        run: From `run_skid`, with numbers.
+    """
+    balls = each_ball(run)
+    columns = {}
+    if not run.task.steady:
+        reached = np.isfinite(run.found.cage_speed)
+        powers = {f"power_{n}": np.asarray(v) for n, v in _powers(run).items()}
+        whole, units = _of_time(run) | powers, OF_TIME | dict.fromkeys(powers, "W")
+        both = whole.pop("ring_torque").T
+        whole |= {f"ring_torque_{ring}": v for ring, v in zip(RINGS, both, strict=True)}
+        units |= {f"ring_torque_{ring}": units["ring_torque"] for ring in RINGS}
+        columns = {column_header(name, units[name]): v for name, v in whole.items()}
+        columns = {header: v[reached] for header, v in columns.items()}
+        balls = {name: values[reached] for name, values in balls.items()}
+    for name, values in balls.items():
+        columns |= _spread(name, values, run.task.steady)
+    return columns
+
+
+def _spread(name, values, steady):
+    """Return the columns of values (row, …) with their headers."""
+    axes: list[Any] = [] if steady else [range(values.shape[1])]
+    if name == "spin":
+        axes.append("xyz")
+    elif name not in OF_ONE:
+        axes.append(RINGS)
+    parts = values.reshape(len(values), -1).T
+    ends = itertools.product(*axes)
+    return {
+        column_header("_".join([name, *map(str, end)]), UNITS[name]): part
+        for end, part in zip(ends, parts, strict=True)
+    }
+
+
+def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
+    """Return the quantities of `UNITS` at all positions or times, contacts by raceway.
+
+    Args:
+        run: From `run_skid`.
+    """
+    found, results = run.found, {}
+    for name in UNITS:
+        values = getattr(found, name, None)
+        if name == "least_film" and run.state is not None:
+            values = run.state.least_film
+        if values is None:
+            continue
+        values = np.asarray(values)
+        if name == "spin" and run.state is None:  # of rollers, about their axes
+            values = values[..., None] * np.array([0.0, 0.0, 1.0])
+        one = name in OF_ONE
+        results[name] = values if one else by_raceway(values, found.contact_load)
+    return results
+
+
+def at_balls(run: SkidRun) -> np.ndarray:
+    """Return the orbit positions of the elements in the solved bearing (ball,)."""
+    places, balls = len(run.found.azimuth), len(run.found.solution.azimuth)
+    return np.arange(balls) * places // balls
+
+
+def rolling_cage_speed(run: SkidRun) -> np.ndarray:
+    """Return the cage speed for pure rolling of all balls at their positions [rad/s].
+
+    For a steady state one number, for a motion in time the mean of the balls (time,).
+
+    Args:
+        run: From `run_skid`.
+    """
+    rolling = np.asarray(run.found.rolling_orbit_speed)
+    if not run.task.steady:
+        return rolling.mean(axis=1)
+    return np.asarray(1.0 / np.mean(1.0 / rolling) if rolling.all() else 0.0)
+
+
+def skid_message(run: SkidRun) -> str:
+    """Return cause and remedy of a result, in words.
+
+    Args:
+        run: From `run_skid`.
+    """
+    if not run.loads_solved:
+        return message(run.found.solution, run.task.scene.moving_ring)
+    if run.converged:
+        return "converged"
+    steps = int(run.found.steps)
+    if run.task.steady:
+        return (
+            f"No even motion was found in {steps} steps; force out of"
+            f" balance {_residual(run):.1e} of the tractions. Take other"
+            " `dynamics.places`, or integrate in time, without --steady."
+        )
+    time = run.found.time
+    last = f"{time[run.reached - 1]:.4g} s" if run.reached else "the first time"
+    where = f"The motion was followed to {last} of {time[-1]:.4g} s in {steps} steps"
+    if run.result is Result.STEP_LIMIT:
+        return f"{where}. Raise `dynamics.max_steps`, or take a larger tolerance."
+    return f"{where}. {CAUSES[run.result]}"
+
+
+def _residual(run) -> float:
+    """Return the residual: relative force (steady), or energy over drive work."""
+    found = run.found
+    if run.task.steady:
+        return float(found.residual)
+    missing, done = np.abs(found.imbalance), np.abs(found.work.drive)
+    reached = np.isfinite(missing)
+    if not reached.any() or not done[reached].any():
+        return np.nan
+    return float(missing[reached].max() / done[reached].max())
+
+
+def _powers(run) -> dict[str, Any]:
+    found = run.found
+    powers = found.power._asdict()
+    # Cage pockets return the energy that they store.
+    return powers if "cage" in powers else powers | {"cage": 0.0 * powers["drag"]}
+
+
+def _end(run):
+    found = run.found
+    orbit = each_ball(run)
+    own = {name: values[at_balls(run)] for name, values in orbit.items()}
+    own["azimuth"] = found.solution.azimuth
+    return {
+        "cage_speed": found.cage_speed,
+        "rolling_cage_speed": rolling_cage_speed(run),
+        **own,
+        "friction_torque": found.friction_torque,
+        "ring_torque": found.ring_torque,
+        "power": _powers(run),
+        **({"wander": found.wander} if hasattr(found, "wander") else {}),
+        "orbit": orbit,
+    }
+
+
+def _of_time(run):
+    given = {"rolling_cage_speed": rolling_cage_speed(run)}
+    return {n: np.asarray(given.get(n, getattr(run.found, n, 0))) for n in OF_TIME}
+
+
+def _motion(run):
+    mean, orbits = run.found.mean_friction_torque
+    return {
+        "mean_friction_torque": mean if orbits else None,
+        **_of_time(run),
+        **each_ball(run),
+        "power": _powers(run),
+        "work": run.found.work._asdict(),
+    }

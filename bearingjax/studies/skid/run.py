@@ -1,0 +1,147 @@
+"""Simulate the skidding balls or rollers of a scene."""
+
+import dataclasses
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ... import skid
+from ...files.quantity import SceneError
+from ...numerics.result import Result
+from ...skid import SkidState, conditions, skid_warnings
+from ...statics.warning import warnings
+from .read import SkidScene
+
+
+@dataclasses.dataclass(frozen=True)
+class SkidRun:
+    """Result of a skid run, in NumPy.
+
+    Attributes:
+        task: The skid scene.
+        found: The motion, `SteadySkid`, `SkidHistory` or those of rollers; read
+            its `result`.
+        state: `Conditions` in the contacts; `None` for rollers.
+        warnings: Warnings of doubtful results; none if not solved to the end.
+    """
+
+    task: SkidScene
+    found: Any
+    state: Any
+    warnings: tuple[str, ...]
+
+    @property
+    def result(self) -> Result:
+        """The result code."""
+        return Result(int(self.found.result))
+
+    @property
+    def converged(self) -> bool:
+        """Whether it was solved to the end."""
+        return self.result is Result.CONVERGED
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether there are results: a motion in time may end early."""
+        return self.converged or (not self.task.steady and self.reached > 0)
+
+    @property
+    def reached(self) -> int:
+        """Number of times reached by a motion in time."""
+        return int(np.isfinite(self.found.cage_speed).sum())
+
+    @property
+    def loads_solved(self) -> bool:
+        """Whether the load solve of the bearing converged."""
+        return bool(self.found.solution.converged)
+
+
+def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
+    """Simulate the skidding of the balls or rollers of a scene.
+
+    Args:
+        task: From `read_skid`.
+        shown: Show a progress bar on standard error for a motion in time.
+
+    Returns:
+        The run with its result code; a failed solve does not raise.
+
+    Raises:
+        SceneError: For settings that do not suit the load.
+
+    Fails: as `skid.steady` and `skid.simulate`.
+    """
+    try:
+        found, speed = _end(task) if task.steady else _motion(task, shown)
+    except ValueError as error:
+        raise SceneError(f"{task.name}: {error}") from error
+    balls = task.model.bearing.is_ball
+    state = conditions(task.model, found, speed) if balls else None
+    held, state = jax.tree.map(_as_numpy, (found, state))
+    warned = (*task.warnings, *(_left_out(task) if task.steady else ()))
+    if Result(int(held.result)) is Result.CONVERGED:
+        doubtful = skid_warnings(task.model, held, state)
+        warned = (*warned, *warnings(found.solution), *doubtful)
+    return SkidRun(task, held, state, warned)
+
+
+def _left_out(task):
+    """Yield warnings of scene contents that the steady state neglects."""
+    if task.axis == "horizontal":
+        yield "the end state leaves out gravity along the orbits; solve in time"
+    if task.loads is not None:
+        yield "the end state is that of [operating], not of a load over time"
+
+
+def _supports(task):
+    scene = task.scene
+    return {
+        "prescribed": scene.prescribed,
+        "free": scene.free,
+        "fixed_ring": scene.fixed_ring,
+        "places": task.places,
+        "throw": False,
+    }
+
+
+def _end(task) -> tuple[Any, Any]:
+    asked = _supports(task)
+    found = skid.steady(task.model, task.scene.load, speed=task.speed, **asked)
+    return found, task.speed
+
+
+def _motion(task, shown) -> tuple[Any, Any]:
+    speed = task.speed if task.speeds is None else task.speeds
+    found = skid.simulate(
+        task.model,
+        task.scene.load if task.loads is None else task.loads,
+        speed=speed,
+        duration=task.duration,
+        n_times=task.n_times,
+        start=_still(task) if task.start == "rest" else None,
+        load_speed=task.speed,
+        axis=task.axis,
+        balanced=task.balanced,
+        tolerance=task.tolerance,
+        max_steps=task.max_steps,
+        derivatives="forward",
+        progress=shown,
+        **_supports(task),
+    )
+    return found, speed
+
+
+def _still(task) -> SkidState:
+    """Return the state of elements and cage at rest, centred in their pockets."""
+    bearing = task.model.bearing
+    count, spins = bearing.n_elements, 3 if bearing.is_ball else 1
+    zero, each = jnp.zeros(()), jnp.zeros(count)
+    nothing = jnp.zeros((count, 0)), jnp.zeros(0)
+    return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
+
+
+def _as_numpy(leaf):
+    """Convert to NumPy: JAX would compile every small operation."""
+    return np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf

@@ -1,0 +1,1 @@
+"""One bearing under one load, and comparisons of such."""

@@ -1,0 +1,165 @@
+"""Output of a solution as JSON, in SI."""
+
+from pathlib import Path
+from typing import Any
+
+from ...numerics.result import Result
+from ...report.json_output import run_json, to_json, write_numbers
+from ...statics.solution import BallSolution, message
+from ..bearing.fit_report import fit_as_dict
+from ..bearing.life_report import life_as_dict
+from ..bearing.oil import oil_as_dict
+from ..bearing.preload_of_set import preload_as_dict
+from ..bearing.read_scene import Scene
+from ..bearing.solved import SolvedScene
+
+_OF_ALL = "displacement", "force", "stiffness", "roller_load"
+OF_ROLLERS = (
+    *_OF_ALL,
+    "rib_load",
+    "roller_motion",
+    "azimuth",
+    "position",
+    "line_load",
+    "contact_pressure",
+)
+"""Fields of a solution that are written, under their names."""
+
+OF_BALLS = (
+    *_OF_ALL,
+    "roller_motion",
+    "azimuth",
+    "contact_load",
+    "contact_angle",
+    "contact_pressure",
+    "semi_axes",
+    "approach",
+    "shoulder_margin",
+)
+OF_SPRINGS = ("spring_travel", "spring_force")
+OF_TURNING_BALLS = ("gyroscopic_moment", "centrifugal_force")
+KINEMATICS = {
+    "orbital_speed": "orbit",
+    "rotation_speed": "rotation",
+    "pitch_angle": "pitch_angle",
+    "spin": "spin",
+    "spin_to_roll": "spin_to_roll",
+}
+"""Fields of `BallKinematics` by their names in the file."""
+
+
+def as_dict(found: SolvedScene) -> dict[str, Any]:
+    """Return the solution of a scene as plain numbers and lists, in SI.
+
+    Args:
+        found: From `solve_scene`.
+
+    Returns:
+        The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
+        N, N m, Pa), and result, message, residual, iterations, warnings, inputs (the
+        scene in SI, which `read_scene` reads again from the file) and version. With
+        fits also `fit`, as in `fit_as_dict`; with [life] also `life_as_dict`; with a
+        lubricant and a speed also `oil_as_dict`.
+        If the solve did not converge the arrays are left out. Infinite values (the
+        margin of a shoulder that is not given) are null. For a catalogue bearing also
+        `catalogue`: designation, geometry, overridden.
+    """
+    scene = found.scene
+    return {
+        **(_numbers(found.numbers) if found.converged else {}),
+        **oil_as_dict(found.oil),
+        **fits_as_dict(scene),
+        **_catalogue(scene),
+        **_life(found),
+        **solved_as_dict(found),
+    }
+
+
+def _life(found: SolvedScene) -> dict[str, Any]:
+    life = found.life
+    return {} if life is None else life_as_dict(life, found.scene)
+
+
+def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
+    """Return the status of a solve: result, message, residual, iterations, warnings.
+
+    Args:
+        found: From `solve_scene`.
+    """
+    scene, solution = found.scene, found.numbers
+    status = {
+        "result": Result(int(solution.result)).label,
+        "message": message(solution, scene.moving_ring),
+        "residual": solution.stats.residual,
+        "iterations": solution.stats.iterations,
+    }
+    return run_json(status, found.warnings, scene.inputs)
+
+
+def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
+    """Return the rating life of a solved scene as plain numbers and lists, in SI.
+
+    Args:
+        found: From `solve_scene`, of a scene with [life].
+
+    Returns:
+        Contents of `life_as_dict`, `fits_as_dict` and `solved_as_dict`; the last one
+        only if the solve did not converge.
+    """
+    fits = fits_as_dict(found.scene) if found.converged else {}
+    return {**_life(found), **fits, **solved_as_dict(found)}
+
+
+def fits_as_dict(scene: Scene) -> dict[str, Any]:
+    """Return under `fit` the output of `fit_as_dict`, and `preload` of a set, from
+    `preload_as_dict`, if it was computed; empty for a scene without fits.
+
+    Args:
+        scene: Solved scene.
+    """
+    if scene.fits is None:
+        return {}
+    found = fit_as_dict(scene.fits)
+    if scene.preload_of_set is not None:
+        found["preload"] = preload_as_dict(scene.preload_of_set)
+    return {"fit": found}
+
+
+def _catalogue(scene):
+    taken = scene.catalogue
+    if taken is None:
+        return {}
+    return {
+        "catalogue": {
+            "designation": taken.entry.designation,
+            "geometry": taken.entry.geometry,
+            "overridden": list(taken.overridden),
+        }
+    }
+
+
+def _numbers(solution):
+    numbers = _of_elements(solution)
+    if solution.spring_force is not None:
+        numbers |= {name: getattr(solution, name) for name in OF_SPRINGS}
+    return to_json(numbers)
+
+
+def _of_elements(solution):
+    if not isinstance(solution, BallSolution):
+        return {name: getattr(solution, name) for name in OF_ROLLERS}
+    moving = solution.kinematics
+    if moving is None:
+        return {name: getattr(solution, name) for name in OF_BALLS}
+    names = (*OF_BALLS, *OF_TURNING_BALLS)
+    speeds = {name: getattr(moving, field) for name, field in KINEMATICS.items()}
+    return {**{name: getattr(solution, name) for name in names}, **speeds}
+
+
+def write_json(path: str | Path, found: SolvedScene) -> None:
+    """Write `as_dict` to a file.
+
+    Raises:
+        OSError: If the file cannot be written.
+    """
+    write_numbers(path, as_dict(found))

@@ -1,0 +1,86 @@
+"""Solve or optimise the bearing of a scene."""
+
+import dataclasses
+
+from ...design.checks import of_class
+from ...numerics.compiled.programs import called
+from ...numerics.types import as_array
+from ...statics.load import solve_load
+from ...statics.solution import Solution
+from ..bearing.preload_of_set import preload_of_set, preload_warnings
+from ..bearing.read_scene import Scene
+from ..bearing.solved import SolvedScene
+
+
+def run_scene(scene: Scene) -> Solution:
+    """Solve the bearing of a scene.
+
+    Args:
+        scene: From `read_scene`.
+
+    Returns:
+        Solution with its result code; nothing is raised for a failed solve.
+
+    Raises:
+        TypeError: If `scene` is not a `Scene`, such as a file name.
+
+    Fails: as `solve_load`.
+    """
+    of_class("run_scene", "scene", scene, Scene, "a Scene, as of read_scene")
+    return called(
+        _solved,
+        scene.running(),
+        as_array(scene.load, float),
+        {name: as_array(value, float) for name, value in scene.prescribed.items()},
+        scene.free,
+        scene.fixed_ring,
+        scene.speed,
+        scene.points,
+        None if scene.tolerance is None else as_array(scene.tolerance, float),
+    )
+
+
+def solve_scene(scene: Scene) -> SolvedScene:
+    """Solve the bearing of a scene, and find the preload of its set on its seats.
+
+    Args:
+        scene: From `read_scene`.
+
+    Fails: as `solve_load`.
+    """
+    solution = run_scene(scene)
+    solved = bool(solution.converged)
+    return SolvedScene(with_set_preload(scene) if solved else scene, solution)
+
+
+def with_set_preload(scene: Scene) -> Scene:
+    """Add the preload of a set on its seats, and warnings about it, to a scene.
+
+    A scene without fits, or whose rows do not preload each other, is returned
+    unchanged: nothing is compiled.
+
+    Args:
+        scene: From `read_scene`.
+    """
+    if scene.fits is None:
+        return scene
+    ground = scene.ground().drawing
+    found = preload_of_set(scene.fits, ground, scene.speed)
+    if found is None:
+        return scene
+    warned = (*scene.warnings, *preload_warnings(found))
+    return dataclasses.replace(scene, preload_of_set=found, warnings=warned)
+
+
+def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
+    return solve_load(
+        element,
+        load,
+        prescribed=prescribed,
+        free=free,
+        fixed_ring=fixed_ring,
+        speed=speed,
+        points=points,
+        tolerance=tolerance,
+        throw=False,
+    )

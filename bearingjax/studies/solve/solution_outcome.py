@@ -1,0 +1,58 @@
+"""Outcome of a solved bearing, for `solve` and the commands based on it."""
+
+from ..outcome import Outcome
+
+
+def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
+    """Solve the bearing of a scene for its load.
+
+    Args:
+        scene: From `read_scene`.
+        numbers: Returns the JSON of the solved scene; default: `as_dict`.
+        brief: Sections of the report shown on the terminal; default: all.
+    """
+    from .output import as_dict
+    from .report import report
+    from .run import solve_scene
+
+    found = solve_scene(scene)
+    solution = found.solution
+    full_report = report(found) if found.converged else None
+
+    def draw():
+        from ...plot import overview
+
+        return overview(solution.element.bearing, solution, title=scene.name)
+
+    def draw_bearing():
+        from ...plot import drawing
+
+        # Mounted and preloaded if given in the scene.
+        element = solution.element if found.converged else scene.element
+        return drawing(element.bearing, scene.name)
+
+    return Outcome(
+        scene.name,
+        scene.inputs,
+        lambda: (numbers or as_dict)(found),
+        full_report
+        if brief is None or full_report is None
+        else full_report.only(brief),
+        page=None if full_report is None else lambda: full_report,
+        pictures={"Section, load zone, contacts": draw} if found.converged else {},
+        drawing=draw_bearing,
+        problems=[] if found.converged else [why_unsolved(found)],
+    )
+
+
+def why_unsolved(found) -> str:
+    """Return the reason why a bearing was not solved.
+
+    Args:
+        found: From `solve_scene`, not converged.
+    """
+    from ...numerics import Result
+    from ...statics.solution import message
+
+    label = Result(int(found.solution.result)).label
+    return f"{label}: {message(found.solution, found.scene.moving_ring)}"

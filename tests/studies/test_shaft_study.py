@@ -1,0 +1,459 @@
+"""Scenes of shaft systems, and what `bearingjax shaft` makes of them."""
+
+import json
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from studies import SEARCH, WORDS, Runs, Study
+
+import bearingjax as bj
+from bearingjax.files import SceneError
+from bearingjax.numerics.result import Result
+from bearingjax.plot.shafts import _warming
+from bearingjax.report.report_model import Grid
+from bearingjax.shafts import DutyResult
+from bearingjax.studies.shaft.output import shaft_columns
+from bearingjax.studies.shaft.read import read_shafts
+from bearingjax.studies.shaft.report import _temperatures
+from bearingjax.studies.shaft.run import ShaftRun, run_shafts
+
+GEARS = Path(__file__).with_name("refused") / "gears.toml"
+SCENE = GEARS.read_text(encoding="utf-8")
+
+
+CASES = """
+[[cases.spectrum]]
+drive.power = "12 kW"
+hours = "100 h"
+
+[[cases.spectrum]]
+drive.power = "-20 kW"
+hours = "10 h"
+
+[[cases.spectrum]]
+drive.power = "1 kW"
+hours = "0 h"
+"""
+OF_BEARINGS = {"bearings", "gear", "belt", "shaft", "power", "system_life_hours"}
+STUDIES = {
+    "gears": Study(
+        ("shaft", SCENE),
+        OF_BEARINGS,
+        WORDS | SEARCH,
+        unsolved={
+            "loose": (
+                ("--set", "bearings.C.floating=true"),
+                "no_load_path",
+                "solve_system: no_load_path: nothing takes up the load along uz of"
+                " shaft out",
+            )
+        },
+        slow=(True, True),
+    ),
+    "cases": Study(
+        ("shaft", SCENE + CASES), OF_BEARINGS | {"cases"}, WORDS | SEARCH, again=None
+    ),
+}
+
+
+class TestRuns(Runs):
+    """Runs of the command."""
+
+
+def of_seats(numbers, name):
+    """One number of each bearing."""
+    return np.array([one[name] for one in numbers["bearings"].values()])
+
+
+@pytest.mark.slow
+def test_gears(written):
+    done, found, _ = written("gears")
+    assert "2 shafts on 4 bearings" in done.out and "12 kW" in done.out
+    assert found["message"] == ""
+    assert [*found["bearings"]] == ["A", "B", "C", "D"]
+    for name in ("A", "C"):
+        one = found["bearings"][name]
+        wanted = (
+            "load displacement tilt contact_load roller_load peak_pressure"
+            " static_safety basic_rating_life reference_rating_life"
+            " modified_rating_life life_hours friction_torque temperature clearance"
+        )
+        assert not {*wanted.split()} - {*one}
+        assert len(one["load"]) == len(one["displacement"]) == 6
+        assert len(one["tilt"]) == 2
+    gears = found["gear"]
+    np.testing.assert_allclose(
+        gears["wheel"]["force"], -np.array(gears["pinion"]["force"]), rtol=1e-9
+    )
+    assert {"force", "misalignment"} <= {*gears["wheel"]}
+    lines = found["shaft"]["in"]
+    assert {"position", "deflection", "shear", "moment"} <= {*lines}
+    hours = of_seats(found, "life_hours")
+    assert found["system_life_hours"] < hours.min()
+    # By the survival of all, of balls alone: (Σ L^-e)^(-1/e).
+    e = 10.0 / 9.0
+    wanted = (hours**-e).sum() ** (-1.0 / e)
+    np.testing.assert_allclose(found["system_life_hours"], wanted, rtol=1e-12)
+    c, d = of_seats(found, "load")[2:, :3]
+    force = np.array(gears["wheel"]["force"]) + [0, -500, 0]
+    np.testing.assert_allclose(c + d, force, rtol=1e-9, atol=1e-6)
+    assert abs(d[2]) < 1e-6 < abs(c[2])
+    assert [row[0] for row in written("gears").rows] == ["bearing", *"ABCD"]
+    np.testing.assert_allclose(written("gears").column("Fx [N]")[2], c[0], rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_lives_are_those_of_the_bearings_alone():
+    """Each bearing under its load alone, with its tilt held, has the same life."""
+    for bearing in run_shafts(read_shafts(GEARS)).bearings:
+        solution = bearing.solution
+        held: Any = dict(
+            zip("ux uy uz gx gy".split(), solution.displacement[6:11], strict=True)
+        )
+        again = bj.solve_load(
+            solution.element, prescribed=held, free=[], speed=solution.speed
+        )
+        entry = bearing.scene.catalogue.entry
+        life = bj.rating_life(
+            solution.element, again, dynamic_capacity=entry.dynamic_capacity
+        )
+        np.testing.assert_allclose(
+            bearing.life.reference_rating_life, life.reference_rating_life, rtol=1e-7
+        )
+
+
+@pytest.mark.slow
+def test_cases(written):
+    """Load cases side by side are those of one after the other; the spectrum adds up
+    their damage."""
+    done, found, _ = written("cases")
+    alone = written("gears").numbers
+    loads = of_seats(found["cases"], "load")
+    np.testing.assert_allclose(loads[:, 0], of_seats(alone, "load"), atol=1e-6)
+    name = "reference_rating_life"
+    lives = of_seats(found["cases"], name)[:, 0]
+    np.testing.assert_allclose(lives, of_seats(alone, name), rtol=1e-7)
+    back = run_shafts(read_shafts(GEARS, ["drive.power=-20 kW"]))
+    np.testing.assert_allclose(loads[:, 1], back.solution.load, atol=1e-6)
+    damage = np.array([1 / of_seats(alone, "life_hours"), 1 / back.hours])
+    wanted = 1.0 / (np.array([100.0, 10.0]) / 110.0 @ damage)
+    np.testing.assert_allclose(of_seats(found, "life_hours"), wanted, rtol=1e-6)
+    assert "under all 3 cases" in done.out
+    # What is odd in one case is told, with the case, as a sweep tells it.
+    light = [text for text in found["warnings"] if "may skid" in text]
+    assert len(light) == 4
+    assert all(re.search(r"in \d of 3 cases, worst case \d", text) for text in light)
+    assert found["cases"]["hours"] == [100.0, 10.0, 0.0]
+    head, *rows = written("cases").rows
+    assert len(rows) == 12 and rows[4][head.index("drive.power")] == "-20 kW"
+
+
+@pytest.mark.slow
+def test_cases_over_positions(tmp_path):
+    """Positions may vary as long as the order of the parts stays."""
+    scene = tmp_path / "p.toml"
+    values = '["30 mm", "55 mm"]'
+    scene.write_text(
+        f"{SCENE}[cases.grid]\n" + f'"bearings.A.position" = {values}\n', "utf-8"
+    )
+    found = run_shafts(read_shafts(scene))
+    assert found.converged and found.duty is not None
+    alone = run_shafts(
+        read_shafts(scene, ["cases.grid={'bearings.A.position'=['55 mm']}"])
+    )
+    np.testing.assert_allclose(found.duty.load[1], alone.solution.load, atol=1e-4)
+    with pytest.raises(SceneError, match="in case 1 parts stand in another order"):
+        beyond = "cases.grid={'bearings.A.position'=['30 mm', '150 mm']}"
+        run_shafts(read_shafts(scene, [beyond]))
+
+
+WARM = """
+[drive]
+speed = "6000 rpm"
+
+[shaft.s]
+segments = [{ length = "260 mm", outer_diameter = "40 mm" }]
+
+[load.pull]
+shaft = "s"
+position = "150 mm"
+Fy = "-900 N"
+Fz = "300 N"
+
+[bearings.A]
+shaft = "s"
+position = "40 mm"
+designation = "7208 B"
+preload = "400 N"
+fit = { shaft_interference = "8 um", housing_interference = "-5 um", housing_diameter = "120 mm" }
+
+[bearings.B]
+shaft = "s"
+position = "240 mm"
+designation = "7208 B"
+turned = true
+preload = "400 N"
+
+[lubricant]
+name = "ISO VG 32"
+temperature = "40 °C"
+
+[life]
+contamination = "oil bath -/17/14"
+
+[heat]
+ambient = "22 °C"
+"""  # noqa: E501
+
+
+@pytest.mark.slow
+def test_cases_with_heat(tmp_path):
+    """Each case has its own temperatures, and its life the viscosity there; one that
+    runs away has no numbers."""
+    scene, name = tmp_path / "warm.toml", "bearings.A.heat.outer"
+    scene.write_text(f'{WARM}[cases]\nfile = "cases.csv"\n', "utf-8")
+    rows = (
+        f"drive.speed,heat.ambient,{name},bearings.A.heat.inner,hours [h]",
+        "3000 rpm,22 °C,2 W/K,2 W/K,10",
+        "4000 rpm,30 °C,4 W/K,2 W/K,20",
+        "6000 rpm,22 °C,1e-3 W/K,1e-3 W/K,20",
+    )
+    scene.with_name("cases.csv").write_text("\n".join(rows), "utf-8")
+    found = run_shafts(read_shafts(scene))
+    assert found.duty is not None and found.rings is not None
+    assert re.match(r"1 of 3 cases not solved \(case 2: .* no thermal", found.problem)
+    assert np.isnan(found.rings[2]).all() and np.isnan(found.duty.load[2]).all()
+    alone = tmp_path / "alone.toml"
+    alone.write_text(WARM, "utf-8")
+    inner = "bearings.A.heat.inner=2 W/K"
+    for k, settings in enumerate(
+        (
+            ["drive.speed=3000 rpm", f"{name}=2 W/K"],
+            ["drive.speed=4000 rpm", "heat.ambient=30 °C", f"{name}=4 W/K"],
+        )
+    ):
+        own = run_shafts(read_shafts(alone, [*settings, inner]))
+        assert own.thermal is not None
+        rings = np.stack([own.thermal.inner_ring, own.thermal.outer_ring], axis=1)
+        np.testing.assert_allclose(found.rings[k], rings, rtol=1e-10)
+        load = own.solution.load
+        np.testing.assert_allclose(found.duty.load[k], load, rtol=1e-6, atol=1e-5)
+        lives = np.array([b.life.modified_rating_life for b in own.bearings], float)
+        given = found.duty.lives["modified_rating_life"][k]
+        np.testing.assert_allclose(given, lives, rtol=1e-6)
+    columns = shaft_columns(found)
+    np.testing.assert_array_equal(
+        columns["inner_ring [K]"], found.rings[..., 0].ravel()
+    )
+
+
+def solved(scene, **more):
+    """A run of a scene with numbers made up."""
+    known: dict[str, Any] = dict.fromkeys(("thermal", "warming", "duty", "rings"))
+    known |= {"task": scene, "solution": SimpleNamespace(result=0), "problem": ""}
+    run = object.__new__(ShaftRun)
+    for name, value in (known | more).items():
+        object.__setattr__(run, name, value)
+    return run
+
+
+def test_worst_case_of_a_spectrum(tmp_path):
+    """By the damage of its hours: not a case of no time, nor one at rest."""
+    (tmp_path / "x.toml").write_text(SCENE + CASES, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml")
+    damage = np.array([[1.0, 1.0, 1.0, 0.0], [5.0, 20.0, 1.0, 0.0], [99.0] * 4])
+    speed = np.array([[10.0, 1.0], [10.0, 1.0], [10.0, 1.0]])
+    none, six = np.zeros((3, 4)), np.zeros((3, 4, 6))
+    codes = np.zeros(3, int)
+    duty = DutyResult(
+        six, six, none, speed, none[:, 0], codes, none, {"damage": damage}, ()
+    )
+    run = solved(scene, duty=duty)
+    assert run.worst_cases == [0, 1, 0, None]
+    assert run.shown_case == "case 0 of 3"
+    np.testing.assert_allclose(
+        run.hours[:2], 110 / (100 + 10 * np.array([5, 20])) / 10 / 3600 * 2 * np.pi
+    )
+    assert np.isinf(run.hours[3])
+
+
+def test_result_of_what_runs_away(tmp_path):
+    """It is that of the temperatures too, not of the shafts alone."""
+    hot: Any = SimpleNamespace(result=int(Result.STEP_LIMIT))
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml")
+    assert solved(scene, thermal=hot).result is Result.STEP_LIMIT
+    told = "B: temperatures change the viscosity of the oil alone, neither"
+    assert [text for text in scene.warnings if "viscosity" in text][0].startswith(told)
+    given = "bearings.A.temperature={shaft='50 °C'}"
+    warned = read_shafts(tmp_path / "x.toml", [given]).warnings
+    assert "A: its `temperature` is not used: [heat] finds temperatures" in warned
+
+
+@pytest.mark.slow
+def test_thermal_runaway(run, tmp_path):
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    ways = [f"bearings.A.heat.{ring}=1e-3 W/K" for ring in ("inner", "outer")]
+    given = [part for way in ways for part in ("--set", way)]
+    done = run("shaft", tmp_path / "x.toml", *given, "--json", tmp_path / "x.json")
+    assert done.status == 3 and "no thermal equilibrium" in done.err
+    found = json.loads((tmp_path / "x.json").read_text("utf-8"))
+    assert found["result"] == "step_limit"
+
+
+PAUSE = """
+[cases]
+spectrum = [
+    { "drive.speed" = "0 rpm", hours = "10 h" },
+    { "drive.speed" = "3000 rpm", hours = "30 h" },
+]
+"""
+
+
+@pytest.mark.slow
+def test_pauses_of_a_duty_cycle(tmp_path):
+    """At rest nothing makes heat or damage; a bearing that cools slowly keeps the mean
+    of the cycle."""
+    (tmp_path / "x.toml").write_text(WARM + PAUSE, "utf-8")
+    rises = []
+    for pauses in ("ambient", "mean"):
+        scene = read_shafts(tmp_path / "x.toml", [f"heat.pauses={pauses}"])
+        found = run_shafts(scene)
+        assert found.converged and found.duty is not None and found.rings is not None
+        rises.append(found.rings - 295.15)
+        assert found.worst_cases == [1, 1]
+        assert all(np.isfinite(found.hours))
+    np.testing.assert_allclose(rises[0][0], 0.0, atol=1e-9)
+    np.testing.assert_allclose(rises[1][0], 0.75 * rises[1][1], rtol=1e-9)
+    np.testing.assert_allclose(rises[0][1], rises[1][1], rtol=1e-9)
+
+
+def test_scene_at_rest_has_no_heat(tmp_path):
+    (tmp_path / "x.toml").write_text(WARM + PAUSE, "utf-8")
+    read_shafts(tmp_path / "x.toml")
+    never = 'cases={spectrum=[{"drive.speed"="0 rpm", hours="1 h"}]}'
+    with pytest.raises(SceneError, match="`heat`: needs a `speed` of the drive"):
+        read_shafts(tmp_path / "x.toml", [never])
+
+
+def test_warming_up_is_shown(tmp_path):
+    """As a table and a panel, ring by ring."""
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml", ["heat.duration=1 h", "heat.times=31"])
+    assert scene.times is not None
+    warming = 295.15 + np.outer(1.0 - np.exp(-scene.times / 900.0), [30, 20, 25, 15])
+    state: Any = SimpleNamespace(
+        inner_ring=warming[-1, ::2], outer_ring=warming[-1, 1::2], friction=[9.0, 8.0],
+        slowest=1e-3, result=0,
+    )  # fmt: skip
+    run = solved(scene, thermal=state, warming=warming)
+    *_, grid = _temperatures(run)
+    assert isinstance(grid, Grid) and grid.title.startswith("warming up")
+    assert [column.name for column in grid.columns][1:] == [*run.warm_nodes]
+    _, ax = plt.subplots()
+    _warming(ax, run)
+    names = ["A inner", "A outer", "B inner", "B outer"]
+    assert [line.get_label() for line in ax.lines] == names
+    drawn = np.asarray(ax.lines[1].get_xydata())
+    np.testing.assert_allclose(drawn[:, 1], warming[:, 1] - 273.15)
+    np.testing.assert_allclose(drawn[-1, 0], 60.0)
+    plt.close("all")
+
+
+def test_housing_file(tmp_path):
+    """A matrix of all seats in a file: as the stiffness of one seat alone."""
+    matrix = np.diag([3e8, 2e8, 1e8])
+    bare = SCENE.replace('housing = ["3e8 N/m", "2e8 N/m", "1e8 N/m"]\n', "")
+    for name in ("k.csv", "k.npy", "k.mtx"):
+        place = tmp_path / name
+        if name.endswith("npy"):
+            np.save(place, matrix)
+        elif name.endswith("mtx"):
+            lines = ["%%MatrixMarket matrix array real general", "3 3"]
+            place.write_text("\n".join([*lines, *map(str, matrix.T.ravel())]))
+        else:
+            np.savetxt(place, matrix, delimiter=",")
+        scene = tmp_path / "h.toml"
+        scene.write_text(
+            f'{bare}\n[housing]\nfile = "{name}"\nseats = ["B"]\n', "utf-8"
+        )
+        read = read_shafts(scene).system.housing
+        np.testing.assert_allclose(read.matrix, matrix)
+        np.testing.assert_allclose(
+            read.matrix, read_shafts(GEARS).system.housing.matrix
+        )
+
+
+@pytest.mark.slow
+def test_warnings(run):
+    """Arrangements that seldom are meant are named."""
+    done = run("shaft", GEARS, "--set", "bearings.D.floating=false")
+    assert done.status == 0
+    assert "shaft out is located by C and D" in done.out
+    spur = [
+        f"gear.{g}.{k}"
+        for g in ("pinion", "wheel")
+        for k in ("hand=none", "helix_angle=0 deg")
+    ]
+    place = "shaft.out.position=['182 mm','0 mm','0 mm']"
+    settings = ["bearings.C.floating=true", *spur, place]
+    done = run("shaft", GEARS, *(word for s in settings for word in ("--set", s)))
+    assert done.status == 0, done.err
+    assert "nothing holds uz of shaft out" in done.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "setting, told",
+    [
+        ("drive.into=pinion", "has a mate or a torque"),
+        ("coupling.c={shaft='out', torque='5 N m'}", "do not balance"),
+    ],
+)
+def test_torques_that_cannot_be(setting, told):
+    """Known when the flow of power is worked out."""
+    with pytest.raises(SceneError, match=told):
+        run_shafts(read_shafts(GEARS, [setting]))
+
+
+def test_no_bearings(tmp_path):
+    scene = tmp_path / "x.toml"
+    scene.write_text(SCENE[: SCENE.index("[bearings.A]")], "utf-8")
+    with pytest.raises(SceneError, match="`bearings`: is missing"):
+        read_shafts(scene)
+
+
+def test_solve_command_rejects_shaft_scene(run):
+    done = run("solve", GEARS)
+    assert done.status == 2
+    assert "`bearingjax shaft gears` solves it" in done.err
+
+
+def test_new_scene(run, tmp_path):
+    """`new shaft` prints a commented scene that reads."""
+    done = run("new", "shaft")
+    assert done.status == 0 and done.out.count("#") > 8
+    (tmp_path / "mine.toml").write_text(done.out, "utf-8")
+    assert len(read_shafts(tmp_path / "mine.toml").system.seats) == 4
+
+
+def test_seat_on_a_shaft_of_another_size():
+    """A bearing whose bore is not the diameter of its shaft is named."""
+    settings = ["shaft.in.segments.0.outer_diameter=47 mm"]
+    warnings = read_shafts(GEARS, settings).warnings
+    assert any("6308 has a bore of 40 mm; at station" in text for text in warnings)
+
+
+def test_gravity_of_a_shaft_scene():
+    for setting, wanted in (
+        ("none", [0.0, 0.0, 0.0]),
+        ("y", [0.0, 9.80665, 0.0]),
+        ("-z", [0.0, 0.0, -9.80665]),
+    ):
+        system = read_shafts(GEARS, [f"system.gravity={setting}"]).system
+        np.testing.assert_allclose(system.gravity, wanted)
