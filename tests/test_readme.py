@@ -23,6 +23,9 @@ DOCUMENTED = (
     "bearingjax.rotor",
     "bearingjax.rotor.nonlinear",
     "bearingjax.statics",
+    "bearingjax.cases",
+    "bearingjax.catalogue",
+    "bearingjax.life",
 )
 
 

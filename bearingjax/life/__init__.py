@@ -1,4 +1,11 @@
-"""Ratings and rating life: ISO 281, ISO 76, ISO/TS 16281."""
+"""Ratings and rating life: ISO 281, ISO 76, ISO/TS 16281.
+
+`dynamic_capacity`, `static_capacity` and `fatigue_load_limit` rate a bearing, or a set
+of alike ones, by ISO 281 and ISO 76 from its geometry; `ratings`, and so every life,
+takes what is given or what the catalogue prints for a bearing of it instead, and says
+which is which. A catalogue's C may be higher: makers use factors of their own. Bearings
+steeper than 45 degrees are rated by axial loads.
+"""
 
 from .equivalent_load import EquivalentLoad as EquivalentLoad
 from .equivalent_load import equivalent_load as equivalent_load

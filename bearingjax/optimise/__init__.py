@@ -20,10 +20,6 @@ hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-m
 most its root), whatever the method says. Warnings about the best design are in
 `best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`; shafts on
 several bearings: `bearingjax.shafts.ShaftDesign`. Worked: the notebook roller_bearing.
-
-`estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
-bearing of which only the catalogue data are known: the rolling elements that best fit
-the ratings and the usual proportions. It is an estimate; `report()` states its misfit.
 """
 
 from .constraint import Constraint as Constraint

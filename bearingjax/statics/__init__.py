@@ -1,4 +1,4 @@
-"""Load solves, sweeps, preload, linearisation, and their results.
+"""Load solves, preload, linearisation, and their results.
 
 `solve_load(element, load)` finds the displacement of the rings under a load and returns
 a `Solution`: displacement, stiffness, the load and pressure of every contact.
@@ -8,21 +8,6 @@ them (`swept.warning_counts()`). A preloaded pair is one of three: `preload_offs
 displacement), `preload(element, force)` (the offsets that give the force,
 differentiable), or `spring=PreloadSpring(force, stiffness)` on the row at +z (then see
 `solution.spring_force` and `spring_travel`).
-
-`sweep` solves loads, displacements, speeds and designs by the thousand, in batches that
-fit the cache, over all devices and processes of JAX; each case has its own result code,
-and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pressure`,
-`largest_load`, `n_loaded`, `iterations`, `residual`; outputs that are not named are not
-computed. Each case starts from the nearest one that is solved by then (`near`).
-Designs: `stack_designs([...])`, or an element made under `jax.vmap`.
-`jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
-`sweep(..., stop=...)` is asked between blocks.
-
-`dynamic_capacity`, `static_capacity` and `fatigue_load_limit` rate a bearing, or a set
-of alike ones, by ISO 281 and ISO 76 from its geometry; `ratings`, and so every life,
-takes what is given or what the catalogue prints for a bearing of it instead, and says
-which is which. A catalogue's C may be higher: makers use factors of their own. Bearings
-steeper than 45 degrees are rated by axial loads.
 
 A solve that fails
 ------------------
@@ -49,26 +34,6 @@ it out it is zero, of a life (`rating_life`) too::
 
 Mask what was solved itself: NaN comes back from what else is computed from a failed
 case before the mask.
-
-Many devices in a program of your own
--------------------------------------
-
-`sweep` spreads its cases itself, and cannot be traced. `jax.shard_map` of a mapped
-`solve_load` over a `jax.sharding.Mesh` needs `check_vma=False`: derivative rules know
-of no axes of a mesh. A batch of a size that is left open (`jax.export.symbolic_shape`)
-goes through `jax.lax.map`, not through `jax.vmap`, which divides a batch by its size.
-
-A program that waits for ever, without load on the processor
-------------------------------------------------------------
-
-jaxlib 0.10 hands a large batch of matrices (`jax.vmap` of `solve` or `eig` of
-`jnp.linalg`) to LAPACK in parts, on XLA's threads, by a thread that waits for the
-others. As many such batches at once as there are cores, and none is left to do the
-work: on two cores two batches that do not depend on each other are enough. The package
-passes one matrix after the other. In functions of your own that are mapped
-`jax.lax.map` in place of `jax.vmap` avoids it; so does, with one device, `PJRT_NPROC=1`
-in the environment (one thread; `XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does
-not).
 """
 
 from .installed import Installed as Installed
