@@ -45,7 +45,7 @@ from bench import benchmark, no_rows_with
 
 import bearingjax as bj
 from bearingjax import shafts
-from bearingjax.shafts.seats import adjusted
+from bearingjax.shafts.seats import with_preload_offsets
 
 BALANCED = 1e-6
 NOTHING = 1e-3
@@ -394,7 +394,7 @@ def run(count, seed=0):
         systems, refused = [], []
         for k in range(count):
             try:
-                systems.append(adjusted(build(Draw(rng, k))))
+                systems.append(with_preload_offsets(build(Draw(rng, k))))
             except (ValueError, bj.SolveError) as error:
                 refused.append(str(error))
         # The number of beam elements is that of the first.

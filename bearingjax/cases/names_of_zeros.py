@@ -9,7 +9,7 @@ from ..statics.support import restrained_freedoms
 from .cases import Cases
 
 
-def names_of_zeros(
+def structural_zeros(
     element: BearingElement, cases: Cases, options: SolveOptions
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Names along the last axis of outputs whose numbers are zero by construction.

@@ -21,7 +21,7 @@ from ..numerics.linear import solve
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import restrained_freedoms
-from ..statics.warning_sizes import loose
+from ..statics.warning_sizes import unrestrained_directions
 from .cases import Cases
 
 KEPT = 1024
@@ -89,7 +89,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
     return SolvedCases(*none, *last)
 
 
-def likeness(
+def common_properties(
     element: BearingElement[Any], cases: Cases, options: SolveOptions
 ) -> Likeness:
     """Return the properties that the cases of a sweep have in common.
@@ -116,7 +116,7 @@ def likeness(
     return Likeness(freedoms, pitch, between_ribs and "uz" in free)
 
 
-def others(element: BearingElement[Any], cases: Cases) -> np.ndarray:
+def unsafe_to_start_near(element: BearingElement[Any], cases: Cases) -> np.ndarray:
     """Differences of cases other than loads, as shares of the range (case, k) [1].
 
     Args:
@@ -204,7 +204,7 @@ def _place(load, other):
     return jnp.concatenate([load / size, 0.5 * jnp.log(size), other, kind], axis=1)
 
 
-def added(
+def add_solved(
     known: SolvedCases, solutions: Solution, cases: Cases, other: Any, alike: Likeness
 ) -> tuple[SolvedCases, Bool[Array, " case"]]:
     """Add a chunk of solved cases; return all, and which are not valid as starts.
@@ -223,7 +223,9 @@ def added(
     k = _turned(k.swapaxes(1, 2), back[:, None])
     there = _turned(solutions.displacement[:, moving].astype(load.dtype), back)
     # Of a ring that nothing holds in some direction this is one answer of many.
-    sound = (solutions.result == 0) & (jax.vmap(loose)(solutions) == 0)
+    sound = (solutions.result == 0) & (
+        jax.vmap(unrestrained_directions)(solutions) == 0
+    )
     at = jnp.minimum(known.count[0], KEPT)
 
     def put(old, new):

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import of_shape
-from ..numerics.types import namespace
+from ..numerics.types import array_namespace
 from ..numerics.units import unit
 from .cases import Cases
 
@@ -50,7 +50,7 @@ def spectrum_life(
     allowed = f"({cases.count},), a number for each case"
     fits = np.shape(damage) == (cases.count,)
     of_shape("spectrum_life", "damage", fits, allowed, damage)
-    xp: Any = namespace(damage)
+    xp: Any = array_namespace(damage)
     hours = xp.ones_like(damage) if cases.hours is None else cases.hours
     turns = revolutions_per_hour(cases, xp)
     weight = hours if turns is None else hours * turns

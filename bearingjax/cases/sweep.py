@@ -27,7 +27,7 @@ from ..statics.solution import Solution
 from ..statics.support import check_held
 from ..statics.warning import counted, given
 from .cases import Cases
-from .names_of_zeros import names_of_zeros
+from .names_of_zeros import structural_zeros
 from .sweep_program import WARNED, Program, Task
 
 CHUNK = 512
@@ -232,7 +232,7 @@ def sweep(
     near = near and jax.config.read("jax_enable_x64")
     found = program.run(every, near, progress, stop)
     return Sweep(
-        every, found, options.moving_ring, names_of_zeros(element, every, options)
+        every, found, options.moving_ring, structural_zeros(element, every, options)
     )
 
 

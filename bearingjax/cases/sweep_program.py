@@ -23,7 +23,13 @@ from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.warning import sizes
 from .cases import solve_case
-from .near_starts import added, likeness, nothing_known, others, starts
+from .near_starts import (
+    add_solved,
+    common_properties,
+    nothing_known,
+    starts,
+    unsafe_to_start_near,
+)
 
 BLOCK = 4096
 """Cases of a device between two visits of the host, or a chunk if that is more."""
@@ -131,7 +137,9 @@ class Program:
         Cases started near by that end without a valid result are solved again from
         first contact.
         """
-        held = jax.tree.map(np.asarray, (cases, others(self.element, cases)))
+        held = jax.tree.map(
+            np.asarray, (cases, unsafe_to_start_near(self.element, cases))
+        )
         found = self._blocks(held, cases.count, near, progress, stop)
         lost = np.flatnonzero(found.pop(_LOST))
         if lost.size:
@@ -155,7 +163,7 @@ class Program:
         chunks = min(max(1, BLOCK // lanes), math.ceil(like / (devices * lanes)))
         block = devices * lanes * chunks
         shard = NamedSharding(self.mesh, Spec("case"))
-        alike = likeness(self.element, held[0], self.task.options)
+        alike = common_properties(self.element, held[0], self.task.options)
         known = nothing_known(lanes, devices, held[1].shape[1])
         known = jax.tree.map(lambda a: _spread(a, shard), known)
         found: dict[str, np.ndarray] = {}
@@ -222,7 +230,7 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
             start = jnp.where(near, start, jnp.nan)
             solve = functools.partial(task.solve, element)
             solutions = jax.vmap(solve)(cases, start)
-            known, unsound = added(known, solutions, cases, other, alike)
+            known, unsound = add_solved(known, solutions, cases, other, alike)
             lost = unsound & jnp.isfinite(start[:, 0])
             return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
 

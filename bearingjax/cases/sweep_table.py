@@ -95,7 +95,7 @@ def columns(
         header: column
         for name, values in sweep.outputs.items()
         if name not in ("result", "unrestrained") and not name.startswith(WARNED)
-        for header, column in spread(name, values, left_out(sweep))
+        for header, column in flatten_columns(name, values, left_out(sweep))
         if column is not None and not _is_nothing(sweep, column)
     }
     if not exact:
@@ -103,7 +103,7 @@ def columns(
     labels = np.array([code.label for code in Result])
     return {
         **(extra or {}),
-        **asked(sweep.cases),
+        **case_columns(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
         **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
         **found,
@@ -361,7 +361,7 @@ def restored(
             solved = np.asarray(table["result"]) == Result.CONVERGED.label
             nothing = np.where(solved, 0.0, not_run(name, values.dtype))
             parts = []
-            for header, column in spread(name, values, zeros):
+            for header, column in flatten_columns(name, values, zeros):
                 there = table.get(header)
                 if column is None:
                     there = nothing
@@ -387,7 +387,7 @@ def _sizes(table, kind, count):
     return found
 
 
-def asked(cases: Cases) -> dict[str, np.ndarray]:
+def case_columns(cases: Cases) -> dict[str, np.ndarray]:
     """Columns of the cases (loads, displacements, speeds, hours), in SI, by header,
     without those that are zero in all of them.
 
@@ -419,7 +419,7 @@ def asked(cases: Cases) -> dict[str, np.ndarray]:
     return out
 
 
-def spread(
+def flatten_columns(
     name: str, values: np.ndarray, zeros: Any = ()
 ) -> Iterator[tuple[str, np.ndarray | None]]:
     """Headers and columns of an output with any number of axes.

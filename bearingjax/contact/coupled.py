@@ -24,7 +24,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..numerics.implicit import attach_by, stop
+from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
 from .line import AbstractLineLaw, Palmgren
@@ -132,7 +132,7 @@ class CoupledContact(AbstractLineContact):
     def integrals(self, table, quadrature, a, b):
         xi = _middles(table.drop.shape[0], a.dtype)
         loads = _solved(table, a, b)
-        held, curved = stop(loads) > 0, _curvature(table, loads)
+        held, curved = stop_gradient(loads) > 0, _curvature(table, loads)
         columns = jnp.stack([jnp.ones_like(xi), xi], axis=1)
         inside = jnp.where(held[:, None], columns, 0.0)
         bent = _divided(_free(table.matrix, curved, held), inside)
@@ -223,7 +223,7 @@ class _State(NamedTuple):
 
 def _solved(table, a, b):
     """Loads q/(π E*) ≥ 0 of the slices (slice,) [m]; NaN if they did not converge."""
-    loads = _newton(*stop((table, a, b)))
+    loads = _newton(*stop_gradient((table, a, b)))
 
     def balance(loads, args):
         table, a, b, held = args

@@ -16,7 +16,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.elliptic import carlson_rd, complete
-from ..numerics.implicit import attach_roots, stop
+from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.power import positive_power
 
 EXPONENT = (3, 2)
@@ -108,13 +108,15 @@ def _axis_exponent(goal):
 
 def _root(residual, start, args):
     """Root of residual(y, args), element by element, from a start near it."""
-    frozen = stop(args)
+    frozen = stop_gradient(args)
 
     def step(_, y):
         f, slope = jax.jvp(lambda v: residual(v, frozen), (y,), (jnp.ones_like(y),))
         return y - f / slope
 
-    return attach_roots(residual, lax.fori_loop(0, _STEPS, step, stop(start)), args)
+    return attach_roots(
+        residual, lax.fori_loop(0, _STEPS, step, stop_gradient(start)), args
+    )
 
 
 def axis_stress(

@@ -23,7 +23,7 @@ from jaxtyping import Array, Float
 
 from ..design.profile import AbstractProfile, between_arcs, sagitta
 from ..numerics.expansion import Expansion, expanded_all
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
@@ -284,7 +284,7 @@ class LineContact(AbstractLineContact):
         kinks = self.kinks()
         if kinks:
             parts.append(jnp.stack(kinks))
-        return stop(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
+        return stop_gradient(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
 
     def carried(self, table, a, b):
         return a, b

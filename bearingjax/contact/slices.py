@@ -7,7 +7,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import attach_roots, stop
+from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.quadrature import ContactMapped
 from ..numerics.types import Scalar, as_real
 from .halfspace.pressure import ContactSolution
@@ -85,7 +85,7 @@ def slices(
         return load - found.load[0], found.stiffness[0]
 
     args = line, made, load, end
-    frozen, even, far = stop((args, even, even + jnp.abs(end)))
+    frozen, even, far = stop_gradient((args, even, even + jnp.abs(end)))
 
     def step(state):
         approach, _, steps = state
@@ -97,7 +97,7 @@ def slices(
         _, change, steps = state
         return (jnp.abs(change) > _ENOUGH * far) & (steps < _STEPS)
 
-    begin = step((stop(first) + even, even, 0))
+    begin = step((stop_gradient(first) + even, even, 0))
     approach, change, _ = lax.while_loop(unfinished, step, begin)
     # Round-off may keep the last digits moving; where more than half of them do, it is
     # no answer.

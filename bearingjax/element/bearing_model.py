@@ -18,7 +18,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
@@ -208,7 +208,7 @@ class BearingModel(eqx.Module):
         q = self._checked(q)
         if azimuths is None:
             # Only the turn is held: the azimuths are numbers of the design too.
-            azimuths = self.azimuths(q if self.cage_torque else stop(q))
+            azimuths = self.azimuths(q if self.cage_torque else stop_gradient(q))
         starts = [None] * len(self.groups) if near is None else near
 
         def one(row, azimuth, *near):

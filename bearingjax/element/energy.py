@@ -21,7 +21,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
 from .rolling_element import (
@@ -76,7 +76,7 @@ def ball_energy(
     """
     energy = contact_energy(self, self.coordinates(rings, x), contact_response)
     # The tether does not pull the rings: it is no part of the bearing.
-    off = x - stop(self.geometry.midpoint(rings))
+    off = x - stop_gradient(self.geometry.midpoint(rings))
     energy = energy + 0.5 * self.tether * dot(off, off)
     if self.ball_inertia is None or self.has_reaction:
         return energy
@@ -121,7 +121,7 @@ def derivatives(
 
     def motions(y):
         n = y.shape[0] - x.shape[0]
-        return unpacked(element, rings if of_own else y[:n]), y[n:]
+        return ring_motions(element, rings if of_own else y[:n]), y[n:]
 
     def energy(y):
         return element.energy(*motions(y), contact_response)
@@ -147,10 +147,12 @@ def response(
     element: AbstractRollingElement, rings: Float[Array, " r"], x: Unknowns
 ) -> Expansion:
     """Contact response of a rolling element; arguments as in `derivatives`."""
-    return element.respond(element.coordinates(unpacked(element, rings), x))
+    return element.respond(element.coordinates(ring_motions(element, rings), x))
 
 
-def unpacked(element: AbstractRollingElement, rings: Float[Array, " r"]) -> RingMotion:
+def ring_motions(
+    element: AbstractRollingElement, rings: Float[Array, " r"]
+) -> RingMotion:
     """Motions of both rings from those that a row solves for.
 
     Args:

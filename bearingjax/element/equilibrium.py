@@ -14,7 +14,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.compiled import batched_loop
 from ..numerics.expansion import Expansion
-from ..numerics.implicit import attach, stop
+from ..numerics.implicit import attach, stop_gradient
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
 from ..numerics.minimise import (
     AbstractMinimiser,
@@ -24,7 +24,7 @@ from ..numerics.minimise import (
 )
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from .energy import derivatives, response, unpacked
+from .energy import derivatives, response, ring_motions
 from .rolling_element import AbstractRollingElement, Unknowns
 
 Rings = Float[Array, " r"]
@@ -117,7 +117,7 @@ def solve_element(
                 " operating angle have none. Use TrustRegionNewton()."
             )
         minimiser = dataclasses.replace(minimiser, symmetric=False)
-    frozen = stop((element, rings, magnitude, near))
+    frozen = stop_gradient((element, rings, magnitude, near))
     if element.n_unknowns == 0:
         state = _without_unknowns(*frozen[:2])
         return state, condensed(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
@@ -242,10 +242,10 @@ def condensed(rings: Rings, solved: SolvedElement, order: int = 2) -> Expansion:
         )
     if n == 0:
         return found
-    off = x - element.hints.midpoint(unpacked(element, rings))
+    off = x - element.hints.midpoint(ring_motions(element, rings))
     size = _load(element, contacts)
     given = element, off, solved.magnitude, size, d.gradient[r:]
-    loose = is_loose(*stop(given))
+    loose = is_loose(*stop_gradient(given))
     return jax.tree.map(lambda v: jnp.where(loose, 0.0, v), found)
 
 
@@ -274,7 +274,7 @@ class _Inputs(NamedTuple):
 
 
 def _prepare(element, rings, magnitude, near) -> _Inputs:
-    hints, motions = element.hints, unpacked(element, rings)
+    hints, motions = element.hints, ring_motions(element, rings)
     start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
         start = _followed(element, near, rings, start)
@@ -310,7 +310,7 @@ def _problem(given: _Inputs, shapes) -> Problem:
         return Evaluation(value, d.gradient, hessian, scale, noise, kept)
 
     def corrected(x, step, size):
-        return hints.corrected(unpacked(element, rings), x, step, size)
+        return hints.corrected(ring_motions(element, rings), x, step, size)
 
     memory = _zeros(shapes)
     correction = corrected if hints.corrects_steps else None
@@ -376,7 +376,7 @@ def _solved(element, rings, minimum) -> LocalState:
         result = jnp.where(saddle, int(Result.SADDLE), result)
     if element.hints.may_be_ejected:
         # Inertia along a direction that only the tether holds.
-        motions = unpacked(element, rings)
+        motions = ring_motions(element, rings)
         lost = element.hints.is_ejected(motions, minimum.x)
         lost = lost & (result != int(Result.NON_FINITE))
         result = jnp.where(lost, int(Result.NO_LOAD_PATH), result)
@@ -393,9 +393,9 @@ def _solved(element, rings, minimum) -> LocalState:
 def _followed(element, near, rings, otherwise):
     """Predict the position of an element that follows the rings from near by."""
     moved = rings - near.rings
-    hints, before = element.hints, unpacked(element, near.rings)
+    hints, before = element.hints, ring_motions(element, near.rings)
     step = near.follow @ moved
-    reach, length = hints.reach(unpacked(element, moved)), norm(step)
+    reach, length = hints.reach(ring_motions(element, moved)), norm(step)
     # Barely held, it would go astray.
     step = step * jnp.minimum(1.0, reach / jnp.where(length > 0, length, 1.0))
     x = near.offset + hints.midpoint(before) + step
@@ -414,9 +414,9 @@ def element_start(
     """
     element = solved.element
     held = jnp.any(aux.contact_load > 0)
-    off = solved.state.x - element.hints.midpoint(unpacked(element, rings))
+    off = solved.state.x - element.hints.midpoint(ring_motions(element, rings))
     follow = jnp.where(held, aux.follow, 0.0)
-    return stop(ElementStart(jnp.where(held, off, jnp.nan), follow, rings))
+    return stop_gradient(ElementStart(jnp.where(held, off, jnp.nan), follow, rings))
 
 
 def accept_small(

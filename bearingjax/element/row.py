@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from ..design import PreloadSpring
 from ..numerics.expansion import Expansion, expanded
-from ..numerics.implicit import attach, recall, stop
+from ..numerics.implicit import attach, recall, stop_gradient
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
 from .azimuth import Azimuth, turn
@@ -104,7 +104,7 @@ class Row(eqx.Module):
             The solved row. It has no derivatives: those of what follows from it are
             taken where it is used.
         """
-        row, q, azimuth = stop((self, q, azimuth))
+        row, q, azimuth = stop_gradient((self, q, azimuth))
         local = row.local(q)
         if row.spring is None:
             return row._solved(local, azimuth, minimiser, near)

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 from ..numerics.expansion import Expansion
 from ..numerics.types import Scalar
 from .azimuth import Azimuth
-from .energy import unpacked
+from .energy import ring_motions
 from .equilibrium import ElementStart, LocalState, SolvedElement, element_start
 from .frame import placement, section_matrix
 from .rolling_element import RingMotion
@@ -94,7 +94,7 @@ class RowResults(NamedTuple):
         """
 
         def one(element, rings, x, *arrays):
-            return function(element, unpacked(element, rings), x, *arrays)
+            return function(element, ring_motions(element, rings), x, *arrays)
 
         return self.row.each(one, self.rings, self.x, *arrays)
 

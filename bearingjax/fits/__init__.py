@@ -29,7 +29,7 @@ from .mounted import mounted as mounted
 from .mounted import raceway_diameters as raceway_diameters
 from .mounted import radial_clearance as radial_clearance
 from .mounted import row_shifts as row_shifts
-from .mounted import sized as sized
+from .mounted import with_bearing_dimensions as with_bearing_dimensions
 from .mounted import with_radial_clearance as with_radial_clearance
 from .warm_material import WARM_MATERIALS as WARM_MATERIALS
 from .warm_material import WarmMaterial as WarmMaterial

@@ -22,7 +22,7 @@ from ..design.checks import (
     number,
     positive,
 )
-from ..numerics.types import Scalar, as_real, namespace
+from ..numerics.types import Scalar, array_namespace, as_real
 from ..numerics.units import unit
 from .warm_material import WarmMaterial
 
@@ -367,7 +367,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     # 1/cos² of the angle more than the room, which is measured radially.
     apart = m.outer_raceway - m.inner_raceway
     angle = m.contact_angle
-    steep = 0.0 if angle is None else namespace(angle).tan(angle) ** 2
+    steep = 0.0 if angle is None else array_namespace(angle).tan(angle) ** 2
     beyond = warm["elements"] - 0.5 * (warm["inner_ring"] + warm["outer_ring"])
     elements = (apart - m.radial_clearance) * warm["elements"] + apart * steep * beyond
     return FitState(

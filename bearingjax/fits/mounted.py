@@ -135,7 +135,9 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
     return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)
 
 
-def sized(mounting: Mounting, bearing: AbstractBearing | BearingSet) -> Mounting:
+def with_bearing_dimensions(
+    mounting: Mounting, bearing: AbstractBearing | BearingSet
+) -> Mounting:
     """Return the mounting with the sizes of a bearing where its own are `None`.
 
     Args:
@@ -208,7 +210,9 @@ def mounted(
             `with_radial_clearance` and `row_shifts`.
     """
     if not isinstance(bearing, BearingSet):
-        return _on_seats(bearing, fit_state(sized(mounting, bearing), conditions))
+        return _on_seats(
+            bearing, fit_state(with_bearing_dimensions(mounting, bearing), conditions)
+        )
     states = _states(bearing, mounting, conditions)
     shifts = _shifts(bearing, mounting, states)
     parts = zip(bearing.rows, states, shifts, strict=True)
@@ -217,7 +221,10 @@ def mounted(
 
 def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
     """Fit state of each row of a set."""
-    return [fit_state(sized(mounting, row.bearing), conditions) for row in bearing.rows]
+    return [
+        fit_state(with_bearing_dimensions(mounting, row.bearing), conditions)
+        for row in bearing.rows
+    ]
 
 
 def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:

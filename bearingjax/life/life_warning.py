@@ -7,7 +7,7 @@ import jax
 import numpy as np
 
 from ..design import AbstractBearing, BearingSet, pitch_radius
-from ..numerics.types import namespace
+from ..numerics.types import array_namespace
 from ..statics.warning_kinds import KINDS
 from .life_factor import KAPPA
 from .rating import Ratings
@@ -102,7 +102,7 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
         yield "heavy_load", load / _most(ratings)
     hours = numbers.get("life_hours")
     if load is not None and hours is not None:
-        xp = namespace(load)
+        xp = array_namespace(load)
         # At a standstill nothing skids.
         turns = xp.isfinite(hours) | (load == 0)
         yield "light_load", xp.where(turns, 1.0 - load / _least(bearing, ratings), 0.0)
@@ -112,10 +112,13 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
         for name, share in much.items():
             lost = numbers.get(f"{name}_left_out", 0.0)
             over = lost - share * load
-            yield f"{name}_left_out", namespace(load).where(over > 0, lost, 0.0 * over)
+            yield (
+                f"{name}_left_out",
+                array_namespace(load).where(over > 0, lost, 0.0 * over),
+            )
     if "viscosity_ratio" in numbers:
         kappa = numbers["viscosity_ratio"]
-        xp = namespace(kappa)
+        xp = array_namespace(kappa)
         # At a standstill, where it is 0, nothing tires.
         yield "thin_film", KAPPA[0] / xp.where(kappa == 0, xp.inf, kappa)
         yield "thick_film", kappa
@@ -123,7 +126,7 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
     if share is not None and share.shape[-1] >= LEAST_LAMINAE:
         yield "loaded_ends", share[..., 0].sum() + share[..., -1].sum()
     if hours is not None and "damage" in numbers:
-        xp = namespace(hours)
+        xp = array_namespace(hours)
         # Without load there is none either, whatever the speed.
         still = xp.where(xp.isinf(hours), 1.0, 0.0)
         yield "no_hours", xp.where(numbers["damage"] > 0, still, xp.nan)
@@ -133,12 +136,12 @@ def _load(numbers) -> Any:
     """The larger one of P and of the load with the reference life, of those known."""
     names = ("equivalent_load", "reference_load")
     known = [numbers[name] for name in names if name in numbers]
-    return namespace(known[0]).maximum(known[0], known[-1]) if known else None
+    return array_namespace(known[0]).maximum(known[0], known[-1]) if known else None
 
 
 def _most(ratings):
     c, c0 = ratings.dynamic_capacity, ratings.static_capacity
-    return namespace(c0).minimum(0.5 * c, c0)
+    return array_namespace(c0).minimum(0.5 * c, c0)
 
 
 def _least(bearing, ratings):

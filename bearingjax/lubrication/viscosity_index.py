@@ -10,8 +10,8 @@ import numpy as np
 from jax import lax
 
 from ..design.checks import check, concrete, in_range, positive
-from ..numerics.implicit import attach_roots, stop
-from ..numerics.types import Scalar, as_real, namespace
+from ..numerics.implicit import attach_roots, stop_gradient
+from ..numerics.types import Scalar, array_namespace, as_real
 
 # Of L and of H = a Y² + b Y + c, mm²/s, from Y on.
 _FROM = np.asarray([2, 3.8, 4.4, 5, 6.4, 7, 7.7, 9, 12, 15, 18, 22, 28, 40, 55, 70.0])
@@ -86,7 +86,7 @@ def viscosity_at_100(viscosity: Scalar | float, index: Scalar | float) -> Scalar
 
 def _at_40(hot, index):
     """Viscosity at 40 °C of an oil of a given one at 100 °C, both [mm²/s]."""
-    np_ = namespace(hot)
+    np_ = array_namespace(hot)
     row = np_.clip(np_.searchsorted(_FROM, hot, side="right") - 1, 0, len(_FROM) - 1)
     powers = np_.stack([hot * hot, hot, np_.ones_like(hot)])
     low = np_.dot(np_.asarray(_L, hot.dtype)[row], powers)
@@ -103,7 +103,7 @@ def _solved(viscosity, index):
         viscosity, index = args
         return _at_40(hot, index) - 1e6 * viscosity
 
-    frozen = stop((viscosity, index))
+    frozen = stop_gradient((viscosity, index))
 
     def halve(_, ends):
         low, high = ends
@@ -112,5 +112,5 @@ def _solved(viscosity, index):
         return jnp.where(above, low, middle), jnp.where(above, middle, high)
 
     ends = jnp.full_like(viscosity, _FROM[0]), jnp.full_like(viscosity, _MOST)
-    low, high = lax.fori_loop(0, _HALVINGS, halve, stop(ends))
+    low, high = lax.fori_loop(0, _HALVINGS, halve, stop_gradient(ends))
     return 1e-6 * attach_roots(residual, 0.5 * (low + high), (viscosity, index))

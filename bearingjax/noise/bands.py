@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..design.checks import positive
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.types import as_real
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
@@ -290,7 +290,7 @@ def _covers(spectrum, lower, upper, highest):
 @program(quick=True)
 def _held(spectrum, lower, upper, highest):
     wide, within = _covers(spectrum, lower, upper, highest)
-    *powers, _ = _powers(stop(spectrum), lower, upper)
+    *powers, _ = _powers(stop_gradient(spectrum), lower, upper)
     changed = shift(*powers)
     axes = [1] * (changed.ndim - 1)
     return (wide & within).reshape(-1, *axes) & (jnp.abs(changed) < LEAST_SHIFT)

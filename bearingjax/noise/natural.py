@@ -20,7 +20,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design import rows_of
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.lapack import eigh
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -114,13 +114,13 @@ def _natural_modes(model, orbits) -> NaturalModes:
     motion, result = static_start(model, system, orbits)
     root = jnp.sqrt(system.masses)
     k = stiffness(system, motion) / jnp.outer(root, root)
-    _, vectors = eigh(stop(k))
+    _, vectors = eigh(stop_gradient(k))
     # Eigenvectors held: the derivative is that of the eigenvalue.
     square = jnp.einsum("im,ij,jm->m", vectors, k, vectors)
     positive = square > 0.0
     angular = jnp.where(positive, jnp.sqrt(jnp.where(positive, square, 1.0)), 0.0)
     share = jnp.sum(vectors[: system.mass.shape[0]] ** 2, axis=0)
-    ring, places = jax.vmap(system.parted)(vectors.T / stop(root)[None])
+    ring, places = jax.vmap(system.parted)(vectors.T / stop_gradient(root)[None])
     return NaturalModes(angular / (2.0 * jnp.pi), ring, places, share, result)
 
 

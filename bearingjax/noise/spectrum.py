@@ -23,7 +23,7 @@ from jaxtyping import Array, Complex, Float
 
 from ..design.checks import check, concrete, positive
 from ..numerics.compiled.programs import program
-from ..numerics.types import Scalar, as_real, namespace
+from ..numerics.types import Scalar, array_namespace, as_real
 
 WHOLE_TURNS = 1e-3
 """Largest deviation of a record from a whole number of turns, without a window [1].
@@ -88,7 +88,7 @@ class Rectangular(AbstractWindow):
         return jnp.zeros_like(distance)
 
     def peak(self, left, middle, right):
-        xp = namespace(middle)
+        xp = array_namespace(middle)
         return xp.zeros_like(middle), xp.ones_like(middle)
 
 
@@ -117,7 +117,7 @@ class Hann(AbstractWindow):
     def peak(self, left, middle, right):
         # A line at the distance s has sinc(s)/(1 - s²) of its amplitude in the bin:
         # the next one has (1 + s)/(2 - s) of that.
-        xp = namespace(middle)
+        xp = array_namespace(middle)
         above = right > left
         some = xp.where(middle > 0, middle, 1.0)
         ratio = xp.where(above, right, left) / some

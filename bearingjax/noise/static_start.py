@@ -7,12 +7,12 @@ from jaxtyping import Array, Float, Int
 
 from ..element.balls.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.linear import combined
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics.load import solve
-from ..statics.solution import message
+from ..statics.solution import failure_message
 from .dynamics.element_positions import ElementPositions
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -74,7 +74,7 @@ def static_start(
 
 def _carried(system, motion) -> tuple[Scalar, Scalar]:
     """Return the largest load through an element, and the largest of all [N]."""
-    motion = stop(motion)
+    motion = stop_gradient(motion)
     found = ElementPositions.at(system.azimuth(jnp.zeros((), motion.dtype)))
     outer, inner = (
         jnp.linalg.norm(force.stacked[:, :2], axis=1)
@@ -83,7 +83,7 @@ def _carried(system, motion) -> tuple[Scalar, Scalar]:
     return jnp.max(jnp.minimum(outer, inner)), jnp.max(jnp.maximum(outer, inner))
 
 
-def why(model: NoiseModel) -> str:
+def failure_message(model: NoiseModel) -> str:
     """Describe why a bearing has no equilibrium under its load.
 
     Args:
@@ -95,4 +95,4 @@ def why(model: NoiseModel) -> str:
             "nothing presses the rolling elements between the rings, and the"
             f" {model.moving_ring} ring lies anywhere; add load or preload"
         )
-    return message(solution, model.moving_ring)
+    return failure_message(solution, model.moving_ring)

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import check, count, is_traced, of_class
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.options import DEFAULT_TOLERANCE
@@ -25,7 +25,7 @@ from .dynamics.cage import fastest_of_cage
 from .dynamics.stepping import HELD, stepped
 from .model import NoiseModel
 from .natural import natural_modes
-from .static_start import static_start, why
+from .static_start import failure_message, static_start
 
 _STABLE = 2.5
 """Stability limit of the step: 2.78 radians of the fastest mode [rad]."""
@@ -200,7 +200,7 @@ def _failure(model: NoiseModel, result: int, steps: int) -> str:
             f"vibration: `steps` is {steps}, too few for the contacts under their"
             " largest load; the motion cannot be trusted."
         )
-    return f"vibration: the bearing finds no place under its load: {why(model)}."
+    return f"vibration: the bearing finds no place under its load: {failure_message(model)}."
 
 
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
@@ -309,6 +309,6 @@ def _fastest(system, motion, time) -> Scalar:
     Source: Gershgorin.
     """
     root = jnp.sqrt(system.masses)
-    stiffness = jax.jacfwd(system.contact_forces)(*stop((motion, time)))
+    stiffness = jax.jacfwd(system.contact_forces)(*stop_gradient((motion, time)))
     angular2 = jnp.max(jnp.sum(jnp.abs(stiffness) / jnp.outer(root, root), axis=1))
     return jnp.maximum(jnp.sqrt(angular2), angular2 * system.retardation)

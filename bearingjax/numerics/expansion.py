@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 
-from .implicit import stop
+from .implicit import stop_gradient
 
 
 class Expansion(NamedTuple):
@@ -81,7 +81,7 @@ def _orders(function, u, args, known):
         return _plain((function, structure, order), u, traced, others)
 
     if known is None:
-        known = bound(stop(u), stop(traced), others)
+        known = bound(stop_gradient(u), stop_gradient(traced), others)
 
     @jax.custom_jvp
     def hessian(u, traced, others, known):
@@ -115,7 +115,7 @@ def _orders(function, u, args, known):
     hessian.defjvp(of_hessian, symbolic_zeros=True)
     gradient.defjvp(of_gradient, symbolic_zeros=True)
     value.defjvp(of_value, symbolic_zeros=True)
-    return (value, gradient, hessian), (u, traced, others, stop(known))
+    return (value, gradient, hessian), (u, traced, others, stop_gradient(known))
 
 
 @partial(jax.jit, static_argnums=0)

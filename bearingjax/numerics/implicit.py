@@ -95,7 +95,7 @@ def attach_by(residual, solution, args, correction):
         now = joined(traced, others)
         return y, correction(lambda v: bound(v, traced, others), y, change, now)
 
-    return attached(stop(solution), traced, others)
+    return attached(stop_gradient(solution), traced, others)
 
 
 def _parted(args):
@@ -221,7 +221,7 @@ def recall(function, values, args):
         )
         return recalled(*primals), change
 
-    return recalled(stop(values), traced, others)
+    return recalled(stop_gradient(values), traced, others)
 
 
 @eqx.filter_custom_jvp
@@ -270,7 +270,7 @@ def _rule_through_jacobian(primals, tangents, *, function):
     return value, change
 
 
-def stop(tree):
+def stop_gradient(tree):
     """`lax.stop_gradient` on every floating array of a pytree."""
     return jax.tree.map(
         lambda x: lax.stop_gradient(x) if eqx.is_inexact_array(x) else x, tree

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from .implicit import stop
+from .implicit import stop_gradient
 from .result import Result
 from .types import Scalar
 
@@ -83,7 +83,9 @@ def integrated(
         norm=_largest,
     )
     if knots is not None:
-        controller = diffrax.ClipStepSizeController(controller, jump_ts=stop(knots))
+        controller = diffrax.ClipStepSizeController(
+            controller, jump_ts=stop_gradient(knots)
+        )
     forward = options.derivatives == "forward"
     meter = diffrax.TqdmProgressMeter if options.progress else diffrax.NoProgressMeter
     solved = diffrax.diffeqsolve(

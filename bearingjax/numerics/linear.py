@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .lapack import solve_any
-from .types import namespace
+from .types import array_namespace
 
 _WRITTEN_OUT = 8
 """Most unknowns of a system that is written out."""
@@ -37,7 +37,7 @@ def lengths(vectors: Any) -> Any:
     Args:
         vectors: Arrays of NumPy or of JAX (…, component) [any unit].
     """
-    xp, squares = namespace(vectors), (vectors**2).sum(axis=-1)
+    xp, squares = array_namespace(vectors), (vectors**2).sum(axis=-1)
     none = squares == 0
     return xp.where(none, 0.0, xp.sqrt(xp.where(none, 1.0, squares)))
 

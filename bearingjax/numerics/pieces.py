@@ -13,7 +13,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from .implicit import attach_roots, stop
+from .implicit import attach_roots, stop_gradient
 from .quadrature import AbstractQuadrature, ContactMapped, Nodes, refined_edges
 
 # Steps to a top (of a cubic one suffices), and from there to a zone edge.
@@ -47,7 +47,7 @@ class Pieces(AbstractQuadrature):
 
         `offset` is taken at (interval, n) positions, a row in each interval.
         """
-        cuts = stop(jnp.asarray(kinks))
+        cuts = stop_gradient(jnp.asarray(kinks))
         ends = jnp.stack([cuts[:-1], cuts[1:]], axis=1)
         one = jnp.ones_like(ends)
 
@@ -62,23 +62,25 @@ class Pieces(AbstractQuadrature):
         cut = start + jnp.where(turns, share, 0.5) * (end - start)
         bounds = jnp.concatenate([start, cut, end], axis=1)
         _, slope = jax.jvp(offset, (bounds,), (jnp.ones_like(bounds),))
-        return stop((bounds, slope))
+        return stop_gradient((bounds, slope))
 
     def nodes(self, offset, args, table, a, b, arcs=False):
-        ends = _monotone(partial(offset, stop(args)), *stop((table, b)))
+        ends = _monotone(
+            partial(offset, stop_gradient(args)), *stop_gradient((table, b))
+        )
         left, right = ends[:, :-1], ends[:, 1:]
 
         def argument(x, traced):
             a, b, args = traced
             return a + b * x - offset(args, x)
 
-        at = argument(ends, stop((a, b, args)))
+        at = argument(ends, stop_gradient((a, b, args)))
         first, last = at[:, :-1] > 0, at[:, 1:] > 0
         root = refined_edges(
             _TO_EDGE,
-            partial(offset, stop(args)),
-            stop(a),
-            stop(b),
+            partial(offset, stop_gradient(args)),
+            stop_gradient(a),
+            stop_gradient(b),
             jnp.where(first, left, right),
             jnp.where(first, right, left),
             jnp.where(first, -1.0, 1.0).astype(a.dtype),

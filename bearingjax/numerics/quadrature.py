@@ -23,7 +23,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from .compiled.elementwise import elementwise
-from .implicit import attach_roots, stop
+from .implicit import attach_roots, stop_gradient
 
 Offset = Callable[[Array], Array]
 
@@ -167,17 +167,17 @@ class ContactMapped(AbstractQuadrature):
         if arcs:
             return start, end
         index = jnp.arange(self.scan, dtype=dtype)[None, :]
-        at = stop(_scan_point(index, start[:, None], end[:, None], self.scan))
+        at = stop_gradient(_scan_point(index, start[:, None], end[:, None], self.scan))
         fixed, slope = jax.jvp(offset, (at,), (jnp.ones_like(at),))
-        return start, end, at, stop(fixed), stop(slope)
+        return start, end, at, stop_gradient(fixed), stop_gradient(slope)
 
     def nodes(self, offset, args, table, a, b, arcs=False):
         start, end, *_ = table
-        frozen = stop((*table, a, b))
+        frozen = stop_gradient((*table, a, b))
         if arcs:
-            left, right, inner = _loaded_arcs(offset, stop(args), *frozen)
+            left, right, inner = _loaded_arcs(offset, stop_gradient(args), *frozen)
         else:
-            known = partial(offset, stop(args))
+            known = partial(offset, stop_gradient(args))
             left, right, inner = _loaded_interval(known, *frozen)
 
         def argument(x, traced):

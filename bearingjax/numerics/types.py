@@ -14,7 +14,7 @@ Ring = Float[Array, "12"]
 RingStiffness = Float[Array, "12 12"]
 
 
-def namespace(array) -> Any:
+def array_namespace(array) -> Any:
     """Return NumPy for its own arrays, to avoid compilation; `jax.numpy` for others.
 
     Args:

@@ -11,7 +11,7 @@ from ..cases.cases import Cases, case_speed, solve_case
 from ..element.bearing_element import BearingElement, check_element
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
-from ..statics.solution import Solution, message
+from ..statics.solution import Solution, failure_message
 
 
 class AbstractSystem(eqx.Module):
@@ -160,7 +160,7 @@ def has_loads(solved: Any) -> bool:
     return isinstance(solved, Solution) or hasattr(solved, "solution")
 
 
-def failure(design: Design, solved: Any) -> str:
+def failure_message(design: Design, solved: Any) -> str:
     """Reason why a case failed, in words.
 
     Args:
@@ -171,6 +171,6 @@ def failure(design: Design, solved: Any) -> str:
     if loads is not None and (
         not isinstance(design, AbstractSystem) or int(loads.result)
     ):
-        return message(loads, loads.moving_ring)
+        return failure_message(loads, loads.moving_ring)
     assert isinstance(design, AbstractSystem)
     return design.message(solved)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
-from .held import of_each
+from .held import map_parts
 from .linear.reduction import held_motions
 from .parts import AbstractSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
@@ -52,10 +52,10 @@ class Condensed(eqx.Module):
         """Force, stiffness and damping of every support."""
         moved = self.rows @ y
         if jnp.ndim(self.speed):
-            return of_each(
+            return map_parts(
                 lambda s, *at: s.pushed(*at), self.supports, moved, self.speed
             )
-        return of_each(lambda s, at: s.pushed(at, self.speed), self.supports, moved)
+        return map_parts(lambda s, at: s.pushed(at, self.speed), self.supports, moved)
 
     def nothing(self) -> Supported:
         """Return zeros of the shapes of `of_supports`."""

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 from .parts import AbstractSupport
 
 
-def of_each(function: Callable, parts: Sequence[Any], *arrays: Any) -> Any:
+def map_parts(function: Callable, parts: Sequence[Any], *arrays: Any) -> Any:
     """Map function(part, *its arrays) over all parts, such as supports.
 
     Args:

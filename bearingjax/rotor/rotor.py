@@ -13,7 +13,7 @@ from ..design.checks import instance
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from .damping import AbstractDamping
-from .held import of_each
+from .held import map_parts
 from .parts import AbstractPart, AbstractSupport
 from .shaft import STATION_FREEDOMS, Shaft
 
@@ -285,7 +285,7 @@ def matrices_about(
     free = held = matrices(own.damping, own.stiffness)
     if rotor.supports and (supported or rotor.damping is not None):
         rows = rotor.at_supports()
-        k, c = of_each(
+        k, c = map_parts(
             lambda support, moved: support.linearised(moved, speed),
             rotor.supports,
             rows @ motion,

@@ -14,7 +14,7 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, number, of_class
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import attach_by, recall, stop, unless_failed
+from ..numerics.implicit import attach_by, recall, stop_gradient, unless_failed
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
@@ -24,7 +24,7 @@ from .condensed import Condensed, Supported, condensed
 from .loads import Motions, RotorLoads
 from .parts import LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
-from .statics_words import unsettled, warn_of
+from .statics_words import failure_message, warn_of
 
 _FIRST_STEP = 1e-5
 """First bound of the steps [m]."""
@@ -109,7 +109,7 @@ def static_equilibrium(
         found = raise_unless_converged(
             found,
             found.result,
-            lambda: unsettled(rotor, found, place),
+            lambda: failure_message(rotor, found, place),
             "static_equilibrium",
         )
     known = not is_traced(found.motion) and not is_traced(found.result)
@@ -137,7 +137,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
     return loads
 
 
-def searched(parts: Condensed, length) -> Minimum:
+def search_equilibrium(parts: Condensed, length) -> Minimum:
     """Search the equilibrium, without derivatives; its memory are the supports.
 
     Args:
@@ -212,14 +212,14 @@ def equilibrium_at(
     """
     parts = condensed(rotor, loads.constant(rotor), speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
-    found = searched(stop(parts), stop(length))
+    found = search_equilibrium(stop_gradient(parts), stop_gradient(length))
     solved = found.result == Result.CONVERGED
 
     def there(*given):
         return _equilibrium(found, *given)
 
     equilibrium = unless_failed(there, (rotor, parts, speed), solved)
-    return equilibrium, stop(parts).motion(found.x)
+    return equilibrium, stop_gradient(parts).motion(found.x)
 
 
 def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
@@ -243,7 +243,7 @@ def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
         residual=found.residual,
         steps=found.steps,
         result=found.result,
-        free=softest(stop(parts), stop(parts.slope(stiffness))),
+        free=softest(stop_gradient(parts), stop_gradient(parts.slope(stiffness))),
     )
 
 

@@ -33,7 +33,7 @@ def _named(rotor, motion) -> str:
     return f"{STATION_FREEDOMS[freedom]} of station {station}"
 
 
-def unsettled(rotor: Any, found: Any, place: Any) -> str:
+def failure_message(rotor: Any, found: Any, place: Any) -> str:
     """Return the message on a failed equilibrium of a rotor.
 
     Args:

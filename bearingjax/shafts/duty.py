@@ -26,7 +26,7 @@ from ..statics.solution import Solution
 from ..statics.warning import sizes
 from .equilibrium import check_torques, system_state, torques_left
 from .power import power_flow
-from .seats import adjusted, in_place, speed_of
+from .seats import in_place, speed_of, with_preload_offsets
 from .system import ShaftSystem, feel_speed
 
 BATCH = 64
@@ -113,7 +113,7 @@ def solve_duty(
             check_alike(seat.installed.drawing.bearing)
     fast = systems[0].inertia
     offsets: dict[Any, Any] = {}
-    whole = [adjusted(system, offsets) for system in systems]
+    whole = [with_preload_offsets(system, offsets) for system in systems]
     found = _map(state_of, whole)
     _check_balances(systems, found)
     lives: list[tuple[Any, Any, Any]] = []
@@ -240,10 +240,12 @@ def _rated(
     given: Any, inertia: bool | None
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
-    return rated(in_place(installed, motion, speed, inertia, 101), speed, conditions)
+    return bearing_results(
+        in_place(installed, motion, speed, inertia, 101), speed, conditions
+    )
 
 
-def rated(
+def bearing_results(
     solution: Solution, speed: Speed, conditions: LifeConditions
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     """Return peak pressure, numbers of `LIVES`, and sizes of warnings of a bearing.

@@ -14,17 +14,17 @@ from jaxtyping import Array, Float
 
 from ..design.checks import is_traced, of_class
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop, unless_failed
+from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..rotor import Rotor
 from ..rotor.condensed import Condensed, condensed
 from ..rotor.loads import accelerated
 from ..rotor.rotor import N_STATION
-from ..rotor.statics import searched
+from ..rotor.statics import search_equilibrium
 from ..statics.support import axial_senses
 from .power import PowerFlow, power_flow
-from .seats import adjusted, supports_of
+from .seats import supports_of, with_preload_offsets
 from .state import SystemSolution, described, moving
 from .system import ShaftSystem
 
@@ -57,7 +57,7 @@ def solve_system(system: ShaftSystem, *, throw: bool = True) -> SystemSolution:
         found = raise_unless_converged(
             found,
             found.result,
-            lambda: unsolved(system, found, place),
+            lambda: failure_message(system, found, place),
             "solve_system",
         )
     return found
@@ -74,7 +74,7 @@ def searched_system(
     Raises:
         ValueError, SolveError: As `solve_system`, but for a failed search.
     """
-    found, place = system_state(adjusted(system))
+    found, place = system_state(with_preload_offsets(system))
     check_torques(system, found.power.output_shaft, *torques_left(found.power))
     return found, place
 
@@ -136,27 +136,31 @@ def system_state(
         rotors.append(Rotor(beam, (), here, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
     whole = _coupled(system, rotors, points, power)
-    found = _named(system, searched(stop(whole), stop(max_length(system))), whole)
+    found = _named(
+        system,
+        search_equilibrium(stop_gradient(whole), stop_gradient(max_length(system))),
+        whole,
+    )
     solved = found.result == Result.CONVERGED
 
     def there(*given: Any) -> SystemSolution:
         return described(found, *given)
 
     given = system, rotors, points, whole, power
-    return unless_failed(there, given, solved), stop(whole).motion(found.x)
+    return unless_failed(there, given, solved), stop_gradient(whole).motion(found.x)
 
 
 def _named(system, found, whole):
     """Return the end of a search; of a shaft that slid off its bearings in a direction
     in which none holds it, `NO_LOAD_PATH` in place of `STEP_LIMIT`: the search may end
     before it is far."""
-    motion, first = stop(whole).motion(found.x), 0
+    motion, first = stop_gradient(whole).motion(found.x), 0
     away = jnp.asarray(False)
     for index, line in enumerate(system.shafts):
         count = N_STATION * (sum(system.plans[index].divisions) + 1)
         along, first = motion[first + 2 : first + count : N_STATION], first + count
         for sense in {1, -1} - _held(system, index):
-            slid = jnp.min(sense * along) > _SLID * jnp.sum(stop(line.length))
+            slid = jnp.min(sense * along) > _SLID * jnp.sum(stop_gradient(line.length))
             away = away | slid
     away = away & (found.result == Result.STEP_LIMIT)
     code = jnp.asarray(int(Result.NO_LOAD_PATH), found.result.dtype)
@@ -257,7 +261,7 @@ def _coupled(system, rotors, points, power) -> Condensed:
     )
 
 
-def unsolved(system: ShaftSystem, found: SystemSolution, place: Any) -> str:
+def failure_message(system: ShaftSystem, found: SystemSolution, place: Any) -> str:
     """Return the message on a system without equilibrium.
 
     Args:

@@ -24,7 +24,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from ..rotor.held import of_each
+from ..rotor.held import map_parts
 from .bearing_oil import BearingOil
 from .equilibrium import system_state
 from .heat_balance import (
@@ -37,7 +37,7 @@ from .heat_balance import (
     stepped_while,
     with_slope,
 )
-from .seats import adjusted, in_place, speed_of
+from .seats import in_place, speed_of, with_preload_offsets
 from .state import SystemSolution
 from .system import ShaftSystem
 
@@ -209,7 +209,7 @@ def solve_heat(
         SolveError: If no equilibrium was found and `throw`.
     """
     _check(system, network)
-    cold = adjusted(system)
+    cold = with_preload_offsets(system)
     if _is_traced(cold, network):
         rise, slowest, residual, steps, solved = _steady(cold, network)
         known = _within(rise)
@@ -245,11 +245,11 @@ def solve_heat(
     if not throw:
         return found
     return raise_unless_converged(
-        found, result, lambda: overheated(found), "solve_heat"
+        found, result, lambda: failure_message(found), "solve_heat"
     )
 
 
-def overheated(state: ThermalState) -> str:
+def failure_message(state: ThermalState) -> str:
     """Return the message on a system without thermal equilibrium.
 
     Args:
@@ -281,7 +281,7 @@ def warm_up(
         then the housing if it has a node; NaN from where they run away.
     """
     _check(system, network)
-    cold, times = adjusted(system), as_real(times)
+    cold, times = with_preload_offsets(system), as_real(times)
     if _is_traced(cold, network, times):
         return network.ambient + _transient(cold, network, times, steps)
 
@@ -474,6 +474,6 @@ def heat_and_state(
     # Like bearings share one program.
     parts = [(warm.seats[k].installed, network.paths[k]) for k in turning]
     given = solution.motion[np.array(turning, int)], jnp.stack(speeds), jnp.stack(oil)
-    for k, power in zip(turning, of_each(lost, parts, *given), strict=True):
+    for k, power in zip(turning, map_parts(lost, parts, *given), strict=True):
         made[2 * k] = made[2 * k + 1] = 0.5 * power
     return jnp.stack(made), solution

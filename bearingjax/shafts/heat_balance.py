@@ -14,7 +14,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import attach_by, stop
+from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import eigvals, solve_any
 
 HOTTEST = 300.0
@@ -48,7 +48,7 @@ def steady_rises(
         conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
         steps; whether it was found. Rises are those of the last step if it was not.
     """
-    still, *network = stop((args, conductance, capacity))
+    still, *network = stop_gradient((args, conductance, capacity))
 
     def evaluated(rise):
         return with_slope(lambda rise: (heat(rise, still), ()), rise)

@@ -26,7 +26,7 @@ from .system import ShaftSystem
 _RING = len(FREEDOMS)
 
 
-def adjusted(
+def with_preload_offsets(
     system: ShaftSystem,
     known: dict[Any, Scalar] | None = None,
     *,

@@ -27,10 +27,18 @@ from ..optimise.variable import dotted
 from ..statics.warning import counted
 from .bearing_oil import BearingOil
 from .doubts import load_doubts
-from .duty import LIVES, DutyResult, alike, bearing_hours, rated, state_of, system_life
+from .duty import (
+    LIVES,
+    DutyResult,
+    alike,
+    bearing_hours,
+    bearing_results,
+    state_of,
+    system_life,
+)
 from .parts import Gear
 from .power import power_flow
-from .seats import adjusted, in_place, speed_of
+from .seats import in_place, speed_of, with_preload_offsets
 from .system import ShaftSystem
 
 
@@ -123,7 +131,7 @@ class ShaftDesign(AbstractSystem):
         Returns:
             The numbers of one case, without the case axis; of springs zeros.
         """
-        system = adjusted(self.system, throw=False)
+        system = with_preload_offsets(self.system, throw=False)
         found = state_of(system)
         zero = jnp.zeros((), jnp.result_type(float))
         lives: dict[str, list[Any]] = {}
@@ -136,7 +144,7 @@ class ShaftDesign(AbstractSystem):
                 speed, inertia = speed_of(system, k, found["speed"])
                 given = seat.installed, found["motion"][k], speed, inertia, 101
                 solution = in_place(*given)
-                peak, numbers, doubts = rated(solution, speed, conditions)
+                peak, numbers, doubts = bearing_results(solution, speed, conditions)
                 oil = None if self.oils is None else self.oils[k]
                 if oil is not None:
                     power = oil.power(solution)

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..rotor import STATION_FREEDOMS
@@ -136,7 +136,7 @@ def described(
         residual=found.residual,
         steps=found.steps,
         result=found.result,
-        free=softest(stop(whole), stop(whole.slope(stiffness))),
+        free=softest(stop_gradient(whole), stop_gradient(whole.slope(stiffness))),
     )
 
 

@@ -16,7 +16,7 @@ from ..contact.hertz import Ellipse
 from ..element.balls.ball_contacts import angles
 from ..element.balls.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
-from ..element.energy import derivatives, unpacked
+from ..element.energy import derivatives, ring_motions
 from ..element.inertia import Speed
 from ..element.rolling_element import RingMotion, split
 from ..numerics.types import Scalar
@@ -84,13 +84,13 @@ class BalancedLoads(eqx.Module):
         if not ball.sees_difference:
             seen = jnp.concatenate([axes @ both.outer, axes @ both.inner])
         forces = derivatives(ball, seen, centre, with_hessian=False).gradient
-        moved = ball.coordinates(unpacked(ball, seen), centre)
+        moved = ball.coordinates(ring_motions(ball, seen), centre)
         outwards = jnp.asarray(ball.grooves.outwards, moved.dtype)
         angle = angles(outwards[:, None] * ball.grooves.touch(moved).normal)
         load = ball.respond(moved).aux
         law, contacts = skid.point_law, (load, angle, self.ellipses)
         loaded = loaded_ball(skid.bearing, law, skid.oil, *contacts)
-        on_rings = unpacked(ball, forces[:-2])
+        on_rings = ring_motions(ball, forces[:-2])
         moving = on_rings.outer if self.balance.outer_moves else on_rings.inner
         if ball.sees_difference and self.balance.outer_moves:
             moving = -on_rings.inner

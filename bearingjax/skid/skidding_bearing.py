@@ -20,7 +20,7 @@ from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
 from .conditions import conditions
 from .model import SkidModel
-from .orbits.steady import check_places, end_state, enough_places, failure
+from .orbits.steady import check_places, end_state, enough_places, failure_message
 from .orbits.steady_results import SteadyMotion
 from .warning import skid_warnings
 
@@ -87,7 +87,7 @@ class SkiddingBearing(AbstractSystem):
                 "its balls or rollers bear unlike loads: `places` must be a multiple"
                 f" of {count}"
             )
-        return f"no end state of skidding after {failure(solved)}"
+        return f"no end state of skidding after {failure_message(solved)}"
 
     def warnings(self, cases, solved):
         still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)

@@ -51,6 +51,6 @@ from .solution import BallSolution as BallSolution
 from .solution import RollerSolution as RollerSolution
 from .solution import Solution as Solution
 from .solution import Stats as Stats
-from .solution import message as message
+from .solution import failure_message as failure_message
 from .support import restrained_freedoms as restrained_freedoms
 from .warning import warnings as warnings

@@ -21,7 +21,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop, unless_failed
+from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from .balance import balance_of
@@ -29,7 +29,13 @@ from .load_case import LoadCase, Prescribed, Vector, load_case
 from .load_result import solution_of
 from .load_search import search, search_start
 from .options import SolveOptions
-from .solution import BallSolution, RollerSolution, Solution, message, no_load_path
+from .solution import (
+    BallSolution,
+    RollerSolution,
+    Solution,
+    failure_message,
+    no_load_path,
+)
 
 
 class _Choices(TypedDict, total=False):
@@ -182,9 +188,9 @@ def _solve(
         case, pitch_radius(element.bearing), options.moving_ring == "outer"
     )
     # The search is not differentiated: derivatives are those of its end.
-    frozen, still = stop(model), stop(balance)
-    rows = rows_of(stop(element.bearing))
-    begin = search_start(rows, frozen, still, stop(case.start))
+    frozen, still = stop_gradient(model), stop_gradient(balance)
+    rows = rows_of(stop_gradient(element.bearing))
+    begin = search_start(rows, frozen, still, stop_gradient(case.start))
     minimum = search(frozen, still, begin, options)
 
     def solution(element, model, balance, case):
@@ -207,7 +213,7 @@ def raise_if_failed(solution: Solution, owner: str) -> Solution:
     return raise_unless_converged(
         solution,
         solution.result,
-        lambda: message(solution, solution.moving_ring),
+        lambda: failure_message(solution, solution.moving_ring),
         owner,
         (solution.unrestrained, [no_load_path(solution, k) for k in range(6)]),
     )

@@ -14,7 +14,7 @@ from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
-from ..numerics.implicit import stop
+from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import Minimum
 from ..numerics.result import Result
 from ..numerics.types import Ring
@@ -63,12 +63,12 @@ def solution_of(
     # gz may be prescribed: the results follow it through the azimuths.
     solved = model.following(q, minimum.memory.solved)
     fields, evaluated = describe(element, model, q, options.points, solved)
-    left = stop(balance.out_of_balance(fields["force"]))
+    left = stop_gradient(balance.out_of_balance(fields["force"]))
     reference = jnp.where(begin.size > 0, begin.size, evaluated.magnitude)
     tiny = jnp.finfo(left.dtype).tiny
     residual = jnp.sqrt(left @ left) / jnp.maximum(reference, tiny)
     # What presses contacts by the size of the bearing: numbers of another scale.
-    most = stop(stiffness_scale(element.bearing) * balance.radius)
+    most = stop_gradient(stiffness_scale(element.bearing) * balance.radius)
     strong = (begin.size > most) | (begin.inertia > most)
     far = begin.y[:5] @ begin.y[:5] >= (8.0 * balance.radius) ** 2
     ending = _outcome(

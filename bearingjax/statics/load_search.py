@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, SetRow
 from ..element.bearing_model import BearingModel, Solved
 from ..numerics.compiled import batched_loop
-from ..numerics.implicit import attach_by, stop
+from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.linear import null_space, solve
 from ..numerics.minimise import (
     Evaluation,
@@ -219,7 +219,7 @@ def _floating(stiffness, free):
     """Projector on the free directions that no more than round-off holds (6, 6) [1]."""
     size = jnp.max(jnp.diagonal(stiffness))
     size = jnp.where(size > 0, size, 1.0)
-    return null_space(stop(stiffness / size + jnp.diag(1.0 - free)))
+    return null_space(stop_gradient(stiffness / size + jnp.diag(1.0 - free)))
 
 
 def _by_stiffness(stiffness, force, floating, symmetric):

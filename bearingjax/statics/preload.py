@@ -100,10 +100,10 @@ def remaining_preload(
     check_opposed("remaining_preload", bearing)
     still = jnp.zeros(6, bearing.rows[0].position.dtype)
     solution = solve_load(element, still, free=["uz"], speed=speed, throw=throw)
-    return pressed(solution)
+    return row_preload_force(solution)
 
 
-def pressed(solution: Solution) -> Scalar:
+def row_preload_force(solution: Solution) -> Scalar:
     """Axial force on the inner rings of the rows that carry load along +z [N].
 
     Args:

@@ -170,7 +170,7 @@ def no_load_path(solution: Solution, freedom: int) -> str:
     )
 
 
-def message(solution: Solution, moving_ring: str) -> str:
+def failure_message(solution: Solution, moving_ring: str) -> str:
     """Cause and cure of a result, in words; for concrete, single solutions."""
     result = Result(int(solution.result))
     stats = solution.stats

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 
 from ..design.checks import is_traced
-from ..numerics.types import namespace
+from ..numerics.types import array_namespace
 from .solution import Solution
 from .warning_kinds import KINDS
 
@@ -63,7 +63,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
     Args:
         solution: Solution of one case, traced or not.
     """
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     solved = solution.result == 0
     with np.errstate(all="ignore"):
         return {

@@ -115,7 +115,7 @@ def _of_raceways(solution: Solution, concerned: Any) -> str:
 KINDS: dict[str, Kind] = {
     "implausible_number": Kind(
         _always,
-        sizes.oddities,
+        sizes.implausible_dimensions,
         0.0,
         "far outside the sizes of rolling bearings: {where}; are these SI units?",
         sizes.odd_names,
@@ -123,7 +123,7 @@ KINDS: dict[str, Kind] = {
     ),
     "no_stiffness": Kind(
         _always,
-        sizes.loose,
+        sizes.unrestrained_directions,
         0.0,
         "no stiffness in {where}: nothing holds it there, and its place is arbitrary",
         sizes.loose_names,
@@ -131,7 +131,7 @@ KINDS: dict[str, Kind] = {
     ),
     "unloaded_row": Kind(
         lambda element, _: len(rows_of(element.bearing)) > 1,
-        sizes.idle_rows,
+        sizes.unloaded_rows,
         0.0,
         "{where} is unloaded: the other rows or their springs hold all",
         sizes.idle_numbers,
@@ -276,7 +276,7 @@ KINDS: dict[str, Kind] = {
         f" more than {100.0 * sizes.LAND_SHARE:g} % of"
         " a contact's load: {where}; pressure and stiffness there are worked out with"
         " the curvature of the groove, a land presses harder and is softer",
-        lambda s: sizes.of_raceways(s, sizes.on_land(s)),
+        lambda s: sizes.of_raceways(s, sizes.load_beyond_groove(s)),
         _balls,
     ),
     "lifted_ball": Kind(
@@ -286,7 +286,7 @@ KINDS: dict[str, Kind] = {
         "lifted off the inner raceway by centrifugal force, more than"
         f" {100.0 * sizes.SMALLEST_LOAD:g} %"
         " of the largest load: {where}",
-        lambda s: sizes.numbered("ball", np.flatnonzero(sizes.lifted(s))),
+        lambda s: sizes.numbered("ball", np.flatnonzero(sizes.balls_off_inner_ring(s))),
         _balls,
     ),
     "edge_loaded": Kind(

@@ -28,7 +28,7 @@ from ..design import (
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
 from ..element.kinematics import Linearised
-from ..numerics.types import namespace
+from ..numerics.types import array_namespace
 from .balls import above_round_off
 from .rollers import EDGE_PRESSURE
 from .solution import LARGEST_PRESSURE as LARGEST_PRESSURE
@@ -106,7 +106,7 @@ def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
     ]
     least = scales[0]
     for scale in scales[1:]:
-        least = namespace(scale).minimum(least, scale)
+        least = array_namespace(scale).minimum(least, scale)
     return least
 
 
@@ -141,13 +141,13 @@ def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def _largest(solution, numbers):
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     return xp.max(xp.stack([xp.asarray(number) for number in numbers]))
 
 
 def _one(solution, flags):
     """1 where flags are set, 0 elsewhere."""
-    return namespace(solution.result).where(flags, 1.0, 0.0)
+    return array_namespace(solution.result).where(flags, 1.0, 0.0)
 
 
 def listed(numbers: Any) -> str:
@@ -178,7 +178,7 @@ def of_raceways(solution: Solution, flags: Any) -> str:
 
 def _free_stiffness(solution):
     """Stiffness of the free freedoms, all in N/m, and how much counts as none [N/m]."""
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     first = 6 * RINGS.index(solution.moving_ring)
     radius = xp.where(solution.pitch_radius > 0, solution.pitch_radius, 1.0)
     # Rotations times the pitch radius.
@@ -199,7 +199,7 @@ def _free_stiffness(solution):
 def _across(solution):
     """Unit vector (6,) of a free shift at right angles to all loaded elements; zero if
     there is none, or finite kinematics, in which a shift across an element lifts it."""
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     loaded = _one(solution, solution.load_zone)
     double = 2.0 * solution.azimuth
     x, y = (loaded * xp.cos(double)).sum(), (loaded * xp.sin(double)).sum()
@@ -215,12 +215,12 @@ def _across(solution):
     return xp.concatenate([shift, xp.zeros(4, shift.dtype)])
 
 
-def loose(solution: Solution) -> Any:
+def unrestrained_directions(solution: Solution) -> Any:
     """Number of free directions without stiffness, but of elements that just touch.
 
     Source: Sylvester's law of inertia: as many pivots are negative as eigenvalues.
     """
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     k, nothing = _free_stiffness(solution)
     n = len(solution.free)
     k = k - nothing * xp.eye(n, dtype=k.dtype)
@@ -244,7 +244,7 @@ def loose_names(solution: Solution) -> str:
     return f"{listed} of the {solution.moving_ring} ring"
 
 
-def idle_rows(solution: Solution) -> Any:
+def unloaded_rows(solution: Solution) -> Any:
     """Number of rows that carry no load while others do."""
     load = solution.roller_load.min(axis=1)
     tops = [part.max() for _, part in _by_row(solution, load)]
@@ -320,7 +320,7 @@ def tilt_error(solution: Solution) -> Any:
     With prescribed tilts that is the approach of the contacts, and loads err by about
     as much. Free tilts adjust to the load, so that it is the motion R γ.
     """
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     q, radius = solution.displacement, solution.pitch_radius
     square = (q[9] - q[3]) ** 2 + (q[10] - q[4]) ** 2
     if isinstance(solution, BallSolution):
@@ -358,7 +358,7 @@ def travel_error(solution: Solution) -> Any:
     spherical bearing go with a tilted inner ring, and a radial load F across the tilt γ
     gets the axial part F γ, to be added to it with the factor Y0 = 0.44 cot α.
     """
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     q, shares = solution.displacement, []
     approach = 2.0 * _line_approach(solution)
     pressed = approach > 0
@@ -460,7 +460,7 @@ def has_clearance(bearing: AbstractBearing | BearingSet) -> bool:
 
 def radial_share(solution: Solution) -> Any:
     """Radial over axial load of the moving ring [1]."""
-    xp = namespace(solution.result)
+    xp = array_namespace(solution.result)
     first = 6 * RINGS.index(solution.moving_ring)
     x, y, z = (solution.force[first + k] for k in range(3))
     # Without load there is none, of a radial load alone it is endless.
@@ -496,7 +496,7 @@ def _implausible(bearing):
                 yield name, value, unit, (value < low) | (value > high)
 
 
-def oddities(solution: Solution) -> Any:
+def implausible_dimensions(solution: Solution) -> Any:
     """Number of design values far outside their usual ranges."""
     rows = rows_of(solution.element.bearing)
     found = [strange for row in rows for *_, strange in _implausible(row.bearing)]
@@ -528,7 +528,7 @@ def truncation(solution: Solution) -> Any:
 
 def _margins(solution):
     """`BallResults.shoulder_margin` of contacts that matter, else infinite [m]."""
-    balls, xp = _of_balls(solution), namespace(solution.result)
+    balls, xp = _of_balls(solution), array_namespace(solution.result)
     return xp.where(matters(balls.contact_load), balls.shoulder_margin, xp.inf)
 
 
@@ -552,7 +552,7 @@ def truncated_balls(solution: Solution) -> str:
     return f"contact load of up to {most:.5g} N; {where}"
 
 
-def on_land(solution: Solution) -> Any:
+def load_beyond_groove(solution: Solution) -> Any:
     """Whether balls carry more than `LAND_SHARE` of a load beyond the bottom of their
     groove (ball, 2).
 
@@ -560,7 +560,7 @@ def on_land(solution: Solution) -> Any:
     Of a Hertzian contact that is cut at x of its half-length from the middle, the share
     1/2 - 3x/4 + x³/4 lies beyond; in the middle, and past it, one half is counted.
     """
-    balls, xp, parts = _of_balls(solution), namespace(solution.result), []
+    balls, xp, parts = _of_balls(solution), array_namespace(solution.result), []
     carrying = matters(balls.contact_load)
     # An open ellipse has no length.
     half = xp.where(carrying, balls.semi_axes[..., 1], 1.0)
@@ -580,10 +580,10 @@ def on_land(solution: Solution) -> Any:
 
 def on_land_count(solution: Solution) -> Any:
     """Number of balls that `on_land` marks."""
-    return _one(solution, on_land(solution).any(axis=1)).sum()
+    return _one(solution, load_beyond_groove(solution).any(axis=1)).sum()
 
 
-def lifted(solution: Solution) -> Any:
+def balls_off_inner_ring(solution: Solution) -> Any:
     """Whether each ball runs on the outer raceway only, pressed there by a centrifugal
     force that is not small compared with the loads (ball,).
 
@@ -598,7 +598,7 @@ def lifted(solution: Solution) -> Any:
 
 def lifted_count(solution: Solution) -> Any:
     """Number of balls that `lifted` marks."""
-    return _one(solution, lifted(solution)).sum()
+    return _one(solution, balls_off_inner_ring(solution)).sum()
 
 
 def edge_pressure(solution: Solution) -> Any:
@@ -615,7 +615,7 @@ def _passed(rollers, pressure):
     """Pressures (roller, 2, end) of rollers that pass a load, 0 of others [Pa]."""
     load = rollers.roller_load
     passes = load.min(axis=1) > SMALLEST_LOAD * load.max()
-    return namespace(pressure).where(passes[:, None, None], pressure, 0.0)
+    return array_namespace(pressure).where(passes[:, None, None], pressure, 0.0)
 
 
 def ends_over(solution: Solution) -> Any:

@@ -21,7 +21,7 @@ from bearingjax.fits import (
     raceway_diameters,
     radial_clearance,
     row_shifts,
-    sized,
+    with_bearing_dimensions,
     with_radial_clearance,
 )
 from bearingjax.life.rating import nominal_contact_angle
@@ -86,7 +86,7 @@ def test_raceways(bearing, inner, outer):
 
 @pytest.mark.parametrize("bearing", [DEEP, FOUR, CYLINDER, TAPER])
 def test_mounted_clearance_matches_fit_state(bearing):
-    state = fit_state(sized(SEATS, bearing), WARM)
+    state = fit_state(with_bearing_dimensions(SEATS, bearing), WARM)
     found = bj.fits.mounted(bearing, SEATS, WARM)
     assert type(found) is type(bearing)
     assert float(radial_clearance(found)) == near(float(state.radial_clearance))
@@ -115,7 +115,9 @@ def test_angular_contact_meets_at_a_smaller_angle():
     free = float(radial_clearance(ANGULAR))
     assert free == near(2 * A * (1 - np.cos(0.4)))
     found = bj.fits.mounted(ANGULAR, SEATS, WARM)
-    left = float(fit_state(sized(SEATS, ANGULAR), WARM).radial_clearance)
+    left = float(
+        fit_state(with_bearing_dimensions(SEATS, ANGULAR), WARM).radial_clearance
+    )
     angle, axial = groove_centres(free - left)
     assert float(found.contact_angle) == near(angle)
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.02, 4 * MICRON)
@@ -140,7 +142,9 @@ def test_row_shifts_of_spaced_rows():
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.1)
     seats = replace(SEATS, shaft_interference=-1 * MICRON, housing=ALUMINIUM)
     warm = bj.FitConditions(shaft=40.0, inner_ring=30.0, outer_ring=20.0, housing=10.0)
-    loose = float(fit_state(sized(seats, ANGULAR), warm).shaft_interference)
+    loose = float(
+        fit_state(with_bearing_dimensions(seats, ANGULAR), warm).shaft_interference
+    )
     seats = replace(seats, shaft_interference=-1 * MICRON - loose)
     inner = 12e-6 * (30.0 * 0.015 + 40.0 * 0.085)
     outer = 12e-6 * 20.0 * 0.015 + 23e-6 * 10.0 * 0.085
@@ -160,14 +164,16 @@ def test_row_shifts_of_spaced_rows():
 
 def test_a_tight_ring_is_shorter():
     """Poisson's contraction: ν/E (σr + σθ), at the bore p (k - 1), k of thick rings."""
-    state = fit_state(sized(SEATS, DEEP))
+    state = fit_state(with_bearing_dimensions(SEATS, DEEP))
     d, f = 0.025, 0.03056
     hoop, radial = float(state.ring_stress), -float(state.shaft_pressure)
     shorter = 0.3 / 206e9 * (hoop + radial)
     assert float(state.strains.inner_ring) == near(-shorter)
     assert hoop / -radial == near((f**2 + d**2) / (f**2 - d**2))
     assert float(state.strains.outer_ring) == 0.0  # loose
-    tight = fit_state(sized(replace(SEATS, housing_interference=10 * MICRON), DEEP))
+    tight = fit_state(
+        with_bearing_dimensions(replace(SEATS, housing_interference=10 * MICRON), DEEP)
+    )
     assert float(tight.strains.outer_ring) > 0.0
 
 
@@ -175,7 +181,9 @@ def test_a_turning_ring_is_shorter():
     """The stresses of a rotating ring (Timoshenko & Goodier), integrated over it."""
     speed, a, b, nu = 3000.0, 0.0125, 0.01528, 0.3
     still = replace(SEATS, shaft_interference=-100 * MICRON)
-    found = fit_state(sized(still, DEEP), bj.FitConditions(speed=speed)).strains
+    found = fit_state(
+        with_bearing_dimensions(still, DEEP), bj.FitConditions(speed=speed)
+    ).strains
     x, weight = np.polynomial.legendre.leggauss(20)
     r = 0.5 * (a + b) + 0.5 * (b - a) * x
     k = 7850.0 * speed**2 * (3 + nu) / 8
@@ -273,7 +281,9 @@ def test_warm_elements_take_clearance_along_the_contacts(bearing, angle):
     """Two of them, each D ε along the normal: 2 D ε/cos of the radial clearance."""
     loose = replace(SEATS, shaft_interference=-1e-4)
     cold, warm = (
-        fit_state(sized(loose, bearing), bj.FitConditions(elements=rise))
+        fit_state(
+            with_bearing_dimensions(loose, bearing), bj.FitConditions(elements=rise)
+        )
         for rise in (0.0, 10.0)
     )
     size = getattr(bearing, "ball_diameter", getattr(bearing, "roller_diameter", 0.0))
@@ -338,7 +348,7 @@ def sizes(shaft=20):
 
 
 def test_places_in_the_tolerances():
-    base, warm = jax.device_get((sized(SEATS, DEEP), WARM))
+    base, warm = jax.device_get((with_bearing_dimensions(SEATS, DEEP), WARM))
     found = clearance_range(base, **sizes(), conditions=warm)
     wanted = {
         "middle": found.middle,
@@ -358,7 +368,7 @@ def test_places_in_the_tolerances():
 
 
 def test_stress_of_the_inner_ring():
-    base = jax.device_get(sized(SEATS, DEEP))
+    base = jax.device_get(with_bearing_dimensions(SEATS, DEEP))
     found = fit_state(base, jax.device_get(bj.FitConditions()))
     d, f = 0.025, 0.03056
     # With a shaft of the ring's steel: E I/d (1 + (d/F)²)/2
@@ -367,7 +377,9 @@ def test_stress_of_the_inner_ring():
 
 
 def test_fit_state_growth_of_rotating_outer_ring():
-    loose = jax.device_get(replace(sized(SEATS, DEEP), housing_interference=-1e-4))
+    loose = jax.device_get(
+        replace(with_bearing_dimensions(SEATS, DEEP), housing_interference=-1e-4)
+    )
     still, fast = (
         fit_state(loose, jax.device_get(bj.FitConditions(outer_speed=speed)))
         for speed in (0.0, 3000.0)

@@ -13,7 +13,7 @@ from tolerances import ROUNDING
 
 from bearingjax.numerics import attach, attach_roots
 from bearingjax.numerics.expansion import by_autodiff
-from bearingjax.numerics.implicit import stop, through_jacobian, unless_failed
+from bearingjax.numerics.implicit import stop_gradient, through_jacobian, unless_failed
 
 STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
 
@@ -163,11 +163,11 @@ def test_no_host_callback():
 
 def test_stop_blocks_gradient_of_arrays():
     tree = {"x": jnp.asarray(2.0), "n": 3, "k": jnp.asarray(4)}
-    kept = stop(tree)
+    kept = stop_gradient(tree)
     assert kept["n"] == 3 and kept["k"] == 4
 
     def through(x):
-        return x * stop({"x": x, "n": 3})["x"]
+        return x * stop_gradient({"x": x, "n": 3})["x"]
 
     assert jax.grad(through)(jnp.asarray(2.0)) == 2.0
 

@@ -164,7 +164,7 @@ def kept(monkeypatch, tmp_path):
         tree = {"a": jnp.array([a, 2.0]), "b": (jnp.array(0.5),)}
         count = len(traced)
         programs.keep_programs(folder)  # with none at hand
-        out = programs.called(doubled, tree, word)
+        out = programs.call_stored(doubled, tree, word)
         assert np.array_equal(out["sum"], [2.0 * a + 0.5, 4.5])
         assert (out["word"], out["none"]) == (word, None)
         return len(traced) > count

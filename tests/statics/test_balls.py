@@ -14,7 +14,7 @@ from bearingjax.element import inertia_load
 from bearingjax.friction import films
 from bearingjax.statics import BallSolution, warnings
 from bearingjax.statics.load_result import solution_at
-from bearingjax.statics.warning_sizes import on_land
+from bearingjax.statics.warning_sizes import load_beyond_groove
 
 DEGREE = np.pi / 180
 SPEED = bj.Speed(inner=2000.0)
@@ -73,7 +73,7 @@ def test_ball_out_of_the_groove_of_a_washer():
     speed = bj.Speed(1500.0)
     s = bj.solve_load(element, [1.7, 0.8, 5.0, 0, 0, 0], speed=speed, throw=False)
     assert int(s.result) == bj.Result.NO_LOAD_PATH and int(s.unrestrained) == -1
-    assert "leaves its raceway" in bj.statics.message(s, "inner")
+    assert "leaves its raceway" in bj.statics.failure_message(s, "inner")
     held = bj.solve_load(element, [50.0, 0, 5000.0, 0, 0, 0], speed=speed, throw=False)
     assert bool(held.converged)
     # A ball that the other washer has left is at rest just where its groove ends.
@@ -154,7 +154,7 @@ def test_balls_that_the_load_zone_has_left_lie_in_the_outer_groove():
     assert np.abs(s.contact_angle[..., 0][lifted]).max() < SOLVER
     # Where they press with less than 5 % of the largest load it is nothing to warn of.
     heavy = jax.tree.map(lambda leaf: leaf[7], s)
-    beyond = on_land(heavy).any(axis=1)
+    beyond = load_beyond_groove(heavy).any(axis=1)
     assert beyond.any() and not (beyond & heavy.lifted).any()
 
 

@@ -17,7 +17,7 @@ import bearingjax as bj
 from bearingjax.element import azimuths
 from bearingjax.lubrication import iso_vg
 from bearingjax.statics import load_result, warnings
-from bearingjax.statics.solution import message
+from bearingjax.statics.solution import failure_message
 from bearingjax.statics.warning import counted, sizes
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
@@ -174,8 +174,8 @@ def test_message_reports_round_off_of_rolling_elements(tapered):
                 times * s.roller_pressure,
             ),
         )
-        assert words in message(late, "inner")
-        assert "of solve_load" not in message(late, "inner")
+        assert words in failure_message(late, "inner")
+        assert "of solve_load" not in failure_message(late, "inner")
 
 
 @pytest.mark.slow
@@ -448,8 +448,9 @@ def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
         jnp.asarray(load)
     )
     assert int(s.result) == bj.Result.NO_LOAD_PATH
-    assert "load has Mx, but gx of the inner ring is held" in bj.statics.message(
-        s, "inner"
+    assert (
+        "load has Mx, but gx of the inner ring is held"
+        in bj.statics.failure_message(s, "inner")
     )
     assert s.held == (("gx",) if "prescribed" in held else ("uz", "gx"))
 

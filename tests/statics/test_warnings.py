@@ -19,9 +19,9 @@ from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
 from bearingjax.statics.warning_sizes import (
     idle_numbers,
-    idle_rows,
     listed,
     travel_error,
+    unloaded_rows,
 )
 
 STILL = bj.Speed(inner=0.0)
@@ -188,12 +188,12 @@ def test_unloaded_rows_are_counted_and_named(untyped):
 
     load = np.zeros((21, 2))
     load[2], load[[7, 15], 0], load[20] = (5.0, 4.0), 3.0, (2.0, 1.0)
-    assert float(idle_rows(state(load))) == 1
+    assert float(unloaded_rows(state(load))) == 1
     assert idle_numbers(state(load)) == "row 1"
     load[20, 1] = 1e-10
-    assert float(idle_rows(state(load))) == 2
+    assert float(unloaded_rows(state(load))) == 2
     assert idle_numbers(state(load)) == "row 1, 2"
-    assert float(idle_rows(state(0.0 * load))) == 0
+    assert float(unloaded_rows(state(0.0 * load))) == 0
 
 
 @pytest.mark.parametrize("ring, side", [(0, -1.0), (1, 1.0)])
@@ -419,7 +419,7 @@ def test_message_for_displacement_far_outside_the_bearing(deep):
     for given, speed in ((1e9, STILL), (1.0, bj.Speed(inner=1e11))):
         s = solved(deep, given * np.array(load), speed, throw=False)
         assert bj.Result(int(s.result)) is bj.Result.NON_FINITE
-        text = bj.statics.message(s, "inner")
+        text = bj.statics.failure_message(s, "inner")
         assert "far outside the bearing" in text and "turn the load" not in text
     # Where nothing holds the load that is still the word.
     off = bj.solve_load(deep, [0, 0, 0, 0, 0, 5.0], speed=STILL, throw=False)
@@ -438,11 +438,11 @@ def test_step_limit_message_suggests_other_method_only(rollers):
     wide = changed(rollers, radial_internal_clearance=-1e-3)
     s = bj.solve_load(wide, [0, -4000.0, 0, 0, 0, 0], throw=False)
     if not s.converged:
-        assert "TrustRegionNewton" not in bj.statics.message(s, "inner")
+        assert "TrustRegionNewton" not in bj.statics.failure_message(s, "inner")
     limit = eqx.tree_at(lambda s: s.result, s, jnp.asarray(1, jnp.int32))
-    assert "TrustRegionNewton" not in bj.statics.message(limit, "inner")
+    assert "TrustRegionNewton" not in bj.statics.failure_message(limit, "inner")
     other = eqx.tree_at(lambda s: s.element.equilibrium, limit, bj.numerics.BFGS())
-    assert "TrustRegionNewton()" in bj.statics.message(other, "inner")
+    assert "TrustRegionNewton()" in bj.statics.failure_message(other, "inner")
 
 
 @pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])

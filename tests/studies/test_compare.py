@@ -8,7 +8,7 @@ import pytest
 import bearingjax as bj
 from bearingjax.cases import sweep_table
 from bearingjax.studies.solve.compare import _side_by_side, difference
-from bearingjax.studies.solve.output import as_dict
+from bearingjax.studies.solve.output import solution_json
 from bearingjax.studies.solve.run import solve_scene
 
 SCENE = "cylindrical_rig"
@@ -55,7 +55,7 @@ def test_compare_two_loads(run, other, tmp_path):
     told = found["quantities"]
     for k, source in enumerate((SCENE, other)):
         scene = bj.read_scene(source)
-        numbers = as_dict(solve_scene(scene))
+        numbers = solution_json(solve_scene(scene))
         moved, ring = numbers["displacement"], scene.moving_ring
         uy = moved[bj.FREEDOMS.index("uy") + 6 * (ring == "inner")]
         assert told[f"displacement_{ring}_uy [m]"][k] == pytest.approx(uy, rel=1e-12)

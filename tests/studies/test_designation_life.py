@@ -8,7 +8,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.life import ratings
-from bearingjax.studies.bearing.life_ratings import not_published, rating_origins
+from bearingjax.studies.bearing.life_ratings import rating_origins, why_not_published
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
@@ -62,24 +62,24 @@ def test_published_ratings_count_unless_given(read):
 def test_another_geometry_is_rated_by_the_standards(read):
     scene = read('designation = "6205"\nn_balls = 8', "[life]\n")
     assert rated(scene) == (None, None, None)
-    assert not_published(scene) == [
+    assert why_not_published(scene) == [
         "  (not the published ones of 6205: n_balls differs)"
     ]
     scene = read('designation = "6205"', "[life]\n")
-    (line,) = not_published(scene, ["bearing.ball_diameter"])
+    (line,) = why_not_published(scene, ["bearing.ball_diameter"])
     assert "6205: ball_diameter differs" in line
     harmless = ["bearing.radial_internal_clearance", "operating.load.Fy"]
     assert rated(scene)[0] == 14.8e3
-    assert not_published(scene, harmless) == []
+    assert why_not_published(scene, harmless) == []
 
 
 def test_not_published_lists_unprinted_ratings(read):
     scene = read('designation = "7308 C"', "[life]\n")
     assert rated(scene) == (None, None, None)
-    (line,) = not_published(scene)
+    (line,) = why_not_published(scene)
     assert "those of 7308 C are not known for this contact angle; from the" in line
     given = read('designation = "7308 C"', '[life]\ndynamic_capacity = "32 kN"\n')
-    assert not_published(given) == []
+    assert why_not_published(given) == []
 
 
 def test_a_pair_is_rated_as_two_rows(read):

@@ -18,7 +18,7 @@ from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
 from bearingjax.studies.rotor.read import read_rotor
 from bearingjax.studies.skid.read import read_skid
-from bearingjax.studies.solve.output import as_dict
+from bearingjax.studies.solve.output import solution_json
 from bearingjax.studies.solve.run import solve_scene
 
 SCENES = (
@@ -253,7 +253,7 @@ def test_an_output_file_is_solved_again(run, tmp_path):
     assert run("solve", "tapered", *pull, "--json", first).status == 3
     push = ("--set", "operating.load.Fz=6 kN")
     assert run("solve", first, *push, "--json", second).status == 0
-    expected = as_dict(solve_scene(scene))
+    expected = solution_json(solve_scene(scene))
     found = json.loads(second.read_text(encoding="utf-8"))
     assert found["inputs"] == expected["inputs"]
     np.testing.assert_array_equal(found["displacement"], expected["displacement"])

@@ -22,7 +22,7 @@ from bearingjax.fits import (
     needed_drive_up,
     raceway_diameters,
     radial_clearance,
-    sized,
+    with_bearing_dimensions,
 )
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics.options import SolveOptions
@@ -295,7 +295,7 @@ def test_needed_drive_up_of_small_bores_beside_tables_of_makers():
                 ring_width=entry.width,
                 bore_taper=1 / 12,
             )
-            seats = sized(seats, rows_of(entry.bearing)[0].bearing)
+            seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
             for less, travel in SMALL[30 if bore <= 30 else 40]:
                 found = 1e3 * float(needed_drive_up(seats, 1e-6 * less))
                 ratios.append(travel / found)
@@ -323,7 +323,7 @@ def test_drive_up_beside_the_table_of_a_maker():
             ring_width=entry.width,
             bore_taper=1 / 12 if steep else 1 / 30,
         )
-        seats = sized(seats, rows_of(entry.bearing)[0].bearing)
+        seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
         for less, travel in zip(found[0], found[1 if steep else 2], strict=True):
             ratios.append(float(needed_drive_up(seats, 1e-6 * less)) / 1e-3 / travel)
     assert len(ratios) > 120

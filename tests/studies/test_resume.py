@@ -12,7 +12,7 @@ from test_cases import HEAD
 from bearingjax import FREEDOMS, Cases
 from bearingjax.cases import Sweep, sweep_program, sweep_table
 from bearingjax.cases.sweep_table import (
-    asked,
+    case_columns,
     left_out,
     read,
     restored,
@@ -185,7 +185,7 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
     designs = design_columns(table)
     write(Sweep(table.cases, outputs, "inner"), place, designs)
     known = read(place)
-    resume.check_asked(place, known, {**designs, **asked(table.cases)}, 8)
+    resume.check_asked(place, known, {**designs, **case_columns(table.cases)}, 8)
     again = restored(known, outputs)
     for name, values in outputs.items():
         np.testing.assert_array_equal(again[name], values)

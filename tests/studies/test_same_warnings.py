@@ -15,7 +15,7 @@ from bearingjax.studies.cases.sweep_run import all_warnings, run_cases
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
 from bearingjax.studies.optimise.report import optimisation_as_dict
 from bearingjax.studies.optimise.run import run_optimisation
-from bearingjax.studies.solve.output import as_dict
+from bearingjax.studies.solve.output import solution_json
 from bearingjax.studies.solve.run import run_scene
 
 LIGHT = """
@@ -65,7 +65,7 @@ def solved(path, settings=()):
     bearing = solution.element.bearing
     found = {**sizes(solution), **life_sizes(bearing, life.ratings, vars(life))}
     kinds = {name for name, size in found.items() if size > ALL[name].limit}
-    told = as_dict(SolvedScene(scene, solution))["warnings"]
+    told = solution_json(SolvedScene(scene, solution))["warnings"]
     assert len(told) == len(scene.warnings) + len(kinds)
     of_one = counted({name: np.atleast_1d(size) for name, size in found.items()}, ALL)
     return alone((*scene.warnings, *of_one)), kinds

@@ -18,7 +18,7 @@ import bearingjax as bj
 from bearingjax.element import BallKinematics
 from bearingjax.studies.bearing.read_scene import Scene
 from bearingjax.studies.bearing.solved import SolvedScene
-from bearingjax.studies.solve.output import as_dict, write_json
+from bearingjax.studies.solve.output import solution_json, write_json
 from bearingjax.studies.solve.report import report
 from bearingjax.studies.solve.run import run_scene
 
@@ -93,7 +93,7 @@ class Solved:
 def solve(name, *settings):
     scene = bj.read_scene(name, settings)
     solution = run_scene(scene)
-    return Solved(scene, solution, as_dict(SolvedScene(scene, solution)))
+    return Solved(scene, solution, solution_json(SolvedScene(scene, solution)))
 
 
 # Two structures are compiled; all else differs from them in numbers only.
@@ -285,7 +285,7 @@ def test_report_and_dict_run_no_jax_operations(solved):
         with pytest.raises(jax.errors.JaxRuntimeError):
             jnp.abs(turning.spin)
         assert str(report(solved.found))
-        assert as_dict(solved.found) == solved.numbers
+        assert solution_json(solved.found) == solved.numbers
         assert np.all(turning.spin_to_roll == 1.0)
         assert np.allclose(turning.pitch_angle, np.pi / 4, rtol=SOLVER, atol=0.0)
 

@@ -15,7 +15,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ...design.checks import check
 from ...numerics.compiled import batched_loop
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import attach_by, stop
+from ...numerics.implicit import attach_by, stop_gradient
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Count, Flag, Scalar, as_real
@@ -208,14 +208,14 @@ def solve_pressure(
     if not throw:
         return solution
     return raise_unless_converged(
-        solution, solution.result, lambda: message(solution), "solve_pressure"
+        solution, solution.result, lambda: failure_message(solution), "solve_pressure"
     )
 
 
 @program
 def _solved(problem, solver):
     dtype = problem.gap.dtype
-    pressed = batched_loop.run(solver.loop(), stop(problem))
+    pressed = batched_loop.run(solver.loop(), stop_gradient(problem))
     result = pressed.result
     solved = result == int(Result.CONVERGED)
     misfit = solved & ~_fits(problem.grid, pressed)
@@ -263,7 +263,7 @@ def _fits(grid, pressed):
     return (resolved & held) | ~jnp.any(pressed.touching)
 
 
-def message(solution: ContactSolution) -> str:
+def failure_message(solution: ContactSolution) -> str:
     """Cause and cure of a result, in words; for concrete, single solutions."""
     result = Result(int(solution.result))
     if result is Result.CONVERGED:
@@ -316,7 +316,7 @@ def _balance(unknowns, args):
 
 
 def _correction(of_unknowns, unknowns, change, args):
-    problem, inside = stop(args)
+    problem, inside = stop_gradient(args)
     touching = inside > 0
     poison = 0.0 * jnp.sum(inside)
 

@@ -18,7 +18,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
-from ...numerics.types import Scalar, as_real, namespace
+from ...numerics.types import Scalar, array_namespace, as_real
 from ...numerics.units import unit
 from ..inertia import Speed
 
@@ -197,13 +197,13 @@ class BallKinematics(NamedTuple):
     @property
     def pitch_angle(self) -> Float[Array | np.ndarray | np.floating, "..."]:
         """Pitch angle β of the axis of rotation [rad]."""
-        return namespace(self.axis).arctan2(self.axis[..., 0], self.axis[..., 1])
+        return array_namespace(self.axis).arctan2(self.axis[..., 0], self.axis[..., 1])
 
     @property
     def spin_to_roll(self) -> Float[Array | np.ndarray, "... 2"]:
         """Size of spin over rolling at outer and inner raceway [1]; 0 where the ball
         does not roll, because the rings turn alike."""
-        xp = namespace(self.orbit)
+        xp = array_namespace(self.orbit)
         size = abs(self.orbit) + abs(self.rotation)
         rolls = abs(self.roll) > 64 * xp.finfo(size.dtype).eps * size[..., None]
         return xp.where(rolls, abs(self.spin / xp.where(rolls, self.roll, 1.0)), 0.0)

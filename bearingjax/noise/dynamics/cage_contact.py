@@ -11,7 +11,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
-from ...numerics.implicit import attach_roots, stop
+from ...numerics.implicit import attach_roots, stop_gradient
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
 
@@ -61,7 +61,7 @@ class CageContact(eqx.Module):
         # Nearer to zero the third power of an approach has no inverse.
         apart = approach <= jnp.finfo(approach.dtype).tiny ** 0.25
         closed = jnp.where(apart, 1.0, approach)
-        root = _logarithm(self, stop(closed))
+        root = _logarithm(self, stop_gradient(closed))
         root = attach_roots(_excess, root, (self, closed))
         # Beyond the largest number there is none; such an approach is none either.
         most = 0.99 * jnp.log(jnp.finfo(approach.dtype).max)
@@ -101,7 +101,7 @@ def _excess(y, args):
 
 def _logarithm(contact, approach):
     """Return the root of `_excess`, from above: no step overshoots it."""
-    contact = stop(contact)
+    contact = stop_gradient(contact)
     logarithm = jnp.log(approach)
     elastic = (logarithm - jnp.log(contact.elastic)) / contact.elastic_exponent
     film = (logarithm - jnp.log(contact.film)) * contact.film_exponent

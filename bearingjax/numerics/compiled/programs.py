@@ -137,7 +137,7 @@ def program(function: F | None = None, *, quick: bool = False, level: int = 0) -
     return call  # pyright: ignore
 
 
-def called(function: Callable, *arguments: Any) -> Any:
+def call_stored(function: Callable, *arguments: Any) -> Any:
     """Call a function as it is, or as a quick `program` if programs are kept.
 
     Args:

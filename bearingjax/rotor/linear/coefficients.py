@@ -17,7 +17,7 @@ from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import as_real
 from ...statics.linearise import OperatingPoint, linearise
 from ...statics.options import SolveOptions
-from ...statics.solution import message
+from ...statics.solution import failure_message
 from ...statics.support import restrained_freedoms
 from ...statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 from .modes import speed_list
@@ -71,7 +71,7 @@ def stiffness_table(
         return (
             f"stiffness_table: speed {float(speeds[index]):g} rad/s:"
             f" {Result(int(result[index])).label}:"
-            f" {message(point.solution, point.solution.moving_ring)}"
+            f" {failure_message(point.solution, point.solution.moving_ring)}"
         )
 
     stiffness = raise_unless_converged(

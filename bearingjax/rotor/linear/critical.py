@@ -13,7 +13,7 @@ from jaxtyping import Array, Complex, Float, Int
 from ...design.checks import count as whole
 from ...design.checks import is_traced, number
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.lapack import cholesky, congruent, eigh, solve_any
 from ...numerics.types import as_count
 from ..rotor import Rotor, RotorMatrices
@@ -118,7 +118,7 @@ def _warn_if_near(found, speed):
 
 @program(quick=True)
 def _critical(rotor, count):
-    fixed = stop(rotor)
+    fixed = stop_gradient(rotor)
     found, point, right, left = _search(fixed, count + _SPARE)
     found = _once(found, point, right)
     sort = jnp.argsort(jnp.where(found, point[:, 1], jnp.inf))[:count]
@@ -130,13 +130,13 @@ def _critical(rotor, count):
     at = jax.vmap(lambda *at: _newton(rotor, *at))(point, right, left)
     rate, speed = jnp.where(found[:, None], at, jnp.nan).T
     size = jnp.where(found, jnp.hypot(*jnp.where(found[:, None], at, 1.0).T), jnp.nan)
-    matrices = stop(fixed.linearised(0.0))
+    matrices = stop_gradient(fixed.linearised(0.0))
     nodes, _ = matrices.split(right @ to_complex(matrices.motions).T)
     whirl = jnp.where(found, direction(nodes, matrices.length), 0)
     _, nodes = largest_real(nodes, matrices.length)
     nodes = jnp.where(found[:, None, None], nodes, jnp.nan)
     return CriticalSpeeds(
-        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop(at))
+        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop_gradient(at))
     )
 
 
@@ -270,7 +270,7 @@ def _newton(rotor, point, right, left, share: Any = 1.0):
         value = left.conj() @ (matrices.dynamic_stiffness(lax.complex(*point)) @ right)
         return jnp.stack([value.real, value.imag])
 
-    slope = stop(jax.jacfwd(residual)(point))
+    slope = stop_gradient(jax.jacfwd(residual)(point))
     return point - solve_any(slope, residual(point))
 
 

@@ -23,9 +23,9 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 from ...design.checks import count as whole
 from ...design.checks import finite, is_traced, number, of_shape, real_numbers
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
-from ...numerics.types import as_count, as_real, namespace
+from ...numerics.types import array_namespace, as_count, as_real
 from ..rotor import Rotor, RotorMatrices
 
 _COINCIDENT = 1e-7
@@ -68,7 +68,7 @@ def major_axis(x: Any, y: Any) -> Any:
     Args:
         x, y: Complex amplitudes [m].
     """
-    xp = namespace(x)
+    xp = array_namespace(x)
     return 0.5 * (xp.abs(x + 1j * y) + xp.abs(x - 1j * y))
 
 
@@ -151,7 +151,7 @@ def _modes(rotor, speed, count):
     """Return modes, and the part of unsymmetric stiffness in Re λ of each [rad/s]."""
     matrices = rotor.linearised(speed)
     pairs = eigenpairs(matrices, count)
-    fixed, known = stop(matrices), stop(pairs)
+    fixed, known = stop_gradient(matrices), stop_gradient(pairs)
     own = jnp.diagonal(_products(known, known, fixed))
     unsymmetric = to_complex(0.5 * (fixed.stiffness - fixed.stiffness.T))
     work = jnp.sum((known.left.conj() @ unsymmetric) * known.right, axis=1)
@@ -252,8 +252,8 @@ def followed(
     matrices = rotor.linearised(speeds[0])
     n = matrices.mass.shape[0]
     count = n if count is None else min(n, count)
-    fixed = stop(rotor)
-    crossing = _CROSSING * stop(jnp.max(speeds) - jnp.min(speeds))
+    fixed = stop_gradient(rotor)
+    crossing = _CROSSING * stop_gradient(jnp.max(speeds) - jnp.min(speeds))
 
     def at_speed(speed, before):
         """Return eigenpairs, their order by those before, and the overlaps."""
@@ -290,7 +290,7 @@ def followed(
     blank = jax.eval_shape(lambda: eigenpairs(matrices, None))
     blank = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), blank)
     first = jnp.arange(len(speeds)) == 0
-    turning = stop(speeds)
+    turning = stop_gradient(speeds)
     _, (pairs, overlap) = lax.scan(follow, (blank, turning[0]), (turning, first))
 
     def show(pairs, speed):
@@ -385,7 +385,7 @@ class Pairs(eqx.Module):
 
 def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     """Return the first modes; vectors have no derivative."""
-    fixed = stop(matrices)
+    fixed = stop_gradient(matrices)
     n = fixed.mass.shape[0]
     factor, stiffness, state = _state(fixed)
     values, left, right = eig(state)
@@ -451,7 +451,7 @@ def _refined(matrices, value, right, left):
     residual = left @ (matrices.dynamic_stiffness(value) @ right)
     # No derivative where there is none: critically damped, or a rigid-body motion.
     none = jnp.abs(slope) <= 1e-8 * jnp.abs(value)
-    step = jnp.where(none, 0.0, residual / stop(jnp.where(none, 1.0, slope)))
+    step = jnp.where(none, 0.0, residual / stop_gradient(jnp.where(none, 1.0, slope)))
     refined = value - step
     # What does not oscillate stays without a trace of an imaginary part.
     return jnp.where(value.imag > 0, refined, to_complex(refined.real))
@@ -465,7 +465,7 @@ def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
         matrices: Matrices of the rotor; only what its freedoms move is read.
         speed: Speed of the rotor, whose sense is called forward [rad/s].
     """
-    matrices = stop(matrices)
+    matrices = stop_gradient(matrices)
     moved = pairs.right @ to_complex(matrices.motions).T
     nodes, housing = matrices.split(moved)
     largest, nodes = largest_real(nodes, matrices.length)

@@ -24,7 +24,7 @@ from jaxtyping import Array, Float, Int
 
 from ...design.checks import real_numbers
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eig, pseudoinverse, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
@@ -188,7 +188,11 @@ def _at_rest(system):
         return out_of_balance(_free(system, none), none, one, u, still, still)
 
     def linearised(u):
-        return left(u, stop(system)), jax.jacfwd(left)(u, stop(system)), ()
+        return (
+            left(u, stop_gradient(system)),
+            jax.jacfwd(left)(u, stop_gradient(system)),
+            (),
+        )
 
     def correction(of_u, u, change, _):
         # Motions without stiffness stay where they are.
@@ -230,13 +234,15 @@ def _linear(system, rest, freedom, method, mode):
 
 @program
 def _followed(system, peaks, freedom, method, mode):
-    fixed, size = stop(system), stop(system.scale[freedom])
+    fixed, size = stop_gradient(system), stop_gradient(system.scale[freedom])
     where = _at_rest(system)
-    rest, growth = _linear(fixed, stop(where), freedom, method, mode)
+    rest, growth = _linear(fixed, stop_gradient(where), freedom, method, mode)
 
     def linearised(x, height):
         def both(x):
-            value = _equations(method, (fixed, height * size, stop(where)), freedom)(x)
+            value = _equations(
+                method, (fixed, height * size, stop_gradient(where)), freedom
+            )(x)
             return value, value
 
         jacobian, value = jax.jacfwd(both, has_aux=True)(x)
@@ -278,7 +284,7 @@ def _followed(system, peaks, freedom, method, mode):
         return last, found
 
     begin = rest, jnp.zeros_like(size), growth
-    heights = stop(peaks / system.scale[freedom])
+    heights = stop_gradient(peaks / system.scale[freedom])
     heights = jnp.concatenate([_SMALL * heights[:1], heights])
     _, every = lax.scan(one, begin, heights)
     every = jax.tree.map(lambda x: x[1:], every)

@@ -20,7 +20,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
-from ...numerics.implicit import attach_by, recall, stop
+from ...numerics.implicit import attach_by, recall, stop_gradient
 from ...numerics.lapack import expm, solve_any
 from ...numerics.types import Scalar
 from .system import AbstractVibratingSystem, inertia, out_of_balance
@@ -137,7 +137,7 @@ def _solved(at, begin, guess):
 
     They have the derivatives of the stages; NaN if Newton's method did not find them.
     """
-    fixed = stop(begin)
+    fixed = stop_gradient(begin)
     small = _SOLVED * jnp.finfo(guess.dtype).eps
 
     def improve(state):
@@ -158,7 +158,13 @@ def _solved(at, begin, guess):
 
     shape = jax.eval_shape(lambda: _slopes(at, fixed, guess)[1])
     blank = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shape)
-    start = stop(guess), blank, jnp.asarray(True), jnp.asarray(False), jnp.int32(0)
+    start = (
+        stop_gradient(guess),
+        blank,
+        jnp.asarray(True),
+        jnp.asarray(False),
+        jnp.int32(0),
+    )
     second, slopes, _, found, _ = lax.while_loop(
         lambda state: state[2] & (state[4] < _NEWTON), improve, start
     )
@@ -209,7 +215,7 @@ def integrate(
     def step(state, phase):
         u, rate, guess = state
         second, _ = _solved(at, StepStart(system, ratio, phase, u, rate), guess)
-        guess = jnp.broadcast_to(stop(second[-1]), guess.shape)
+        guess = jnp.broadcast_to(stop_gradient(second[-1]), guess.shape)
         return (*_ended(at, u, rate, second), guess), jnp.concatenate([u, rate])
 
     u, rate = jnp.split(start, 2)
@@ -239,7 +245,7 @@ def flow_slopes(
         change = change + slopes[1] @ drate
         change = change.at[..., -1:].add(slopes[2])
         grown = _ended(at, du, drate, _solve(at, begin, slopes, change))
-        guess = jnp.broadcast_to(stop(second[-1]), guess.shape)
+        guess = jnp.broadcast_to(stop_gradient(second[-1]), guess.shape)
         return (*_ended(at, u, rate, second), *grown, guess), None
 
     u, rate = jnp.split(start, 2)

@@ -10,7 +10,7 @@ from jax import lax
 from jaxtyping import Array, Complex, Float, Int
 
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Flag, Scalar, as_real
@@ -243,8 +243,8 @@ def beginning(
 
 @program
 def _solved(system, frequency, method, motion, max_steps):
-    fixed, ratio = stop(system), frequency / system.reference_frequency
-    begin = jnp.append(method.unknowns(stop(motion)), stop(ratio))
+    fixed, ratio = stop_gradient(system), frequency / system.reference_frequency
+    begin = jnp.append(method.unknowns(stop_gradient(motion)), stop_gradient(ratio))
     hold = along_frequency(begin.shape[0] - 1, begin.dtype)
     found = correct(fixed, method, begin, hold, max_steps)
 

@@ -6,7 +6,7 @@ import numpy as np
 from jax import lax
 
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
 from .branch import Branch
@@ -67,7 +67,7 @@ def peak(
             "peak: the largest amplitude of this freedom is at an end of the branch or"
             " of `between`: follow the branch further."
         )
-    ratio = branch.frequency / stop(system.reference_frequency)
+    ratio = branch.frequency / stop_gradient(system.reference_frequency)
     points = [
         jnp.append(jnp.asarray(branch.unknowns[i]), ratio[i]) for i in (k - 1, k, k + 1)
     ]
@@ -98,7 +98,7 @@ def _size(system, freedom, method):
 
 @program
 def _found(system, points, freedom, method):
-    fixed = stop(system)
+    fixed = stop_gradient(system)
     size = _size(fixed, freedom, method)
 
     def on_branch(x, direction):

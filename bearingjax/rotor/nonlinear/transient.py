@@ -18,7 +18,7 @@ from jaxtyping import Array, Float, Int
 
 from ...design.checks import check, count, is_traced, one_of, positive
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.in_time import Options
 from ...numerics.in_time import integrated as in_time
 from ...numerics.lapack import solve_any
@@ -205,7 +205,7 @@ def _simulated(*given):
 
 
 def _message(found):
-    time, reached = stop((found.time, found.displacement[:, 0]))
+    time, reached = stop_gradient((found.time, found.displacement[:, 0]))
     seen = time[np.isfinite(reached)]
     last = f"{float(seen[-1]):.3g} s" if len(seen) else "the first time"
     if int(found.result) == Result.STEP_LIMIT:
@@ -249,7 +249,7 @@ def moved(
         options,
         solver=diffrax.Dopri8(),
         step_error=_STEP_ERROR,
-        first=jnp.minimum(stop(_FIRST / fast), 0.5 * duration),
+        first=jnp.minimum(stop_gradient(_FIRST / fast), 0.5 * duration),
         knots=table.time if table.time.shape[0] > 1 else None,
     )
     turned = jax.vmap(table.at)(times)

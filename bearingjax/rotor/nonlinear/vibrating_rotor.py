@@ -16,7 +16,7 @@ from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
-from ..held import of_each
+from ..held import map_parts
 from ..linear.reduction import craig_bampton, held_motions
 from ..loads import RotorLoads
 from ..parts import AbstractSupport
@@ -67,7 +67,7 @@ class VibratingRotor(AbstractVibratingSystem):
         if not self.supports:
             return force
         angle = self.rotation * phase
-        each = of_each(
+        each = map_parts(
             lambda support, moved, rate: through_jacobian(
                 support, moved, rate, speed, angle, function=_supported
             ),

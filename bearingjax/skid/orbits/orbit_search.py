@@ -18,7 +18,7 @@ from ...design import pitch_radius
 from ...element.inertia import Speed
 from ...element.solved_row import RowResults, SolvedRow
 from ...numerics.compiled import batched_loop
-from ...numerics.implicit import attach_by, stop, unless_failed
+from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import solve_any
 from ...numerics.linear import solve
 from ...numerics.result import Result
@@ -200,7 +200,7 @@ class AbstractOrbit(eqx.Module):
         pulls = jax.vmap(self.balance.along)(pulls)
         (bodies, rolls), found = self._found(row, q, solved)
         motion = jax.vmap(self.motion)(bodies, rolls, own)
-        slope = self.along @ (motion if sloped is None else stop(motion))
+        slope = self.along @ (motion if sloped is None else stop_gradient(motion))
         slope = slope if sloped is None else slope + sloped[None]
         each = jax.vmap(self.local, (0, 0, 0, 0, None))
         out, sizes = each(bodies, rolls, own, slope, common)
@@ -323,7 +323,9 @@ def search(orbit: AbstractOrbit) -> OrbitSolution:
     """
     loop = batched_loop.Loop(_init, _step, _terminate, _finish, _trivial_result)
     few = orbit.start.size <= _FEW + _RING
-    return OrbitSolution(*batched_loop.run(loop, stop(orbit), 16 if few else 2))
+    return OrbitSolution(
+        *batched_loop.run(loop, stop_gradient(orbit), 16 if few else 2)
+    )
 
 
 def with_derivatives(

@@ -160,10 +160,10 @@ def _is_pressed(solution):
 
 def _message(found):
     label = Result(int(found.result)).label
-    return f"skid.steady: {label} after {failure(found)}."
+    return f"skid.steady: {label} after {failure_message(found)}."
 
 
-def failure(found: SteadyMotion) -> str:
+def failure_message(found: SteadyMotion) -> str:
     """Describe how far a failed search came.
 
     Args:

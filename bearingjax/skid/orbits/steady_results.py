@@ -9,7 +9,7 @@ from jaxtyping import Array, Float, Int
 
 from ...element.inertia import Speed
 from ...numerics.linear import lengths
-from ...numerics.types import Scalar, namespace
+from ...numerics.types import Scalar, array_namespace
 from ...numerics.units import unit
 from ...statics.solution import BallSolution, RollerSolution
 from ..conditions import Conditions
@@ -21,7 +21,7 @@ def slip(orbit: Any, rolling: Any) -> Any:
     Args:
         orbit, rolling: Arrays of NumPy or of JAX [rad/s].
     """
-    xp, still = namespace(orbit), rolling == 0
+    xp, still = array_namespace(orbit), rolling == 0
     return xp.where(still, 0.0, 1.0 - orbit / xp.where(still, 1.0, rolling))
 
 
@@ -99,7 +99,7 @@ class SteadyMotion(eqx.Module):
     @property
     def imbalance(self) -> Float[Array | np.ndarray, "*n"]:
         """Residual of the power balance over all losses [1]."""
-        power, xp = self.power, namespace(self.power.drive)
+        power, xp = self.power, array_namespace(self.power.drive)
         losses = power.contacts + power.drag + power.cage
         still = losses == 0
         missing = (power.drive - losses) / xp.where(still, 1.0, losses)
@@ -111,7 +111,10 @@ class SteadyMotion(eqx.Module):
 
         Both are means in time.
         """
-        rolling, xp = self.rolling_orbit_speed, namespace(self.rolling_orbit_speed)
+        rolling, xp = (
+            self.rolling_orbit_speed,
+            array_namespace(self.rolling_orbit_speed),
+        )
         still = rolling == 0
         slow = xp.where(still, 0.0, 1.0 / xp.where(still, 1.0, rolling)).mean(axis=-1)
         return xp.where(still.all(axis=-1), 0.0, 1.0 - self.cage_speed * slow)
@@ -165,7 +168,7 @@ class SteadySkid(SteadyMotion):
     @property
     def pitch_angle(self) -> Float[Array | np.ndarray, "*n place"]:
         """Angle between spin axis and bearing axis (place,) [rad]."""
-        return namespace(self.spin).arctan2(self.spin[..., 1], -self.spin[..., 2])
+        return array_namespace(self.spin).arctan2(self.spin[..., 1], -self.spin[..., 2])
 
 
 class SteadyRollerSkid(SteadyMotion):

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.types import Scalar
 from ...statics.balance import Balance
 from ...statics.solution import BallSolution, RollerSolution
@@ -104,7 +104,7 @@ def balanced_surroundings(
         cosines = jnp.ones_like(solution.contact_angle[0])
         ellipses = contact_ellipses(model.bearing, law, cosines)
     known = prepared, ellipses
-    loads = BalancedLoads(model, *known, balance, load, *stop((unit, size)))
+    loads = BalancedLoads(model, *known, balance, load, *stop_gradient((unit, size)))
     return _begun(model, loads, solution, speed, gravity, centre, ring)
 
 

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ...numerics import in_time
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.types import Scalar
 from ..motion import SkidState, SkidSystem, Surroundings, Work
 from ..ring_load import LoadHistory
@@ -81,7 +81,7 @@ def _knots(environment):
     """Return the times at which speeds or loads have a kink, or `None`."""
     tables = [environment.speed, getattr(environment.loads, "load", None)]
     times = [
-        stop(table.time)
+        stop_gradient(table.time)
         for table in tables
         if isinstance(table, SpeedTable | LoadHistory) and table.time.shape[0] > 1
     ]
@@ -100,4 +100,4 @@ def _system(environment, start):
     energy = (
         count * environment.loads.mass * (0.2 * bearing.pitch_diameter * fastest) ** 2
     )
-    return SkidSystem(environment, *stop((fastest, energy)))
+    return SkidSystem(environment, *stop_gradient((fastest, energy)))

@@ -20,7 +20,7 @@ from ...design.checks import count, is_traced, one_of, positive
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
 from ...numerics.gravity import GRAVITY
-from ...numerics.implicit import stop
+from ...numerics.implicit import stop_gradient
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
 from ...statics.balance import balance_of
@@ -210,7 +210,7 @@ def _alike(loads):
 
 def _message(found):
     label = Result(int(found.result)).label
-    time, speed = stop((found.time, found.cage_speed))  # being differentiated
+    time, speed = stop_gradient((found.time, found.cage_speed))  # being differentiated
     reached = time[np.isfinite(speed)]
     last = f"{float(reached[-1]):.3g} s" if len(reached) else "the first time"
     cause = CAUSES.get(Result(int(found.result)), "")

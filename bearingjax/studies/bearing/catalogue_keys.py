@@ -104,7 +104,7 @@ _INSTEAD = {
 """Keys replaced by a given key: one follows from the other."""
 
 
-def taken_from(
+def merge_catalogue_keys(
     entry: CatalogueEntry, given: Mapping[str, Any]
 ) -> tuple[dict[str, Any], FromCatalogue]:
     """Complete the keys of [bearing] from the catalogue.

@@ -14,7 +14,7 @@ from ...fits import (
     clearance_range,
     fit_state,
     mounting_at,
-    sized,
+    with_bearing_dimensions,
 )
 from ...fits.fit_range import ClearanceRange
 from ...fits.fits import FitState
@@ -71,7 +71,7 @@ class Fits:
     @functools.cached_property
     def facts(self) -> FitFacts:
         """Their effects."""
-        mounting = jax.device_get(sized(self.mounting, self.bearing))
+        mounting = jax.device_get(with_bearing_dimensions(self.mounting, self.bearing))
         warm, cold = jax.device_get((self.conditions, FitConditions()))
         loosest = mounting_at(mounting, "loosest", **self.limits)
         return FitFacts(

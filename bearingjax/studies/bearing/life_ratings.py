@@ -68,7 +68,7 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
     return found
 
 
-def not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
+def why_not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
     """Explain in a line why the published ratings are not used, if they are not.
 
     Args:

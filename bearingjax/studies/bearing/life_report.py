@@ -10,7 +10,7 @@ from ...life.life import LIFE_OUTPUTS, Life
 from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
 from ...statics.solution import RollerSolution, Solution
-from .life_ratings import not_published, rating_origins
+from .life_ratings import rating_origins, why_not_published
 from .read_scene import Scene
 
 _SOURCES = {
@@ -109,7 +109,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
             f"  {words}"
             for words in ratings_in_words(r, rating_origins(scene, r)).values()
         ),
-        *not_published(scene),
+        *why_not_published(scene),
         f"equivalent load: P {_kilo(life.equivalent_load)} kN, of the reference life"
         f" {_kilo(life.reference_load)} kN",
         f"static safety C0/P0 {life_number(life.static_safety)}, P0"

@@ -30,7 +30,7 @@ _COMMON = ("life", "lubricant")
 """Tables of the machine that a bearing may have for itself."""
 
 
-def placed_bearing(
+def read_machine_bearing(
     top: Table,
     table: Table,
     name: str,

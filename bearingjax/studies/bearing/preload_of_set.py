@@ -9,8 +9,8 @@ import numpy as np
 
 from ...cases.sweep import stack_designs
 from ...element import BearingElement, Speed
-from ...fits import Limits, Mounting, mounting_at, sized
-from ...numerics.compiled.programs import called
+from ...fits import Limits, Mounting, mounting_at, with_bearing_dimensions
+from ...numerics.compiled.programs import call_stored
 from ...numerics.types import as_array
 from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
@@ -82,7 +82,7 @@ def preload_of_set(
     if speed is not None:
         given = [Speed(0.0, 0.0) if s is None else s for _, s in possible.values()]
         speeds = jax.tree.map(lambda *x: as_array(np.stack(x), float), *given)
-    found = np.asarray(called(_preloads, elements, speeds))
+    found = np.asarray(call_stored(_preloads, elements, speeds))
     force = dict.fromkeys(states, np.nan)
     # Round-off is not a preload.
     found = np.where(np.abs(found) < _LEAST, 0.0, found)
@@ -110,7 +110,7 @@ def _preloads(elements, speeds):
 
 def _seats(fits, ground, place) -> Mounting:
     """Return the seats at a place within their tolerances."""
-    whole = jax.device_get(sized(fits.mounting, ground.bearing))
+    whole = jax.device_get(with_bearing_dimensions(fits.mounting, ground.bearing))
     own = float(whole.radial_clearance)
     limits = {**fits.limits, "clearance": Limits(own, own)}
     there = mounting_at(whole, place, **limits)

@@ -8,7 +8,7 @@ from ...design import AbstractBearing, BearingSet, PreloadSpring, SetRow, shares
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, text_of
 from ...statics.preload import check_preload
-from .catalogue_keys import FromCatalogue, taken_from
+from .catalogue_keys import FromCatalogue, merge_catalogue_keys
 from .read_design import BALLS, ROLLERS, read_row, two_row_name, with_both_rows
 
 SETS = ("back_to_back", "face_to_face", "tandem", "rows")
@@ -89,7 +89,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     if kind != entry.type:
         problem = f"is {kind!r}, but {entry.designation} is {entry.type!r}"
         raise table.error("type", f"{problem}; leave one of them out")
-    return taken_from(entry, given)
+    return merge_catalogue_keys(entry, given)
 
 
 def _completed(

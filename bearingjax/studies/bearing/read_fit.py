@@ -38,8 +38,8 @@ from ...fits import (
     needed_drive_up,
     outside_limits,
     radial_clearance,
-    sized,
     smoothing,
+    with_bearing_dimensions,
     with_radial_clearance,
 )
 from ...fits.fits import PARTS
@@ -321,11 +321,11 @@ def read_fits(
     for seat in ("shaft_interference", "housing_interference"):
         seats[seat] = getattr(keys, seat) or 0.0
     with table.building():
-        whole = sized(Mounting(**seats), row)
+        whole = with_bearing_dimensions(Mounting(**seats), row)
         if keys.clearance_reduction is not None:
             whole = jax.device_get(whole)
             seats["drive_up"] = needed_drive_up(whole, keys.clearance_reduction)
-            whole = sized(Mounting(**seats), row)
+            whole = with_bearing_dimensions(Mounting(**seats), row)
         if not scatters:
             free = float(radial_clearance(row))
             given["clearance"] = Limits(free, free)

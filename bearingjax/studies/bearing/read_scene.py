@@ -20,7 +20,7 @@ from ...files.scene_file import (
 from ...files.schema import read_keys
 from ...files.table import Table
 from ...life.life import LifeConditions
-from ...numerics.compiled.programs import called
+from ...numerics.compiled.programs import call_stored
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE
 from .catalogue_keys import FromCatalogue
@@ -97,7 +97,7 @@ class Scene:
         """
         if self.preload_force is None:
             return self.installed
-        return called(_ground, self.installed)
+        return call_stored(_ground, self.installed)
 
     def running(self) -> BearingElement[Any]:
         """Return the element that all commands solve: ground, mounted, in operation."""

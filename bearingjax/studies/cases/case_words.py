@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 
-from ...cases.sweep_table import asked
+from ...cases.sweep_table import case_columns
 from ...numerics.units import shown_number
 from .read_cases import CaseTable
 from .sweep_run import design_columns
@@ -13,7 +13,7 @@ _LONGEST = 24
 """Most characters shown of a text setting, such as a list of profiles."""
 
 
-def differing(table: CaseTable) -> dict[str, np.ndarray]:
+def varied_settings(table: CaseTable) -> dict[str, np.ndarray]:
     """Return the quantities that differ between the cases of a scene, except hours.
 
     Args:
@@ -23,7 +23,7 @@ def differing(table: CaseTable) -> dict[str, np.ndarray]:
         Values (case,) by "name [unit]": loads, displacements, speeds, and settings of
         the design, numbers in SI.
     """
-    found = asked(table.cases) | design_columns(table)
+    found = case_columns(table.cases) | design_columns(table)
     return {
         header: values
         for header, values in found.items()

@@ -51,12 +51,12 @@ def _life_of_load(options) -> Outcome:
 
 def _life_of_cases(options, tools: Tools) -> Outcome:
     from .life_run import (
+        failure_message,
         life_columns,
         run_life,
         spectrum_as_dict,
         spectrum_page,
         spectrum_report,
-        unsolved,
     )
     from .read_cases import read_cases
     from .sweep_run import cases_with_set_preload
@@ -86,5 +86,5 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
         draw_bearing,
         page=lambda: spectrum_page(done),
         table_on_page=True,
-        problems=[] if solved else [unsolved(done)],
+        problems=[] if solved else [failure_message(done)],
     )

@@ -18,7 +18,7 @@ from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Part, Report
-from ..bearing.life_ratings import life_conditions, not_published, rating_origins
+from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published
 from ..bearing.life_report import (
     life_number,
     lives_grid,
@@ -27,7 +27,7 @@ from ..bearing.life_report import (
     turning,
 )
 from ..solve.report import design_sections
-from .case_words import case_words, differing
+from .case_words import case_words, varied_settings
 from .read_cases import CaseTable
 from .sweep_run import all_warnings, design_columns, run_cases
 
@@ -87,7 +87,7 @@ class LifeRun:
 
     def words(self, case: int) -> list[str]:
         """Describe the settings that distinguish a case, such as "Fy -2.5 kN"."""
-        return case_words(differing(self.table), case)
+        return case_words(varied_settings(self.table), case)
 
     def least_safety(self) -> str:
         """Describe the least static safety of all cases and the case that has it."""
@@ -256,7 +256,7 @@ def _lives(run) -> list[Part]:
         rated["C"],
         rated["C0"],
         rated["Y"],
-        *not_published(table.scene, table.varied),
+        *why_not_published(table.scene, table.varied),
         "",
         lives_grid(revolutions, None if at_rest else hours),
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
@@ -308,7 +308,7 @@ def _by_case(run) -> list[Part]:
     more = run.table.cases.count - len(order)
     if more:
         parts.append(f"and {more} more, {100 * (1 - shares.sum()):.3g} %")
-    found = differing(run.table)
+    found = varied_settings(run.table)
     if found:
         # Non-breaking spaces keep a setting in one line.
         apart = [
@@ -319,7 +319,7 @@ def _by_case(run) -> list[Part]:
     return parts
 
 
-def unsolved(run: LifeRun) -> str:
+def failure_message(run: LifeRun) -> str:
     """List the cases that were not solved, in words."""
     codes = np.asarray(run.solved.result)
     lost = np.flatnonzero(codes != Result.CONVERGED)

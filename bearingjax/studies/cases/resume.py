@@ -9,7 +9,7 @@ import numpy as np
 
 from ...cases.sweep import Sweep
 from ...cases.sweep_program import WARNED
-from ...cases.sweep_table import NOTHING, asked, left_out, read, restored
+from ...cases.sweep_table import NOTHING, case_columns, left_out, read, restored
 from ...files.quantity import SceneError
 from ...numerics.result import Result
 from .read_cases import CaseTable
@@ -53,7 +53,9 @@ def resume_cases(
     except (OSError, ValueError) as error:
         first = str(error).partition("\n")[0]
         raise SceneError(f"{path}: cannot be read as a table: {first}") from error
-    check_asked(path, known, {**designs, **asked(table.cases)}, table.cases.count)
+    check_asked(
+        path, known, {**designs, **case_columns(table.cases)}, table.cases.count
+    )
     codes = np.asarray(known["result"])
     ran = np.flatnonzero(codes != Result.NOT_RUN.label)
     rest = np.flatnonzero(codes == Result.NOT_RUN.label)

@@ -18,7 +18,7 @@ from ...life.life import LIFE_OUTPUTS, LifeConditions
 from ...numerics.units import display_unit, shown_count
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
-from ...statics.preload import is_opposed, pressed
+from ...statics.preload import is_opposed, row_preload_force
 from ..bearing.life_ratings import life_conditions
 from ..bearing.preload_of_set import preload_warnings, range_warnings
 from ..solve.run import with_set_preload
@@ -161,7 +161,7 @@ def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
 
 
 def _pressed(solution):
-    return {"preload": pressed(solution)}
+    return {"preload": row_preload_force(solution)}
 
 
 def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:

@@ -38,7 +38,7 @@ def run(options, tools: Tools) -> Outcome:
     from ...files import SceneError
     from ..bearing.read_scene import read_scene
     from ..bearing.solved import SolvedScene
-    from ..solve.output import as_dict
+    from ..solve.output import solution_json
     from ..solve.run import run_scene
     from .read import is_bearing, read_contact
     from .report import contact_as_dict, contact_report, contact_warnings
@@ -51,7 +51,7 @@ def run(options, tools: Tools) -> Outcome:
             return Outcome(
                 bearing.name,
                 bearing.inputs,
-                lambda: as_dict(found),
+                lambda: solution_json(found),
                 problems=[why_unsolved(found)],
             )
         scene, cases = run_refined(
@@ -90,7 +90,7 @@ def run(options, tools: Tools) -> Outcome:
 
 def _lost(scene, cases) -> list[str]:
     """Return the reasons why loads of a contact were not solved, by load."""
-    from ...contact.halfspace.pressure import message
+    from ...contact.halfspace.pressure import failure_message
     from ...numerics import Result
 
     found = []
@@ -98,5 +98,5 @@ def _lost(scene, cases) -> list[str]:
         if not case.solution.converged:
             where = f" {given['load']:.5g} N:" if scene.listed else ""
             label = Result(int(case.solution.result)).label
-            found.append(f"{label}:{where} {message(case.solution)}")
+            found.append(f"{label}:{where} {failure_message(case.solution)}")
     return found

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...contact.halfspace.pressure import message
+from ...contact.halfspace.pressure import failure_message
 from ...contact.slices import Compared
 from ...numerics.result import Result
 from ...numerics.units import shown_count
@@ -120,7 +120,7 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
 def _status(solution) -> dict[str, Any]:
     return {
         "result": Result(int(solution.result)).label,
-        "message": message(solution),
+        "message": failure_message(solution),
         "residual": solution.residual,
         "iterations": solution.steps,
     }

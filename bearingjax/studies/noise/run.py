@@ -34,7 +34,7 @@ from ...noise import (
     total_root_mean_square,
     vibration,
 )
-from ...noise.static_start import why
+from ...noise.static_start import failure_message
 from ...numerics.result import Result
 from .scene import AXES, NoiseScene
 
@@ -137,7 +137,7 @@ def run_noise(
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
-        words = f"standing under the load: {why(model)}"
+        words = f"standing under the load: {failure_message(model)}"
         return NoiseRun(task, result, words, warnings=task.warnings)
     if task.bridging:
         width = bridged(model).half_width

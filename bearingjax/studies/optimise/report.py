@@ -11,7 +11,7 @@ from ...optimise.optimise import Optimised
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Report
 from ..bearing.read_scene import Scene
-from ..solve.output import fits_as_dict
+from ..solve.output import fits_json
 from ..solve.report import fits_section
 from .read_optimise import Optimisation
 from .read_shaft_optimise import ShaftOptimisation
@@ -138,7 +138,7 @@ def optimisation_as_dict(
         "evaluations": found.n_evaluations,
         "gradients": found.n_gradients,
         "rejected": found.rejected,
-        **(fits_as_dict(best) if isinstance(best, Scene) else {}),
+        **(fits_json(best) if isinstance(best, Scene) else {}),
         "warnings_before": _warned_before(task, found),
     }
     return run_json(numbers, [*best.warnings, *found.after.warnings], task.inputs)

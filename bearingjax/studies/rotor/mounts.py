@@ -17,7 +17,7 @@ from ...statics import restrained_freedoms
 from ...statics.installed import Installed
 from ..bearing.catalogue_keys import FromCatalogue
 from ..bearing.fits import Fits, fit_warnings, fits_at_speed, installed
-from ..bearing.placed_bearing import check_seat, echoed, placed_bearing
+from ..bearing.placed_bearing import check_seat, echoed, read_machine_bearing
 from ..bearing.read_scene import Scene, scene_of
 from .scene import Mount
 
@@ -199,7 +199,7 @@ def read_mounts(
 
 def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bearing:
     """Read a bearing of [bearings.NAME]."""
-    scene = placed_bearing(top, table, name, path, speed=speed)
+    scene = read_machine_bearing(top, table, name, path, speed=speed)
     for text in scene.warnings:
         warnings.warn(f"{name}: {text}", stacklevel=2)
     return _in_rotor(scene, speed)
@@ -236,7 +236,7 @@ def _bearing(
     inputs = echoed(scene.inputs)
     tables.fill(own, inputs)
     inside = Table(inputs, path.name, f"bearings.{own}")
-    placed = placed_bearing(top, inside, scene.name, path, speed=speed)
+    placed = read_machine_bearing(top, inside, scene.name, path, speed=speed)
     found = _in_rotor(placed, speed)
     if found.fits is not None:
         for text in fit_warnings(found.fits):

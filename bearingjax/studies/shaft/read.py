@@ -34,7 +34,7 @@ from ...shafts import (
 from ...shafts.duty import alike
 from ...shafts.parts import APEXES, HANDS
 from ..bearing.life_ratings import life_conditions
-from ..bearing.placed_bearing import check_seat, placed_bearing
+from ..bearing.placed_bearing import check_seat, read_machine_bearing
 from ..bearing.read_scene import Scene
 from ..cases.read_cases import CasesKeys, Varied
 from ..rotor.mounts import SpringKeys
@@ -541,7 +541,7 @@ def _bearing(
 ) -> Scene | None:
     """Read a bearing as a scene of its own; `None` of springs."""
     if keys.stiffness is None:
-        return placed_bearing(top, table, name, path, _OF_SEAT, known=known)
+        return read_machine_bearing(top, table, name, path, _OF_SEAT, known=known)
     own = [key for key in table.keys_given() if key not in _OF_SEAT]
     if own:
         problem = "goes with a bearing, not with springs (`stiffness`)"

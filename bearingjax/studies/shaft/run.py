@@ -14,7 +14,7 @@ from ...files.quantity import SceneError
 from ...fits import radial_clearance
 from ...life.life import Life, life_of
 from ...life.life_warning import ALL
-from ...numerics.compiled.programs import called
+from ...numerics.compiled.programs import call_stored
 from ...numerics.result import Result
 from ...shafts import (
     DutyResult,
@@ -29,9 +29,9 @@ from ...shafts import (
 )
 from ...shafts.doubts import load_doubts
 from ...shafts.duty import case_damage
-from ...shafts.equilibrium import searched_system, system_state, unsolved
-from ...shafts.heat import overheated, with_temperatures
-from ...shafts.seats import adjusted, speed_of
+from ...shafts.equilibrium import failure_message, searched_system, system_state
+from ...shafts.heat import failure_message, with_temperatures
+from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving
 from ...statics.solution import Solution
 from ...statics.warning import counted
@@ -177,7 +177,7 @@ class ShaftRun:
         if self.problem or np.isnan(hours[~sprung]).any() or sprung.all():
             return None
         known = np.where(sprung, np.inf, hours)
-        return float(called(system_life, self.task.system, known))
+        return float(call_stored(system_life, self.task.system, known))
 
 
 def run_shafts(
@@ -203,13 +203,15 @@ def run_shafts(
             say("static equilibrium")
             found, place = searched_system(system)
             if not found.converged:
-                problem = unsolved(system, jax.device_get(found), np.asarray(place))
+                problem = failure_message(
+                    system, jax.device_get(found), np.asarray(place)
+                )
         else:
             say("thermal equilibrium")
             states = _thermal(task)
             found = states[0].solution
             if int(states[0].result) != Result.CONVERGED:
-                problem = overheated(states[0])
+                problem = failure_message(states[0])
             else:
                 task = _warm(task, states[0])
     except ValueError as error:
@@ -239,7 +241,7 @@ def _thermal(task: ShaftScene) -> list[ThermalState]:
     for case in cases:
         assert case.heat is not None
         # The first keeps its preload, for the warnings.
-        system = adjusted(case.system, offsets) if states else case.system
+        system = with_preload_offsets(case.system, offsets) if states else case.system
         states.append(solve_heat(system, case.heat, throw=False))
     hot = any(int(state.result) != Result.CONVERGED for state in states)
     if task.pauses == "ambient" or hot:
@@ -258,7 +260,7 @@ def _thermal(task: ShaftScene) -> list[ThermalState]:
         if not case.system.turns and case.heat is not None:
             rises = rings - case.heat.ambient
             system = with_temperatures(states[k].system, case.heat, rises)
-            found, _ = system_state(adjusted(system))
+            found, _ = system_state(with_preload_offsets(system))
             more = {"system": system, "solution": found, "result": found.result}
             states[k] = dataclasses.replace(states[k], **warm, **more)
     return states
@@ -307,7 +309,7 @@ def _duty(
         return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
     if states and lost[failed[0]]:
-        label = overheated(states[failed[0]])
+        label = failure_message(states[failed[0]])
     many = f"{failed.size} of {len(cases)} cases not solved"
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 

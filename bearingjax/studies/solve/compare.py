@@ -8,7 +8,7 @@ import numpy as np
 
 from ..._version import __version__
 from ...cases.sweep import SUMMARIES
-from ...cases.sweep_table import OPERATING_CLEARANCE, kind, spread
+from ...cases.sweep_table import OPERATING_CLEARANCE, flatten_columns, kind
 from ...element.frame import FREEDOMS
 from ...life.life import LIFE_OUTPUTS
 from ...numerics.result import Result
@@ -118,7 +118,7 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
         if value is None:
             continue
         values = without_round_off(np.asarray(value))
-        for header, column in spread(name, values[None]):
+        for header, column in flatten_columns(name, values[None]):
             full, _, _ = header.partition(" ")
             own = name != "stiffness" or full in diagonal
             if column is None or fixed in header or not own:

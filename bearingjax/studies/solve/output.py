@@ -5,7 +5,7 @@ from typing import Any
 
 from ...numerics.result import Result
 from ...report.json_output import run_json, to_json, write_numbers
-from ...statics.solution import BallSolution, message
+from ...statics.solution import BallSolution, failure_message
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
@@ -48,7 +48,7 @@ KINEMATICS = {
 """Fields of `BallKinematics` by their names in the file."""
 
 
-def as_dict(found: SolvedScene) -> dict[str, Any]:
+def solution_json(found: SolvedScene) -> dict[str, Any]:
     """Return the solution of a scene as plain numbers and lists, in SI.
 
     Args:
@@ -68,10 +68,10 @@ def as_dict(found: SolvedScene) -> dict[str, Any]:
     return {
         **(_numbers(found.numbers) if found.converged else {}),
         **oil_as_dict(found.oil),
-        **fits_as_dict(scene),
+        **fits_json(scene),
         **_catalogue(scene),
         **_life(found),
-        **solved_as_dict(found),
+        **solved_json(found),
     }
 
 
@@ -80,7 +80,7 @@ def _life(found: SolvedScene) -> dict[str, Any]:
     return {} if life is None else life_as_dict(life, found.scene)
 
 
-def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
+def solved_json(found: SolvedScene) -> dict[str, Any]:
     """Return the status of a solve: result, message, residual, iterations, warnings.
 
     Args:
@@ -89,7 +89,7 @@ def solved_as_dict(found: SolvedScene) -> dict[str, Any]:
     scene, solution = found.scene, found.numbers
     status = {
         "result": Result(int(solution.result)).label,
-        "message": message(solution, scene.moving_ring),
+        "message": failure_message(solution, scene.moving_ring),
         "residual": solution.stats.residual,
         "iterations": solution.stats.iterations,
     }
@@ -106,11 +106,11 @@ def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
         Contents of `life_as_dict`, `fits_as_dict` and `solved_as_dict`; the last one
         only if the solve did not converge.
     """
-    fits = fits_as_dict(found.scene) if found.converged else {}
-    return {**_life(found), **fits, **solved_as_dict(found)}
+    fits = fits_json(found.scene) if found.converged else {}
+    return {**_life(found), **fits, **solved_json(found)}
 
 
-def fits_as_dict(scene: Scene) -> dict[str, Any]:
+def fits_json(scene: Scene) -> dict[str, Any]:
     """Return under `fit` the output of `fit_as_dict`, and `preload` of a set, from
     `preload_as_dict`, if it was computed; empty for a scene without fits.
 
@@ -162,4 +162,4 @@ def write_json(path: str | Path, found: SolvedScene) -> None:
     Raises:
         OSError: If the file cannot be written.
     """
-    write_numbers(path, as_dict(found))
+    write_numbers(path, solution_json(found))

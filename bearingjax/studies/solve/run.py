@@ -3,7 +3,7 @@
 import dataclasses
 
 from ...design.checks import of_class
-from ...numerics.compiled.programs import called
+from ...numerics.compiled.programs import call_stored
 from ...numerics.types import as_array
 from ...statics.load import solve_load
 from ...statics.solution import Solution
@@ -27,7 +27,7 @@ def run_scene(scene: Scene) -> Solution:
     Fails: as `solve_load`.
     """
     of_class("run_scene", "scene", scene, Scene, "a Scene, as of read_scene")
-    return called(
+    return call_stored(
         _solved,
         scene.running(),
         as_array(scene.load, float),

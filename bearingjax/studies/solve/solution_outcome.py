@@ -11,7 +11,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
         numbers: Returns the JSON of the solved scene; default: `as_dict`.
         brief: Sections of the report shown on the terminal; default: all.
     """
-    from .output import as_dict
+    from .output import solution_json
     from .report import report
     from .run import solve_scene
 
@@ -34,7 +34,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
     return Outcome(
         scene.name,
         scene.inputs,
-        lambda: (numbers or as_dict)(found),
+        lambda: (numbers or solution_json)(found),
         full_report
         if brief is None or full_report is None
         else full_report.only(brief),
@@ -52,7 +52,7 @@ def why_unsolved(found) -> str:
         found: From `solve_scene`, not converged.
     """
     from ...numerics import Result
-    from ...statics.solution import message
+    from ...statics.solution import failure_message
 
     label = Result(int(found.solution.result)).label
-    return f"{label}: {message(found.solution, found.scene.moving_ring)}"
+    return f"{label}: {failure_message(found.solution, found.scene.moving_ring)}"
