@@ -11,8 +11,8 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.linear import combined
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from ..statics import solution as statics_solution
 from ..statics.load import solve
-from ..statics.solution import failure_message
 from .dynamics.element_positions import ElementPositions
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -95,4 +95,4 @@ def failure_message(model: NoiseModel) -> str:
             "nothing presses the rolling elements between the rings, and the"
             f" {model.moving_ring} ring lies anywhere; add load or preload"
         )
-    return failure_message(solution, model.moving_ring)
+    return statics_solution.failure_message(solution, model.moving_ring)

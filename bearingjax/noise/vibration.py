@@ -200,7 +200,8 @@ def _failure(model: NoiseModel, result: int, steps: int) -> str:
             f"vibration: `steps` is {steps}, too few for the contacts under their"
             " largest load; the motion cannot be trusted."
         )
-    return f"vibration: the bearing finds no place under its load: {failure_message(model)}."
+    reason = failure_message(model)
+    return f"vibration: the bearing finds no place under its load: {reason}."
 
 
 def needed_steps(model: NoiseModel, samples: int = 2048) -> int:

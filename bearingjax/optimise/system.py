@@ -9,9 +9,10 @@ import equinox as eqx
 
 from ..cases.cases import Cases, case_speed, solve_case
 from ..element.bearing_element import BearingElement, check_element
+from ..statics import solution as statics_solution
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
-from ..statics.solution import Solution, failure_message
+from ..statics.solution import Solution
 
 
 class AbstractSystem(eqx.Module):
@@ -171,6 +172,6 @@ def failure_message(design: Design, solved: Any) -> str:
     if loads is not None and (
         not isinstance(design, AbstractSystem) or int(loads.result)
     ):
-        return failure_message(loads, loads.moving_ring)
+        return statics_solution.failure_message(loads, loads.moving_ring)
     assert isinstance(design, AbstractSystem)
     return design.message(solved)

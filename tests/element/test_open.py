@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.element.energy import ring_motions
+from bearingjax.element.energy import ring_motions as motions_of_rings
 from bearingjax.element.rolling_element import RingMotion
 
 MOTIONS = 40
@@ -86,7 +86,7 @@ def test_open_rollers_carry_no_load(design):
     roller = model.rows[0].element
 
     def told(rings):
-        return roller.hints.is_open(ring_motions(roller, rings))
+        return roller.hints.is_open(motions_of_rings(roller, rings))
 
     is_open = np.asarray(jax.vmap(jax.vmap(told))(row.rings))
     assert 0.1 < np.mean(is_open) < 0.9

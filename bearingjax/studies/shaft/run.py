@@ -22,6 +22,8 @@ from ...shafts import (
     ThermalState,
     bearing_hours,
     bearing_solutions,
+    equilibrium,
+    heat,
     solve_duty,
     solve_heat,
     system_life,
@@ -29,8 +31,8 @@ from ...shafts import (
 )
 from ...shafts.doubts import load_doubts
 from ...shafts.duty import case_damage
-from ...shafts.equilibrium import failure_message, searched_system, system_state
-from ...shafts.heat import failure_message, with_temperatures
+from ...shafts.equilibrium import searched_system, system_state
+from ...shafts.heat import with_temperatures
 from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving
 from ...statics.solution import Solution
@@ -203,7 +205,7 @@ def run_shafts(
             say("static equilibrium")
             found, place = searched_system(system)
             if not found.converged:
-                problem = failure_message(
+                problem = equilibrium.failure_message(
                     system, jax.device_get(found), np.asarray(place)
                 )
         else:
@@ -211,7 +213,7 @@ def run_shafts(
             states = _thermal(task)
             found = states[0].solution
             if int(states[0].result) != Result.CONVERGED:
-                problem = failure_message(states[0])
+                problem = heat.failure_message(states[0])
             else:
                 task = _warm(task, states[0])
     except ValueError as error:
@@ -309,7 +311,7 @@ def _duty(
         return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
     if states and lost[failed[0]]:
-        label = failure_message(states[failed[0]])
+        label = heat.failure_message(states[failed[0]])
     many = f"{failed.size} of {len(cases)} cases not solved"
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 
