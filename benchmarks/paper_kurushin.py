@@ -145,7 +145,7 @@ from bearingjax.noise import (
     Sensor,
     acceleration_of,
     band_levels,
-    combined,
+    combine_levels,
     kinematic_frequencies,
     level,
     name_lines,
@@ -325,7 +325,7 @@ def by_hand():
     contact = Ellipse(one, one * 1e10, one, one)
     rate = jax.grad(contact.load)(contact.approach(one * 100.0))
     apart = max(
-        abs(float(combined(np.array(bands))) - TOTAL[name])
+        abs(float(combine_levels(np.array(bands))) - TOTAL[name])
         for name, bands in (("serial", NORM), *MEASURED.items())
     )
     levels = np.array([73.3, 75.0, 78.0, 80.0, 90.8])
@@ -509,7 +509,8 @@ def show(out):
         print(f"  {name:38s} {ours:9.4g} | {paper:g}")
     print("octave sums of the published bands, and total levels")
     for name, bands in (("serial", NORM), *MEASURED.items()):
-        print(f"  {name:22s} {float(combined(np.array(bands))):6.2f} {TOTAL[name]:g}")
+        total = float(combine_levels(np.array(bands)))
+        print(f"  {name:22s} {total:6.2f} {TOTAL[name]:g}")
     levels = (73.3, 75.0, 78.0, 80.0, 90.8)
     told = (f"{x:g} dB {float(acceleration_of(x)):.4f}" for x in levels)
     print("levels to accelerations [m/s²]:", *told)

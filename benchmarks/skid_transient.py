@@ -66,7 +66,7 @@ from bearingjax.numerics.types import as_real
 from bearingjax.skid.load_table import _as_row, _pieces
 from bearingjax.skid.ring_speed import as_table
 from bearingjax.skid.transients.beginning import surroundings
-from bearingjax.skid.transients.integration import Options, integrated
+from bearingjax.skid.transients.integration import Options, integrate_motion
 from bearingjax.statics.load import solve_load
 
 CASES = {
@@ -185,7 +185,7 @@ class InNumPy:
 def ours(around, start, times, tolerance):
     """Orbital speeds (time, ball) [rad/s], and steps."""
     options = Options(as_real(tolerance), 50_000, "forward", False)
-    moved = integrated(around, start, times, times[-1], options)
+    moved = integrate_motion(around, start, times, times[-1], options)
     return moved.state.orbit, moved.steps
 
 

@@ -59,7 +59,7 @@ class SolvedCases(NamedTuple):
 
     Attributes:
         load: Load on the moving ring [N, N m].
-        other: From `others`.
+        other: From `unsafe_to_start_near`.
         displacement: Displacement of the moving ring [m, rad].
         stiffness: Stiffness of the moving ring.
         usable: Whether cases may start from it.
@@ -80,7 +80,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
     Args:
         lanes: Cases of a chunk.
         devices: Number of devices.
-        coordinates: Columns of `others`.
+        coordinates: Columns of `unsafe_to_start_near`.
     """
     n = devices * (KEPT + lanes)
     tails = (6,), (coordinates,), (6,), (6, 6)
@@ -158,13 +158,13 @@ def starts(
     Args:
         known: Solved cases.
         cases: A chunk.
-        other: From `others`, of these.
-        alike: From `likeness`.
+        other: From `unsafe_to_start_near`, of these.
+        alike: From `common_properties`.
     """
     known = jax.tree.map(lambda a: a[:KEPT], known)
     free = jnp.asarray(alike.free)
     angle = _angle(cases.load, alike.pitch)
-    load = _turned(cases.load, -angle)
+    load = _rotate_about_z(cases.load, -angle)
     own = jnp.diagonal(known.stiffness, axis1=1, axis2=2)
     counted = known.usable[:, None] & free[None] & (own > 0)
     soft = jnp.where(counted, -0.5 * jnp.log(jnp.where(counted, own, 1.0)), 0.0)
@@ -187,7 +187,7 @@ def starts(
     both = (free[:, None] & free[None])[None]
     alone = jnp.where(both, stiffness, jnp.eye(6, dtype=load.dtype)[None])
     change = jax.vmap(solve)(alone, jnp.where(free[None], push, held))
-    found = _turned(there + change, angle)
+    found = _rotate_about_z(there + change, angle)
     # Nothing holds it, and it may end at a rib, which it touches and seems held by.
     adrift = (load[:, 2] == 0) & alike.axial_play
     return jnp.where(((apart < FAR**2) & ~adrift)[:, None], found, jnp.nan)
@@ -219,9 +219,9 @@ def add_solved(
     first = 6 * RINGS.index(solutions.moving_ring)
     moving = slice(first, first + 6)
     k = solutions.stiffness[:, moving, moving].astype(load.dtype)
-    k = _turned(0.5 * (k + k.swapaxes(1, 2)), back[:, None])
-    k = _turned(k.swapaxes(1, 2), back[:, None])
-    there = _turned(solutions.displacement[:, moving].astype(load.dtype), back)
+    k = _rotate_about_z(0.5 * (k + k.swapaxes(1, 2)), back[:, None])
+    k = _rotate_about_z(k.swapaxes(1, 2), back[:, None])
+    there = _rotate_about_z(solutions.displacement[:, moving].astype(load.dtype), back)
     # Of a ring that nothing holds in some direction this is one answer of many.
     sound = (solutions.result == 0) & (
         jax.vmap(unrestrained_directions)(solutions) == 0
@@ -232,7 +232,7 @@ def add_solved(
         new = jnp.where(jnp.isfinite(new), new, jnp.zeros_like(new)).astype(old.dtype)
         return lax.dynamic_update_slice_in_dim(old, new, at, 0)
 
-    new = (_turned(load, back), other, there, k, sound)
+    new = (_rotate_about_z(load, back), other, there, k, sound)
     rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
     return SolvedCases._make([*rows, known.count + len(load)]), ~sound
 
@@ -246,7 +246,7 @@ def _angle(load, pitch):
     return pitch * jnp.round(jnp.arctan2(y, x) / pitch)
 
 
-def _turned(vectors, angle):
+def _rotate_about_z(vectors, angle):
     """Loads or freedoms (…, 6) turned about z."""
     c, s = jnp.cos(angle), jnp.sin(angle)
     x, y, z, a, b, g = jnp.moveaxis(vectors, -1, 0)

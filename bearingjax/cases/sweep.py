@@ -25,7 +25,7 @@ from ..numerics.result import Result
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import check_held
-from ..statics.warning import counted, given
+from ..statics.warning import exceeded_kinds, sentences_of_cases
 from .cases import Cases
 from .names_of_zeros import structural_zeros
 from .sweep_program import WARNED, Program, Task
@@ -99,12 +99,13 @@ class Sweep(eqx.Module):
     @property
     def warnings(self) -> list[str]:
         """A sentence for each kind of warning: in how many cases, and the worst."""
-        return counted(self.warned, ALL)
+        return sentences_of_cases(self.warned, ALL)
 
     def warning_counts(self) -> dict[str, int]:
         """Number of cases with each kind of warning; kinds without cases left out."""
         return {
-            name: int(cases.sum()) for name, cases in given(self.warned, ALL).items()
+            name: int(cases.sum())
+            for name, cases in exceeded_kinds(self.warned, ALL).items()
         }
 
 
@@ -222,7 +223,7 @@ def sweep(
         raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
     check_held("sweep", every.load, every.prescribed, options.free)
     of_class("sweep", "life", life, LifeConditions | None, "LifeConditions")
-    keep, lives = _kept(outputs)
+    keep, lives = _output_function(outputs)
     life = LifeConditions() if lives and life is None else life
     if life is not None:
         check_alike(element.bearing)
@@ -263,18 +264,18 @@ def _output(solution, name) -> Any:
     return value
 
 
-def _kept(outputs: Any) -> tuple[Any, tuple[str, ...]]:
+def _output_function(outputs: Any) -> tuple[Any, tuple[str, ...]]:
     """Function for the outputs of a solution, and the names of the life outputs."""
     if callable(outputs):
         return outputs, ()
-    names = _checked(outputs)
+    names = _check_outputs(outputs)
     if names is None:
         return Keep(None), ()
     lives = tuple(name for name in names if name in LIFE_OUTPUTS)
     return Keep(tuple(name for name in names if name not in lives)), lives
 
 
-def _checked(outputs):
+def _check_outputs(outputs):
     if outputs is None:
         return None
     if isinstance(outputs, str) or not all(isinstance(n, str) for n in outputs):

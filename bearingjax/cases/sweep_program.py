@@ -165,7 +165,7 @@ class Program:
         shard = NamedSharding(self.mesh, Spec("case"))
         alike = common_properties(self.element, held[0], self.task.options)
         known = nothing_known(lanes, devices, held[1].shape[1])
-        known = jax.tree.map(lambda a: _spread(a, shard), known)
+        known = jax.tree.map(lambda a: _spread_over_devices(a, shard), known)
         found: dict[str, np.ndarray] = {}
         pending, last = None, 0
         with _bar(n if progress else None) as advance:
@@ -174,10 +174,10 @@ class Program:
                     begin = None
                 if begin is not None:
                     end = min(begin + block, n)
-                    part = jax.tree.map(lambda a: _padded(a[begin:end], block), held)  # noqa: B023
+                    part = jax.tree.map(lambda a: _pad_chunk(a[begin:end], block), held)  # noqa: B023
                     given = (
                         self.element,
-                        jax.tree.map(lambda a: _spread(a, shard), part),
+                        jax.tree.map(lambda a: _spread_over_devices(a, shard), part),
                         known,
                         jnp.asarray(near),
                         self.task,
@@ -251,7 +251,7 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
     return spread(arrays, given, known, near)
 
 
-def _padded(array, size):
+def _pad_chunk(array, size):
     missing = size - array.shape[0]
     if missing == 0:
         return array
@@ -261,7 +261,7 @@ def _padded(array, size):
     return np.concatenate([array, fill])
 
 
-def _spread(array, sharding):
+def _spread_over_devices(array, sharding):
     return jax.make_array_from_callback(array.shape, sharding, lambda i: array[i])
 
 

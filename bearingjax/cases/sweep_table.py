@@ -19,7 +19,7 @@ from ..life.life_warning import ALL
 from ..numerics.result import Result
 from ..numerics.units import unit_of
 from ..statics.solution import BallSolution, RollerSolution
-from ..statics.warning import given
+from ..statics.warning import exceeded_kinds
 from .cases import Cases
 from .sweep import SUMMARIES, Sweep
 from .sweep_program import WARNED, not_run
@@ -105,7 +105,7 @@ def columns(
         **(extra or {}),
         **case_columns(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
-        **({WARNINGS: _warned(sweep)} if sweep.warned else {}),
+        **({WARNINGS: _warning_texts(sweep)} if sweep.warned else {}),
         **found,
     }
 
@@ -156,10 +156,10 @@ def left_out(sweep: Sweep) -> tuple[tuple[str, tuple[str, ...]], ...]:
     )
 
 
-def _warned(sweep):
+def _warning_texts(sweep):
     """Warnings of each case, "kind=size" joined by "; ", sizes in SI."""
     texts = np.full(sweep.cases.count, "", dtype=object)
-    for name, cases in given(sweep.warned, ALL).items():
+    for name, cases in exceeded_kinds(sweep.warned, ALL).items():
         new = [f"{name}={size:.6g}" for size in sweep.warned[name][cases]]
         old = texts[cases]
         texts[cases] = [f"{a}; {b}" if a else b for a, b in zip(old, new, strict=True)]
@@ -323,7 +323,7 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
     return {name: np.asarray(column.to_numpy()) for name, column in pairs}
 
 
-def restored(
+def restore_outputs(
     table: Mapping[str, np.ndarray],
     like: Mapping[str, np.ndarray],
     zeros: Iterable[tuple[str, tuple[str, ...]]] = (),

@@ -101,7 +101,7 @@ def split_designation(
     makers = "|".join(MAKERS)
     words = re.sub(rf"^({makers})-?(?=[A-Z0-9])|-({makers})$", "", words)
     before: list[tuple[str, _Letters]] = []
-    while not (found := _listed(words, names)):
+    while not (found := _matching_names(words, names)):
         prefix = _prefix(words)
         if prefix is None or prefix in before:
             raise ValueError(_unknown(text, plain, names))
@@ -113,7 +113,7 @@ def split_designation(
     for name, rest in found:
         if names[name][:3] != names[found[0][0]][:3]:
             break  # letters of another bearing, such as an angle of A, AC
-        after = _split(rest, kind)
+        after = _split_suffixes(rest, kind)
         if after is not None:
             return name, _meaning((*before, *after), text)
     name, rest = found[0]
@@ -122,7 +122,7 @@ def split_designation(
     raise ValueError(f"{text!r} {problem} (known are {known})")
 
 
-def _listed(words: str, names: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _matching_names(words: str, names: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return the names with which a text begins, the longest first, and the rests.
 
     Separators may stand between letters and digits: 62/22 is not 6222, nor 7205 A-C a
@@ -152,7 +152,9 @@ def _prefix(words: str) -> tuple[str, _Letters] | None:
 
 
 @functools.lru_cache(maxsize=1024)
-def _split(rest: str, kind: str) -> tuple[tuple[str, _Letters | None], ...] | None:
+def _split_suffixes(
+    rest: str, kind: str
+) -> tuple[tuple[str, _Letters | None], ...] | None:
     """Split what follows a name into known letters, the longest first.
 
     Returns:
@@ -162,9 +164,9 @@ def _split(rest: str, kind: str) -> tuple[tuple[str, _Letters | None], ...] | No
     if not rest:
         return ()
     if rest[0] == "-":
-        return _split(rest[1:], kind)
+        return _split_suffixes(rest[1:], kind)
     found = _CLEARANCE.match(rest)
-    if found and (tail := _split(rest[found.end() :], kind)) is not None:
+    if found and (tail := _split_suffixes(rest[found.end() :], kind)) is not None:
         return ((found[0], None), *tail)
     for length in range(min(len(rest), 10), 0, -1):
         for letters in _table("suffixes"):
@@ -174,7 +176,7 @@ def _split(rest: str, kind: str) -> tuple[tuple[str, _Letters | None], ...] | No
             if letters.pattern.fullmatch(rest, 0, length) or (
                 match and match.end() == length
             ):
-                tail = _split(rest[length:], kind)
+                tail = _split_suffixes(rest[length:], kind)
                 if tail is not None:
                     return ((rest[:length], letters), *tail)
     return None
@@ -185,7 +187,7 @@ def _culprit(rest: str, kind: str) -> str:
     words = rest.strip("-").split("-")
     for place, word in enumerate(words):
         pairs = words[max(place - 1, 0) : place + 1], words[place : place + 2]
-        if all(_split("-".join(w), kind) is None for w in ([word], *pairs)):
+        if all(_split_suffixes("-".join(w), kind) is None for w in ([word], *pairs)):
             return word
     return "-".join(words)
 
@@ -223,13 +225,13 @@ def _unknown(text: str, plain: str, names: Mapping[str, Any]) -> str:
         words += f" (/{bore[1]} is a bore of {bore[1]} mm, part of the number)"
         squeezed = ""
     begun = [name for name in names if squeezed and name.startswith(squeezed)]
-    near = sorted(begun, key=len) or _mistyped(squeezed, names)
+    near = sorted(begun, key=len) or _similar_names(squeezed, names)
     hint = f"; near it: {', '.join(near[:6])}" if near else ""
     cure = "; of an unlisted one `bearingjax new --type …` estimates the inside"
     return f"{words}{hint}{cure}"
 
 
-def _mistyped(squeezed: str, names: Mapping[str, Any]) -> list[str]:
+def _similar_names(squeezed: str, names: Mapping[str, Any]) -> list[str]:
     """Return names one mistake away: two signs swapped; one other, more or less."""
     cuts = [(squeezed[:k], squeezed[k:]) for k in range(len(squeezed) + 1)]
     swapped = {a + b[1] + b[0] + b[2:] for a, b in cuts if len(b) > 1}

@@ -297,7 +297,7 @@ def estimate_geometry(
         dynamic_capacity=dynamic_capacity,
         static_capacity=static_capacity,
     )
-    typical = _checked(numbers, kind, contact_angle)
+    typical = _check_proportions(numbers, kind, contact_angle)
     readings, problems = [], []
     for raised in dict.fromkeys((1.0, _KINDS[kind].raised)):
         taken = numbers | {"dynamic_capacity": dynamic_capacity / raised}
@@ -327,7 +327,7 @@ def _fits(kind, typical, numbers) -> tuple[_Envelope, list["_Fit"]]:
     """The envelope, and the best sizes with each number of elements, the best first."""
     rated, known = _KINDS[kind], _envelope(numbers, kind, typical)
     _check_reach(rated, known, numbers)
-    fits = [_fit(rated, known, count) for count in _counts(rated, known)]
+    fits = [_fit_sizes(rated, known, count) for count in _counts(rated, known)]
     fits.sort(key=lambda fit: fit.misfit)
     _check_pair(kind, numbers, fits[0].errors)
     return known, fits
@@ -436,7 +436,7 @@ def _part(evaluate, k, sizes):
     return evaluate(sizes)[k]
 
 
-def _fit(rated, known, count) -> _Fit:
+def _fit_sizes(rated, known, count) -> _Fit:
     """The sizes that agree best, with a given number of rolling elements."""
     from scipy.optimize import least_squares  # half a second of import
 
@@ -576,7 +576,7 @@ def _check_pair(kind, numbers, errors):
     )
 
 
-def _checked(numbers, kind, contact_angle) -> Proportions:
+def _check_proportions(numbers, kind, contact_angle) -> Proportions:
     """Proportions of the type, with the contact angle if it is given."""
     owner = "estimate_geometry"
     for name, value in numbers.items():

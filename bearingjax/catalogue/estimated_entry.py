@@ -160,13 +160,13 @@ def _design(kind: str, row: Any) -> dict[str, Any]:
     for name in (*names, *_PARTS[kind]):
         # The outer raceway of a self-aligning bearing is a sphere.
         if hasattr(row, name) and (kind, name) != _SPHERE:
-            design[name] = _rounded(name, getattr(row, name))
+            design[name] = _round_as_printed(name, getattr(row, name))
     if element == "rollers" and _INNER not in design:
         design["roller_profile"] = {"type": "logarithmic"}
     if kind == "tapered_roller":
         rib, ends = row.ribs.inner_minus, ("end_radius", "contact_height")
         design["ribs"] = {
-            "inner_minus": {k: _rounded(k, getattr(rib, k), 4) for k in ends}
+            "inner_minus": {k: _round_as_printed(k, getattr(rib, k), 4) for k in ends}
         }
         design[CLEARANCE] = 0.0
     return design
@@ -175,7 +175,7 @@ def _design(kind: str, row: Any) -> dict[str, Any]:
 _SPHERE = ("self_aligning_ball", "outer_osculation")
 
 
-def _rounded(name: str, value: Any, digits: int = 5) -> Any:
+def _round_as_printed(name: str, value: Any, digits: int = 5) -> Any:
     """Return a value as it would be printed."""
     if name.startswith("n_"):
         return int(value)

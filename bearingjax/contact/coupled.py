@@ -131,11 +131,11 @@ class CoupledContact(AbstractLineContact):
 
     def integrals(self, table, quadrature, a, b):
         xi = _middles(table.drop.shape[0], a.dtype)
-        loads = _solved(table, a, b)
+        loads = _solve_slices(table, a, b)
         held, curved = stop_gradient(loads) > 0, _curvature(table, loads)
         columns = jnp.stack([jnp.ones_like(xi), xi], axis=1)
         inside = jnp.where(held[:, None], columns, 0.0)
-        bent = _divided(_free(table.matrix, curved, held), inside)
+        bent = _divide(_free(table.matrix, curved, held), inside)
         aa, ab, bb = (inside[:, i] @ bent[:, k] for i, k in ((0, 0), (0, 1), (1, 1)))
         given = a + b * xi - table.drop
         scale = jnp.pi * self.modulus * self.line.length / table.drop.shape[0]
@@ -146,7 +146,7 @@ class CoupledContact(AbstractLineContact):
         )
 
     def carried(self, table, a, b):
-        return jnp.pi * self.modulus * _solved(table, a, b)
+        return jnp.pi * self.modulus * _solve_slices(table, a, b)
 
     def at(self, carried, xi):
         return jnp.interp(xi, _middles(carried.shape[0], xi.dtype), carried)
@@ -203,7 +203,7 @@ def _free(matrix, curvature, held):
     return jnp.where(both, matrix, 0.0) + own[:, None] * jnp.eye(n, dtype=matrix.dtype)
 
 
-def _divided(matrix, right):
+def _divide(matrix, right):
     return solve_any(matrix, right, "positive")
 
 
@@ -221,7 +221,7 @@ class _State(NamedTuple):
     steps: Array
 
 
-def _solved(table, a, b):
+def _solve_slices(table, a, b):
     """Loads q/(π E*) ≥ 0 of the slices (slice,) [m]; NaN if they did not converge."""
     loads = _newton(*stop_gradient((table, a, b)))
 
@@ -233,7 +233,7 @@ def _solved(table, a, b):
     def correction(_, loads, change, args):
         table, _, _, held = args
         matrix = _free(table.matrix, _curvature(table, loads), held > 0)
-        return -_divided(matrix, change)
+        return -_divide(matrix, change)
 
     held = jnp.where(loads > 0, 1.0, 0.0)
     return attach_by(balance, loads, (table, a, b, held), correction)
@@ -260,7 +260,7 @@ def _newton(table, a, b):
         # Where a slice enters, the logarithm has no slope yet.
         near = jnp.where(old.loads > 0, old.loads, 1e-3 * jnp.max(old.loads))
         matrix = _free(table.matrix, _curvature(table, near), free)
-        down = _divided(matrix, jnp.where(free, old.rest, 0.0))
+        down = _divide(matrix, jnp.where(free, old.rest, 0.0))
         new = state(
             jnp.maximum(old.loads - old.damping * down, 0.0),
             jnp.minimum(4.0 * old.damping, 1.0),

@@ -124,12 +124,12 @@ def finite(owner, name: str, *given: Any) -> None:
 
 def positive(owner, name: str, *given: Any) -> None:
     """A finite number above zero; arguments as in `check`."""
-    _bounded(owner, name, 0.0, np.inf, False, given)
+    _check_bounds(owner, name, 0.0, np.inf, False, given)
 
 
 def non_negative(owner, name: str, *given: Any) -> None:
     """A finite number of at least zero; arguments as in `check`."""
-    _bounded(owner, name, 0.0, np.inf, True, given)
+    _check_bounds(owner, name, 0.0, np.inf, True, given)
 
 
 def in_range(
@@ -142,10 +142,10 @@ def in_range(
         low, high: Bounds; `high` is excluded, `low` unless `include_low`.
         include_low: Whether `low` itself is allowed.
     """
-    _bounded(owner, name, low, high, include_low, given)
+    _check_bounds(owner, name, low, high, include_low, given)
 
 
-def _bounded(owner, name, low, high, include_low, given):
+def _check_bounds(owner, name, low, high, include_low, given):
     value, unit = given or _field(owner, name)
     number(owner, name, value, unit)
     numbers = concrete(value, low, high)

@@ -142,7 +142,7 @@ class FujiwaraKawase(AbstractProfile):
         crowned = 0.5 * length * self.crowned_fraction
         out = jnp.minimum((0.5 * length - jnp.abs(position)) / crowned, 1.0)
         rest = out * (2.0 - out) + jnp.exp(-self.end_drop / unit) * (1.0 - out) ** 2
-        return -unit * jnp.log(_floored(rest))
+        return -unit * jnp.log(_floor_root(rest))
 
     def kinks(self, length):
         begin = 0.5 * length * (1.0 - self.crowned_fraction)
@@ -154,7 +154,7 @@ def _log_one_over(x, part):
     root = jnp.sqrt(part)
     rest = (1.0 - root * x) * (1.0 + root * x)
     if rest.dtype == jnp.float64:
-        return -jnp.log(_floored(rest))
+        return -jnp.log(_floor_root(rest))
     # In float32 the smallest number would limit the drop to one that loads can reach,
     # and so would the round-off of a position near the end: there take float64's limit.
     least = 8.0 * jnp.finfo(rest.dtype).eps
@@ -166,7 +166,7 @@ _MOST = 354.198209
 half of ln(1/2.2e-308)."""
 
 
-def _floored(rest):
+def _floor_root(rest):
     """At least the root of the smallest number, so that first and second derivatives
     of its logarithm stay finite."""
     return jnp.maximum(rest, jnp.sqrt(jnp.finfo(rest.dtype).tiny))

@@ -25,7 +25,7 @@ def overlap(one: Any, other: Any) -> bool:
     mine, others = _corners(one), _corners(other)
     if mine is None or others is None:
         return False
-    return not (_parted(mine, others) or _parted(others, mine))
+    return not (_is_separated(mine, others) or _is_separated(others, mine))
 
 
 def _ball(row):
@@ -71,7 +71,7 @@ def _corners(row):
     return corners
 
 
-def _parted(mine, others):
+def _is_separated(mine, others):
     """Whether a side of one convex polygon separates it from another."""
     for k in range(len(mine)):
         (z, r), (z2, r2) = mine[k - 1], mine[k]

@@ -61,7 +61,7 @@ def ball_grade(name: str) -> BallGrade:
         the same of ISO 3290 (2001)). GOST 3722 (2014) and ANSI/ABMA 10 allow coarser
         surfaces.
     """
-    return BallGrade(*_scaled(_named("ball_grade", "name", name, _BALLS)))
+    return BallGrade(*_scale(_named_row("ball_grade", "name", name, _BALLS)))
 
 
 class RollerGrade(NamedTuple):
@@ -118,14 +118,14 @@ def roller_grade(name: str, diameter: Any) -> RollerGrade:
         Roughness is that in bearings; of grade IV, which is not for bearings, that of
         loose rollers.
     """
-    found = _named("roller_grade", "name", name, _ROLLERS)
+    found = _named_row("roller_grade", "name", name, _ROLLERS)
     positive("roller_grade", "diameter", diameter, "m")
     if float(diameter) > LARGEST_ROLLER * (1.0 + _SAME):
         raise ValueError(
             f"roller_grade: `diameter` is {float(diameter):g} m; it must be"
             f" {LARGEST_ROLLER:g} m or less, for which tolerances are known."
         )
-    return RollerGrade(*_scaled(found))
+    return RollerGrade(*_scale(found))
 
 
 class RunningAccuracy(NamedTuple):
@@ -188,7 +188,7 @@ def running_accuracy(name: str, bore: Any, outside_diameter: Any) -> RunningAccu
     Source: ISO 492 (2014), tables of normal class and classes 6, 5, 4 and 2, as GOST
         520 (2011), tables 1 to 8, 11 and 12, and catalogues print them.
     """
-    inner, outer = _named("running_accuracy", "name", name, _RUNOUTS)
+    inner, outer = _named_row("running_accuracy", "name", name, _RUNOUTS)
     return RunningAccuracy(
         _of_range(name, "bore", bore, _BORES, inner),
         _of_range(name, "outside_diameter", outside_diameter, _OUTSIDES, outer),
@@ -211,11 +211,11 @@ def _of_range(name, what, diameter, ends, values):
     )
 
 
-def _named(owner, what, name, table):
+def _named_row(owner, what, name, table):
     """Row of a table, or an error that names all rows."""
     one_of(owner, what, name, table)
     return table[name]
 
 
-def _scaled(values):
+def _scale(values):
     return [value * _MICRON for value in values]

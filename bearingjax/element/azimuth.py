@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBearing, deviation_of
 from ..numerics.types import Ring, Scalar
 from .frame import FREEDOMS, even_azimuths, orbit, roll_ratio
-from .rolling_element import split
+from .rolling_element import split_rings
 
 _GZ = FREEDOMS.index("gz")
 
@@ -34,7 +34,7 @@ def turn(ratio: Scalar, q: Ring) -> Scalar:
         ratio: `orbit_ratio` of their row [1].
         q: Ring freedoms [m, rad]; only both gz count.
     """
-    outer, inner = split(q)
+    outer, inner = split_rings(q)
     return orbit(ratio, outer[_GZ], inner[_GZ])
 
 

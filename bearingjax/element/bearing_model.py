@@ -24,7 +24,7 @@ from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
 from .constants import TETHER
 from .equilibrium import ElementStart, accept_small
-from .rolling_element import split
+from .rolling_element import split_rings
 from .row import Row
 from .solved_row import RowResults, SolvedRow
 
@@ -54,7 +54,7 @@ class RowGroup(eqx.Module):
                 kinds.append([k])
             else:
                 kind.append(k)
-        return tuple(cls(_stacked([rows[k] for k in kind]), (*kind,)) for kind in kinds)
+        return tuple(cls(_stack([rows[k] for k in kind]), (*kind,)) for kind in kinds)
 
     def each(self, function: Callable, *arrays) -> Any:
         """Apply function(row, *arrays) to every row of the group.
@@ -82,7 +82,7 @@ def _alike(one, other):
     )
 
 
-def _stacked(rows):
+def _stack(rows):
     if len(rows) == 1:
         return rows[0]
     return jax.tree.map(lambda *leaves: jnp.stack(leaves), *rows)
@@ -309,7 +309,7 @@ class BearingModel(eqx.Module):
 
     def _second(self, q, solved):
         """Stiffness, energy and force; half the work if only `between` counts."""
-        outer, inner = split(q)
+        outer, inner = split_rings(q)
 
         def energy(inner):
             return self._energy(jnp.concatenate([outer, inner]), solved)

@@ -29,7 +29,7 @@ from .rolling_element import (
     RingMotion,
     Unknowns,
     contact_energy,
-    split,
+    split_rings,
 )
 
 
@@ -112,7 +112,7 @@ def derivatives(
 
     Args:
         element: The rolling element.
-        rings: Motions of the rings in its axes, see `unpacked` (r,) [m, rad].
+        rings: Motions of the rings in its axes, see `ring_motions` (r,) [m, rad].
         x: Own unknowns (n,) [m].
         contact_response: Its `respond` at this place, if it is at hand.
         of_own: Derivatives with respect to x alone. Static.
@@ -162,9 +162,9 @@ def ring_motions(
     """
     if element.sees_difference:
         return RingMotion(jnp.zeros_like(rings), rings)
-    return split(rings)
+    return split_rings(rings)
 
 
 def _on_packed(element, forces):
-    """Forces on the motions that `unpacked` takes, from those on both rings."""
+    """Forces on the motions that `ring_motions` takes, from those on both rings."""
     return forces[1:] if element.sees_difference else tuple(forces)

@@ -60,7 +60,7 @@ class ElementStart(NamedTuple):
     Attributes:
         offset: Its unknowns less its midpoint, NaN if not known (n,) [m].
         follow: Derivatives of its unknowns by the ring motions (n, r).
-        rings: Motions of the rings then, see `energy.unpacked` (r,) [m, rad].
+        rings: Motions of the rings then, see `energy.ring_motions` (r,) [m, rad].
     """
 
     offset: Unknowns
@@ -93,7 +93,7 @@ def solve_element(
 
     Args:
         element: The rolling element.
-        rings: Motions of the rings in its axes, see `energy.unpacked` (r,) [m, rad].
+        rings: Motions of the rings in its axes, see `energy.ring_motions` (r,) [m, rad].
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.
@@ -101,7 +101,7 @@ def solve_element(
 
     Returns:
         Its state, without derivatives (`own_unknowns` attaches them), and its
-        `condensed` energy there.
+        `condense` energy there.
 
     Raises:
         TypeError: If the solver needs a potential that the forces do not have.
@@ -120,7 +120,7 @@ def solve_element(
     frozen = stop_gradient((element, rings, magnitude, near))
     if element.n_unknowns == 0:
         state = _without_unknowns(*frozen[:2])
-        return state, condensed(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
+        return state, condense(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
     given = _prepare(*frozen)
     contacts = jax.eval_shape(response, element, rings, given.start)
     loop = _loop(minimiser, contacts, given.is_open is not None)
@@ -211,7 +211,7 @@ class CondensedAux(NamedTuple):
     follow: Float[Array, "n r"]
 
 
-def condensed(rings: Rings, solved: SolvedElement, order: int = 2) -> Expansion:
+def condense(rings: Rings, solved: SolvedElement, order: int = 2) -> Expansion:
     """min_x U(rings, x) of a solved rolling element, its forces and stiffness.
 
     All zero if it is loose. Without this an element that the tether leans on two rings
@@ -277,7 +277,7 @@ def _prepare(element, rings, magnitude, near) -> _Inputs:
     hints, motions = element.hints, ring_motions(element, rings)
     start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
-        start = _followed(element, near, rings, start)
+        start = _follow_rings(element, near, rings, start)
     rest = hints.at_rest(motions)
     if rest is not None:
         place, apart = rest
@@ -331,11 +331,11 @@ def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> batched_loop.L
 
     def finish(given, state):
         element, rings = given.element, given.rings
-        state = _solved(element, rings, loop.finish(given, state))
-        return state, condensed(rings, SolvedElement(element, state, given.magnitude))
+        state = _solve(element, rings, loop.finish(given, state))
+        return state, condense(rings, SolvedElement(element, state, given.magnitude))
 
     def trivial_result(given):
-        return unloaded(given.rings, given.centre, contacts)
+        return unloaded_result(given.rings, given.centre, contacts)
 
     is_trivial = (lambda given: given.is_open) if may_be_open else None
     loop = minimiser.loop(problem_of)
@@ -344,7 +344,9 @@ def _loop(minimiser: AbstractMinimiser, contacts, may_be_open) -> batched_loop.L
     )
 
 
-def unloaded(rings: Rings, x: Unknowns, contacts: Any) -> tuple[LocalState, Expansion]:
+def unloaded_result(
+    rings: Rings, x: Unknowns, contacts: Any
+) -> tuple[LocalState, Expansion]:
     """Return the result of `solve_element` for an element that carries no load.
 
     Args:
@@ -366,7 +368,7 @@ def _zeros(shapes):
     return jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)
 
 
-def _solved(element, rings, minimum) -> LocalState:
+def _solve(element, rings, minimum) -> LocalState:
     result = minimum.result
     contacts = minimum.memory or response(element, rings, minimum.x)
     # Where part of the forces has no potential a pivot says nothing.
@@ -390,7 +392,7 @@ def _solved(element, rings, minimum) -> LocalState:
     )
 
 
-def _followed(element, near, rings, otherwise):
+def _follow_rings(element, near, rings, otherwise):
     """Predict the position of an element that follows the rings from near by."""
     moved = rings - near.rings
     hints, before = element.hints, ring_motions(element, near.rings)
@@ -410,7 +412,7 @@ def element_start(
     Args:
         solved: The element and its equilibrium.
         rings: Motions of the rings there (r,) [m, rad].
-        aux: `CondensedAux` of its `condensed` energy.
+        aux: `CondensedAux` of its `condense` energy.
     """
     element = solved.element
     held = jnp.any(aux.contact_load > 0)

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from ..contact.hertz import EXPONENT
 from ..contact.line_contact import expansion
-from ..numerics.expansion import Expansion, composed
+from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
@@ -87,7 +87,7 @@ class Roller(AbstractRollingElement):
             hessian=Approaches(raceway.hessian, rib.hessian),
             aux=load,
         )
-        return found if met is None else composed(found, met)
+        return found if met is None else compose(found, met)
 
     def motion(self, rings, x):
         return self.constants.from_axes @ self.constants.motion(rings, x)

@@ -117,7 +117,7 @@ class LinearisedRoller(AbstractRollerGeometry):
 
     def coordinates(self, rings, x):
         moved = self.of_rings * rings.between[None] + self.of_own * x[None]
-        return _named(self.start + jnp.sum(moved, axis=1))
+        return _by_name(self.start + jnp.sum(moved, axis=1))
 
     def on_raceways(self, rings, x):
         return self.coordinates(rings, x).raceway, self.of_own[:4].reshape(2, 2, 3)
@@ -213,13 +213,13 @@ class FiniteRoller(AbstractRollerGeometry):
         return found.value.raceway, jnp.sum(rates, axis=-2)
 
     def expansion(self, coordinates):
-        found = _expanded(self.raceways, coordinates.raceway)
+        found = _expand(self.raceways, coordinates.raceway)
         if self.ribs is None:
             return jax.tree.map(lambda a: Approaches(a, None), found)
-        return jax.tree.map(Approaches, found, _expanded(self.ribs, coordinates.rib))
+        return jax.tree.map(Approaches, found, _expand(self.ribs, coordinates.rib))
 
 
-def _expanded(contacts, u):
+def _expand(contacts, u):
     return jax.vmap(lambda one, u: one.expansion(u))(contacts, u)
 
 
@@ -347,7 +347,7 @@ def _turned(turning, vector):
     return vector + _turn(turning, vector)
 
 
-def _named(approaches):
+def _by_name(approaches):
     ribs = approaches[4:, None]
     return Approaches(approaches[:4].reshape(2, 2), ribs if ribs.size else None)
 

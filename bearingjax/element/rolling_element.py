@@ -15,7 +15,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.expansion import Expansion, expanded
+from ..numerics.expansion import Expansion, expand
 from ..numerics.types import Scalar
 from .search_hints import SearchHints
 
@@ -44,7 +44,7 @@ class RingMotion(NamedTuple):
         return self.inner - self.outer
 
 
-def split(q: Float[Array, " r"]) -> RingMotion:
+def split_rings(q: Float[Array, " r"]) -> RingMotion:
     """Both rings' halves of their motions, one after the other [m, rad]."""
     half = q.shape[0] // 2
     return RingMotion(q[:half], q[half:])
@@ -199,7 +199,7 @@ def contact_energy(
         coordinates: Its `coordinates`.
         contact_response: Its `respond` there, if it is at hand.
     """
-    energies = expanded(_respond, coordinates, element, contact_response)
+    energies = expand(_respond, coordinates, element, contact_response)
     parts = [jnp.sum(energy) for energy in jax.tree.leaves(energies)]
     return sum(parts[1:], start=parts[0])
 

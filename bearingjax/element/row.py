@@ -9,15 +9,21 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design import PreloadSpring
-from ..numerics.expansion import Expansion, expanded
+from ..numerics.expansion import Expansion, expand
 from ..numerics.implicit import attach, recall, stop_gradient
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
 from .azimuth import Azimuth, turn
 from .energy import response
-from .equilibrium import ElementStart, condensed, own_unknowns, solve_element, unloaded
+from .equilibrium import (
+    ElementStart,
+    condense,
+    own_unknowns,
+    solve_element,
+    unloaded_result,
+)
 from .frame import FREEDOMS, placement
-from .rolling_element import RingMotion, split
+from .rolling_element import RingMotion, split_rings
 from .solved_row import RowResults, SolvedRow
 
 _UZ = FREEDOMS.index("uz")
@@ -126,10 +132,10 @@ class Row(eqx.Module):
         return SolvedRow(rings, magnitudes, state, energies)
 
     def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
-        """Solve as `_solved`, with the travel at which the spring balances the row."""
+        """Solve as `_solve`, with the travel at which the spring balances the row."""
 
         def function(travel, _, memory):
-            moved = _closed(local, travel[0])
+            moved = _close_axially(local, travel[0])
             solved = self._solved(moved, azimuth, minimiser, near)
             energy, force, stiff = self._summed(moved, azimuth, solved)
             stored, push, rate = spring.push(travel[0])
@@ -160,7 +166,7 @@ class Row(eqx.Module):
         """Energy of all elements and its gradient in the row's own freedoms."""
 
         def energy(q):
-            return self._sum(split(q), azimuth, solved)
+            return self._sum(split_rings(q), azimuth, solved)
 
         return jax.value_and_grad(energy)(jnp.concatenate(local))
 
@@ -168,7 +174,7 @@ class Row(eqx.Module):
         """Energy and gradient as in `_forces`, and the Hessian."""
 
         def forces(q):
-            value, gradient = self._forces(split(q), azimuth, solved)
+            value, gradient = self._forces(split_rings(q), azimuth, solved)
             return gradient, (value, gradient)
 
         q = jnp.concatenate(local)
@@ -179,7 +185,7 @@ class Row(eqx.Module):
         """Energy of all elements at freedoms in the row's own axes."""
 
         def one(solved_element, rings, energies):
-            return expanded(condensed, rings, solved_element, energies)
+            return expand(condense, rings, solved_element, energies)
 
         return jnp.sum(solved.each(self, one, self.in_element_axes(local, azimuth)))
 
@@ -198,7 +204,7 @@ class Row(eqx.Module):
         if self.spring is None:
             return self._sum(local, azimuth, solved)
         args = self, azimuth, solved
-        return expanded(_with_spring, jnp.concatenate(local), args)
+        return expand(_with_spring, jnp.concatenate(local), args)
 
     def at(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
         """Results of the elements of a solved row, with derivatives.
@@ -209,7 +215,7 @@ class Row(eqx.Module):
         local, travel = self.local(q), None
         if self.spring is not None:
             travel = _travel(jnp.concatenate(local), (self, azimuth, solved))
-            local = _closed(local, travel)
+            local = _close_axially(local, travel)
         rings = self.in_element_axes(local, azimuth)
 
         def one(solved_element, rings, energies):
@@ -233,12 +239,12 @@ class Row(eqx.Module):
         Args:
             q: Ring freedoms at the node [m, rad].
         """
-        both = RingMotion(*split(q))
+        both = RingMotion(*split_rings(q))
         if self.place is None:
             return both
         moved = placement(self.place.position, self.place.sign)
         outer, inner = (moved @ ring for ring in both)
-        return _closed(RingMotion(outer, inner), self.place.offset)
+        return _close_axially(RingMotion(outer, inner), self.place.offset)
 
     def in_element_axes(
         self, local: RingMotion, azimuth: Azimuth
@@ -252,7 +258,7 @@ class Row(eqx.Module):
 
         def one(element, azimuth, *shift):
             axes = element.axes(azimuth)
-            rings = shifted(local, azimuth, shift[0]) if shift else local
+            rings = shift_motions(local, azimuth, shift[0]) if shift else local
             if element.sees_difference:
                 return axes @ rings.between
             return jnp.concatenate([axes @ rings.outer, axes @ rings.inner])
@@ -268,7 +274,7 @@ class Row(eqx.Module):
         def one(element, rings):
             x = jnp.zeros((n,), rings.dtype)
             contacts = jax.eval_shape(lambda: response(element, rings, x))
-            return *unloaded(rings, x, contacts), zero
+            return *unloaded_result(rings, x, contacts), zero
 
         state, energies, magnitude = self.each(one, rings)
         travel = () if self.spring is None else zero
@@ -276,7 +282,7 @@ class Row(eqx.Module):
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
 
 
-def shifted(
+def shift_motions(
     local: RingMotion, azimuth: Scalar, shift: Float[Array, "2 2"]
 ) -> RingMotion:
     """Ring motions as an element sees them, with deviations of the raceways added.
@@ -298,7 +304,7 @@ _CLOSING = len(FREEDOMS) + _UZ
 """Index of uz of the inner ring in both rings' freedoms: it closes a row."""
 
 
-def _closed(local: RingMotion, travel: Scalar) -> RingMotion:
+def _close_axially(local: RingMotion, travel: Scalar) -> RingMotion:
     """Ring freedoms with the inner ring moved along the axis to close the row."""
     return local._replace(inner=local.inner.at[_UZ].add(travel))
 
@@ -310,7 +316,7 @@ def _travel(q, args) -> Scalar:
     def balance(travel, args):
         q, row, azimuth, solved = args
 
-        local = _closed(split(q), travel[0])
+        local = _close_axially(split_rings(q), travel[0])
         _, force = row._forces(local, azimuth, solved)
         return force[_CLOSING, None] - row.spring.push(travel[0])[1]
 
@@ -322,7 +328,7 @@ def _with_spring(q, args, order) -> Expansion:
     """Energy of a solved row and its spring, whose travel is condensed."""
     row, azimuth, solved = args
     travel = _travel(q, args)
-    local = _closed(split(q), travel)
+    local = _close_axially(split_rings(q), travel)
     stored, _, rate = row.spring.push(travel)
     if order < 2:
         energy, force = row._forces(local, azimuth, solved)

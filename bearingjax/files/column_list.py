@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .quantity import KINDS, SceneError, to_si
-from .table import Table, typed
+from .table import Table, as_written
 from .text_file import read_columns
 
 LARGEST = 10**7
@@ -120,7 +120,7 @@ def _numbers(table, name, key, values, lines) -> list[float]:
 def _bare(text):
     for kind in (int, float):
         try:
-            return typed(kind(text), text)
+            return as_written(kind(text), text)
         except ValueError:
             pass
     return text

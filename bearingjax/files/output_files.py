@@ -101,7 +101,7 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
         for path, writer in outputs:
             if path is None:
                 continue
-            made = writer is not None and _made(path, writer, moves, written)
+            made = writer is not None and _write_temporary(path, writer, moves, written)
             if not made and path.is_file():
                 stale.append(path)
         for path, temporary, target in moves:
@@ -117,7 +117,7 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
     return written
 
 
-def _made(path: Path, writer: Writer, moves, written: Written) -> bool:
+def _write_temporary(path: Path, writer: Writer, moves, written: Written) -> bool:
     """Write a temporary file; return whether it was written."""
     stream, target = _is_stream(path), _target(path)
     # The suffix determines the format.

@@ -188,7 +188,7 @@ def to_si(text: object, kind: str) -> float:
         raise SceneError(f"{text!r} {problem}{_cure(name, kind)}; {wanted}")
     value = float(number)
     if math.isfinite(value) and (value != 0.0 or kind == "temperature"):
-        value = _scaled(decimal.Decimal(number), size, name, kind)
+        value = _scale(decimal.Decimal(number), size, name, kind)
     if not math.isfinite(value) or (value == 0.0 and re.match(r"[^eE]*[1-9]", number)):
         raise SceneError(f"{text!r} is out of range; {wanted}")
     return value
@@ -273,7 +273,7 @@ def _cure(name: str, kind: str) -> str:
     return f" (write {slip})" if slip else ""
 
 
-def _scaled(number: decimal.Decimal, size: float, name: str, kind: str) -> float:
+def _scale(number: decimal.Decimal, size: float, name: str, kind: str) -> float:
     """Convert a number to SI; a power of ten shifts its decimal exponent, so that 10 µm
     are exactly 1e-05 m."""
     tens = round(math.log10(size))

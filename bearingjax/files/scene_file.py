@@ -14,7 +14,7 @@ from typing import Any
 import jax
 
 from .quantity import SceneError
-from .table import typed
+from .table import as_written
 from .text_file import read_text
 
 
@@ -168,7 +168,7 @@ def _parse(path):
     except ValueError as error:
         raise SceneError(f"{path.name}: {error}") from error
     try:
-        return _echoed(path, text) if kind == "JSON" else copy.deepcopy(_toml(text))
+        return _echo_of(path, text) if kind == "JSON" else copy.deepcopy(_toml(text))
     except SceneError:
         raise
     except (ValueError, RecursionError) as error:
@@ -180,7 +180,7 @@ _toml = functools.lru_cache(maxsize=8)(tomllib.loads)
 """A command reads its scene again for each question; parsed once, given as copies."""
 
 
-def _echoed(path: Path, text: str) -> dict[str, Any]:
+def _echo_of(path: Path, text: str) -> dict[str, Any]:
     """Return the scene of an output file of `--json`."""
     data = json.loads(text)
     inputs = data.get("inputs") if isinstance(data, dict) else None
@@ -205,7 +205,7 @@ def _set(data: dict, setting: str, file: str) -> None:
     # Further lines would be lost: the value is text then, and so are dates.
     value = parsed["value"] if len(parsed) == 1 else text.strip()
     value = text.strip() if isinstance(value, date | time) else value
-    value = typed(value, text.partition("#")[0].strip())
+    value = as_written(value, text.partition("#")[0].strip())
     assign(data, ".".join(parts), value, file)
 
 
@@ -225,20 +225,20 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
     inner: Any = data
     for depth, part in enumerate(parts[:-1]):
         if isinstance(inner, list):
-            inner = _listed(inner, part, ".".join(parts[:depth]), file)
+            inner = _list_entry(inner, part, ".".join(parts[:depth]), file)
         else:
             inner = inner.setdefault(part, {})
         if not isinstance(inner, dict | list):
             place = ".".join(parts[: depth + 1])
             raise SceneError(f"{file}: `{place}` is not a table, so {key!r} fails")
     if isinstance(inner, list):
-        _listed(inner, parts[-1], ".".join(parts[:-1]), file)
+        _list_entry(inner, parts[-1], ".".join(parts[:-1]), file)
         inner[int(parts[-1])] = value
     else:
         inner[parts[-1]] = value
 
 
-def _listed(values: list[Any], part: str, key: str, file: str) -> Any:
+def _list_entry(values: list[Any], part: str, key: str, file: str) -> Any:
     """Return the list entry with the given index."""
     if not part.isdecimal() or int(part) >= len(values):
         allowed = f"a number from 0 to {len(values) - 1} names one of its entries"

@@ -22,7 +22,7 @@ from typing import (
 
 from ..numerics.units import CELSIUS
 from .quantity import KINDS, scene_number, to_si
-from .table import Table, written
+from .table import Table, format_number
 
 _REQUIRED: Any = dataclasses.MISSING
 
@@ -243,7 +243,7 @@ class Keys:
                 value = values[one.attribute]
                 unit = KINDS[one.key.kind][0] if one.key.kind else ""
                 if isinstance(value, float):
-                    value = written(value, unit)
+                    value = format_number(value, unit)
                 self.table.fill(one.name, value)
 
     def with_defaults(self, **values: int | float | str) -> Any:
@@ -301,7 +301,7 @@ def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
         if "key" not in field.metadata:
             continue
         one: Key = field.metadata["key"]
-        united, default = _united(hints[field.name]), field.default
+        united, default = _union_types(hints[field.name]), field.default
         kinds = tuple(kind for kind in united if kind is not types.NoneType)
         if default is _REQUIRED and len(kinds) < len(united):
             default = None
@@ -309,7 +309,7 @@ def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
     return tuple(found)
 
 
-def _united(hint: Any) -> tuple[Any, ...]:
+def _union_types(hint: Any) -> tuple[Any, ...]:
     """Return the types of a union, or the single type."""
     union = get_origin(hint) in (types.UnionType, typing.Union)
     return get_args(hint) if union else (hint,)

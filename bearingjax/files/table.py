@@ -39,7 +39,7 @@ class _TypedFloat(_Typed, float):
     plain = float
 
 
-def typed(value: Any, text: str) -> Any:
+def as_written(value: Any, text: str) -> Any:
     """Return a number that remembers how it was written, and other values unchanged.
 
     Args:
@@ -116,7 +116,7 @@ class Table:
             except SceneError as error:
                 raise self.error(key, error) from error
         if value is not None:
-            self.fill(key, written(value, KINDS[kind][0]))
+            self.fill(key, format_number(value, KINDS[kind][0]))
         return value
 
     def quantities(self, key: str, kind: str) -> list[float]:
@@ -128,7 +128,7 @@ class Table:
             found = [to_si(value, kind) for value in values]
         except SceneError as error:
             raise self.error(key, error) from error
-        self.fill(key, [written(value, KINDS[kind][0]) for value in found])
+        self.fill(key, [format_number(value, KINDS[kind][0]) for value in found])
         return found
 
     def number(self, key: str, default: Any = _MISSING) -> Any:
@@ -181,7 +181,7 @@ class Table:
                     else self.real(name, unit)
                 )
             elif isinstance(field.default, int | float):
-                self.fill(name, written(field.default, unit))
+                self.fill(name, format_number(field.default, unit))
         return found
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
@@ -211,7 +211,7 @@ class Table:
             default: Value if absent; without a default the key is required.
             words: The choices as described in errors, where they are too many to list.
         """
-        value = self._get(key, default, f"one of {words or listed(choices)}")
+        value = self._get(key, default, f"one of {words or join_names(choices)}")
         if self.text(key) in choices:
             self.fill(key, value := self.text(key))
         if key in self._data and value not in choices:
@@ -244,7 +244,7 @@ class Table:
         if value is None:
             return None
         if not isinstance(value, list):
-            problem = f"{value!r} is not a list of words out of {listed(choices)}"
+            problem = f"{value!r} is not a list of words out of {join_names(choices)}"
             raise self.error(key, problem)
         for word in value:
             if word not in choices:
@@ -316,7 +316,7 @@ class Table:
         if self.word(key) is not None:
             return self.choice(key, choices)
         if key in self and not isinstance(self._data[key], Mapping):
-            names = listed(choices)
+            names = join_names(choices)
             problem = f"{self._data[key]!r} is not a table, nor one of {names}"
             raise self.error(key, problem)
         return self.table(key) if key in self else None
@@ -392,7 +392,7 @@ class Table:
         return f"{self._path}.{shown}" if self._path else shown
 
 
-def written(value: float, unit: str) -> str | float:
+def format_number(value: float, unit: str) -> str | float:
     """Format a number in SI as in a scene file, to the last digit.
 
     Args:
@@ -409,7 +409,7 @@ def written_numbers(owner: Any) -> dict[str, str | float]:
         owner: Concrete module whose fields with units are numbers.
     """
     return {
-        field.name: written(
+        field.name: format_number(
             float(getattr(owner, field.name)), unit_of(owner, field.name)
         )
         for field in dataclasses.fields(owner)
@@ -436,10 +436,11 @@ def not_among(value: object, choices: Sequence[str], words: str = "") -> str:
         words: Description of the choices, if not listed one by one.
     """
     hint = _suggest(value, choices) if isinstance(value, str) else ""
-    return f"{value!r} is not known{hint}; it must be one of {words or listed(choices)}"
+    allowed = words or join_names(choices)
+    return f"{value!r} is not known{hint}; it must be one of {allowed}"
 
 
-def listed(names: Sequence[str]) -> str:
+def join_names(names: Sequence[str]) -> str:
     """Join names with commas, in quotes if one of them contains a comma.
 
     Args:

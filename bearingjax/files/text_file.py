@@ -74,7 +74,7 @@ def read_columns(path: Path) -> list[Line]:
         rows = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except csv.Error as error:
         raise ValueError(f"cannot be read: {error}") from error
-    return rows if mark == "," else [*_pointed(rows, mark == ";")]
+    return rows if mark == "," else [*_with_points(rows, mark == ";")]
 
 
 def read_rows(path: Path) -> list[Line]:
@@ -91,13 +91,13 @@ def read_rows(path: Path) -> list[Line]:
     lines = [(k, text) for k, text in enumerate(ended, 1) if text]
     whole = "\n".join(text for _, text in lines)
     if ";" in whole:
-        return [*_pointed([(k, text.split(";")) for k, text in lines], True)]
+        return [*_with_points([(k, text.split(";")) for k, text in lines], True)]
     if "," in whole and not re.search(r",\d[^\s,]*[ \t]+[-+.\d]", whole):
         return [(k, text.split(",")) for k, text in lines]
-    return [*_pointed([(k, text.split()) for k, text in lines], False)]
+    return [*_with_points([(k, text.split()) for k, text in lines], False)]
 
 
-def _pointed(rows: Sequence[Line], sure: bool) -> Iterable[Line]:
+def _with_points(rows: Sequence[Line], sure: bool) -> Iterable[Line]:
     """Replace decimal commas by points.
 
     Args:

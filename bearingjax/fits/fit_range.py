@@ -55,7 +55,9 @@ def clearance_range(
     Raises:
         ValueError: If a lower limit is above the upper one.
     """
-    cases = _Cases(mounting, _given(clearance, shaft, bore, housing, outside_diameter))
+    cases = _Cases(
+        mounting, _check_given(clearance, shaft, bore, housing, outside_diameter)
+    )
     middle, half = cases.spread(conditions)[:2]
     least, most = (cases.clearance(side, conditions) for side in (-1.0, 1.0))
     return ClearanceRange(
@@ -106,7 +108,7 @@ def mounting_at(
         ValueError: If there is no such place, or a lower limit is above the upper one.
     """
     one_of("mounting_at", "place", place, PLACES)
-    given = _given(clearance, shaft, bore, housing, outside_diameter)
+    given = _check_given(clearance, shaft, bore, housing, outside_diameter)
     cases, side = _Cases(mounting, given), PLACES[place]
     if not place.startswith("probable"):
         return cases.mounting(dict.fromkeys(given, side))
@@ -115,7 +117,7 @@ def mounting_at(
     return cases.mounting({name: side * e / whole for name, e in effects.items()})
 
 
-def _given(clearance, shaft, bore, housing, outside_diameter):
+def _check_given(clearance, shaft, bore, housing, outside_diameter):
     given = {
         "clearance": clearance,
         "shaft": shaft,

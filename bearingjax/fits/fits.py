@@ -39,7 +39,7 @@ class Mounting(eqx.Module):
         housing_interference: Outside diameter of the bearing less the housing's bore,
             as measured [m].
         inner_raceway: Diameter of the inner raceway where it is smallest, F [m];
-            `None`: that of the bearing (`sized`). A larger one stands for shoulders,
+            `None`: that of the bearing (`with_bearing_dimensions`). A larger one stands for shoulders,
             which stiffen the ring.
         outer_raceway: Diameter of the outer raceway where it is largest, E [m];
             `None`: that of the bearing.
@@ -47,7 +47,7 @@ class Mounting(eqx.Module):
             of the bearing.
         contact_angle: Angle from the radial plane at which rolling elements touch,
             along which what they grow takes clearance [rad]; `None`: that of the
-            bearing (`sized`), 0 if there is none.
+            bearing (`with_bearing_dimensions`), 0 if there is none.
         shaft_bore: Bore of a hollow shaft; 0 of a solid one [m].
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
@@ -346,13 +346,14 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
         - housing_pressure * _across(m.outer_ring.material, m.outer_raceway, out, out)
     )
     strains = AxialStrains(
-        warm["shaft"] - _shortened(m.shaft.material, m.shaft_bore, bore, c.speed),
+        warm["shaft"]
+        - _axial_shortening(m.shaft.material, m.shaft_bore, bore, c.speed),
         warm["inner_ring"]
-        - _shortened(
+        - _axial_shortening(
             m.inner_ring.material, bore, m.inner_raceway, c.speed, shaft_pressure
         ),
         warm["outer_ring"]
-        - _shortened(
+        - _axial_shortening(
             m.outer_ring.material,
             m.outer_raceway,
             out,
@@ -360,7 +361,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
             outside=housing_pressure,
         ),
         warm["housing"]
-        - _shortened(m.housing.material, out, m.housing_diameter, c.outer_speed),
+        - _axial_shortening(m.housing.material, out, m.housing_diameter, c.outer_speed),
     )
     # Two rolling elements and the clearance fill the room between the raceways. What
     # elements grow beyond the rings closes contacts along their normals, and so by
@@ -445,7 +446,7 @@ def _check_sized(mounting):
         if getattr(mounting, name) is None:
             raise ValueError(
                 f"Mounting: `{name}` is None; give it, or take that of the bearing by"
-                " `sized`."
+                " `with_bearing_dimensions`."
             )
 
 
@@ -500,7 +501,7 @@ def _hoop(material, own, other, speed):
     return material.density * speed**2 / 16.0 * squares
 
 
-def _shortened(material, inner, outer, speed, inside=0.0, outside=0.0):
+def _axial_shortening(material, inner, outer, speed, inside=0.0, outside=0.0):
     """Axial strain that a ring loses to the stresses in its plane, ν/E (σr + σθ) [1].
 
     Their sum over the ring is that of Lamé, 2 (p_i a² - p_o b²)/(b² - a²), the same

@@ -144,7 +144,7 @@ def limits(name: str, diameter: Any) -> Limits:
         isoFits); 1380 limits between 3 and 400 mm of a second program (isofits of the
         Python Package Index) are the same, but for six misprints there.
     """
-    letter, grade = _split(name)
+    letter, grade = _split_class(name)
     size = size_range("limits", "diameter", diameter, _SIZES)
     fine = size_range("limits", "diameter", diameter, _FINE_SIZES)
     width = _GRADES[grade - 1][size]
@@ -193,7 +193,7 @@ def _above(letter, size, fine):
     return _ABOVE[letter][size]
 
 
-def _split(name):
+def _split_class(name):
     """Letter and grade of a class, or an error that names all classes."""
     found = re.fullmatch(r"([A-Za-z]+)(\d+)", str(name))
     if name not in LIMIT_CLASSES or found is None:

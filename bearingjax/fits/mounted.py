@@ -296,12 +296,12 @@ def _shifts(bearing: BearingSet, mounting, states: list[FitState]) -> list[Any]:
     places = jnp.stack([row.position for row in bearing.rows])
     strains = zip(*(state.strains for state in states), strict=True)
     parts = AxialStrains(*(jnp.stack(values) for values in strains))
-    inner = _grown(places, width, parts.inner_ring, parts.shaft)
-    outer = _grown(places, width, parts.outer_ring, parts.housing)
+    inner = _growth(places, width, parts.inner_ring, parts.shaft)
+    outer = _growth(places, width, parts.outer_ring, parts.housing)
     return list(inner - outer)
 
 
-def _grown(places, width, rings, seats):
+def _growth(places, width, rings, seats):
     """Shift of rows as the parts between neighbours grow, with constant mean [m]."""
     order = jnp.argsort(places)
     gaps = jnp.diff(places[order])

@@ -248,7 +248,7 @@ def _of_row(bearing: AbstractBearing | BearingSet, load, flow, supply, capacity)
     flange = jnp.zeros_like(viscous)
     if kind in (_CYLINDERS, _KINDS[NeedleRollerBearing]):
         flange = _FLANGE[supply] * axial * pitch
-    return factor * _directed(row, radial, axial) * pitch, viscous, flange
+    return factor * _directed_load(row, radial, axial) * pitch, viscous, flange
 
 
 def _constants(row, supply) -> tuple[_Kind, float]:
@@ -269,7 +269,7 @@ def _constants(row, supply) -> tuple[_Kind, float]:
     return kind, viscous
 
 
-def _directed(row, radial, axial):
+def _directed_load(row, radial, axial):
     """Load F of the formula for M1 [N]."""
     if row.is_thrust:
         return axial

@@ -471,7 +471,7 @@ def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
     }
     if conditions.viscosity is not None:
         kappa, clean = _lubrication(bearing, turns, conditions)
-        tired = sum(_modified(*row, kappa, clean, kind) for row in parts)
+        tired = sum(_modified_damage(*row, kappa, clean, kind) for row in parts)
         damage = positive_power(tired, d, n) / (_MILLION * a1)
         a_iso = (total / jnp.where(loaded, tired, 1.0)) ** (d / n)
         modified = {
@@ -525,7 +525,7 @@ def _lubrication(bearing, turns, conditions):
     return kappa, clean
 
 
-def _modified(fatigue, limit, thrust, kappa, clean, kind):
+def _modified_damage(fatigue, limit, thrust, kappa, clean, kind):
     """Sum of the shares of a row, each part with its own a_ISO."""
     ratio = load_ratio(clean, limit, fatigue.load)
     balls = kind is BALLS

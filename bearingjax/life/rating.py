@@ -204,7 +204,7 @@ def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     Valid:  steel, D cos α/D_pw up to 0.4 (rollers 0.3), no truncated contacts.
     Source: ISO 281:2007, clauses 5 to 10; f_c by its formulas, ISO/TR 1281-1.
     """
-    return _combined(_parts(bearing))[0]
+    return _combine(_parts(bearing))[0]
 
 
 def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
@@ -228,7 +228,7 @@ def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     Valid:  steel of 207 GPa; balls of ceramics press harder.
     Source: ISO 76:2006; f_0 of balls from its definition by exact Hertz contact.
     """
-    return _combined(_parts(bearing))[1]
+    return _combine(_parts(bearing))[1]
 
 
 def fatigue_load_limit(
@@ -278,7 +278,7 @@ def fatigue_load_limit(
                 " no `static_capacity`; rollers need the pressures along their profile."
             )
         return _contact_limit(rows, is_thrust)
-    value = _combined(parts)[1] if static_capacity is None else as_real(static_capacity)
+    value = _combine(parts)[1] if static_capacity is None else as_real(static_capacity)
     positive("fatigue_load_limit", "static_capacity", value, "N")
     return _limit(parts, value)
 
@@ -330,7 +330,7 @@ class _Part(NamedTuple):
 
 
 @eqx.filter_jit
-def _combined(parts: tuple[_Part, ...]) -> tuple[Scalar, Scalar]:
+def _combine(parts: tuple[_Part, ...]) -> tuple[Scalar, Scalar]:
     """C and C0 from the geometry; NaN of rows that prove to be unlike when traced."""
     return _together(parts, [by_row.capacities(p.rows, p.is_thrust) for p in parts])
 

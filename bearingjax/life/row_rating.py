@@ -212,7 +212,7 @@ def ball_static(row: BallRow, kind: BallKind) -> Scalar:
     than the standard counts with, 0.52 of inner and 0.53 of outer rings, is taken as
     that.
     """
-    outer, inner = _opened(row, kind)
+    outer, inner = _open_osculations(row, kind)
     return _ball_load(row._replace(osculation=(outer, inner)), kind.stress)
 
 
@@ -276,10 +276,12 @@ def _raceways(row, kind, weight, gamma):
         ratio = weight * (inside / outside) ** 0.41
         return inside**0.41 * (1 + ratio ** (10 / 3)) ** -0.3
 
-    return share(*kind.counted) * share(*_opened(row, kind)) / share(*kind.open)
+    return (
+        share(*kind.counted) * share(*_open_osculations(row, kind)) / share(*kind.open)
+    )
 
 
-def _opened(row, kind):
+def _open_osculations(row, kind):
     """Osculations, none closer than the standards count with."""
     pairs = zip(row.osculation, kind.open, strict=True)
     return [None if least is None else jnp.maximum(f, least) for f, least in pairs]

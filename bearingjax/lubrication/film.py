@@ -126,9 +126,7 @@ def point_film(
         Brewe (1987).
     """
     title = "point_film"
-    modulus, radius, mu, alpha = _checked(
-        title, modulus, radius, viscosity, coefficient
-    )
+    modulus, radius, mu, alpha = _check(title, modulus, radius, viscosity, coefficient)
     non_negative(title, "load", load, "N")
     number(title, "ratio", ratio, "")
     if not is_traced(ratio):
@@ -175,9 +173,7 @@ def line_film(
         Martin (1916), Blok (1950), Herrebrugh (1968), as in Johnson (1970).
     """
     title = "line_film"
-    modulus, radius, mu, alpha = _checked(
-        title, modulus, radius, viscosity, coefficient
-    )
+    modulus, radius, mu, alpha = _check(title, modulus, radius, viscosity, coefficient)
     non_negative(title, "line_load", line_load, "N/m")
     g, w = _groups(modulus, alpha, as_real(line_load) / (2.0 * modulus * radius))
     factors = (
@@ -195,7 +191,7 @@ def line_film(
     )
 
 
-def _checked(title, modulus, radius, viscosity, coefficient) -> tuple[Scalar, ...]:
+def _check(title, modulus, radius, viscosity, coefficient) -> tuple[Scalar, ...]:
     positive(title, "modulus", modulus, "Pa")
     positive(title, "radius", radius, "m")
     positive(title, "viscosity", viscosity, "Pa s")

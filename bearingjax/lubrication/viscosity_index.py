@@ -81,7 +81,7 @@ def viscosity_at_100(viscosity: Scalar | float, index: Scalar | float) -> Scalar
         least = 1e-6 * float(_at_40(np.float64(_FROM[0]), np.float64(known[1])))
         words = f"at least {least:.4g} m²/s with a viscosity index of {known[1]:.4g}"
         check(owner, "viscosity", known[0] >= least, words, viscosity, "m²/s")
-    return _solved(as_real(viscosity), as_real(index))
+    return _solve(as_real(viscosity), as_real(index))
 
 
 def _at_40(hot, index):
@@ -98,7 +98,7 @@ def _at_40(hot, index):
 
 
 @jax.jit
-def _solved(viscosity, index):
+def _solve(viscosity, index):
     def residual(hot, args):
         viscosity, index = args
         return _at_40(hot, index) - 1e6 * viscosity

@@ -32,8 +32,8 @@ from .bands import octave_bands as octave_bands
 from .bands import third_octave_bands as third_octave_bands
 from .bands import total_root_mean_square as total_root_mean_square
 from .causes import line_causes as line_causes
-from .contact_width import bridged as bridged
 from .contact_width import contact_half_width as contact_half_width
+from .contact_width import with_bridged_waves as with_bridged_waves
 from .dynamics.cage import GuidedCage as GuidedCage
 from .dynamics.cage_contact import CageContact as CageContact
 from .dynamics.contact_states import ContactStates as ContactStates
@@ -41,7 +41,7 @@ from .dynamics.contact_states import contact_states as contact_states
 from .dynamics.system import NoiseSystem as NoiseSystem
 from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
 from .level import acceleration_of as acceleration_of
-from .level import combined as combined
+from .level import combine_levels as combine_levels
 from .level import level as level
 from .linear import LinearModel as LinearModel
 from .linear import Transfer as Transfer
@@ -55,8 +55,8 @@ from .monte_carlo import MonteCarlo as MonteCarlo
 from .monte_carlo import monte_carlo as monte_carlo
 from .monte_carlo import sampled_model as sampled_model
 from .natural import NaturalModes as NaturalModes
+from .natural import after_orbit as after_orbit
 from .natural import natural_modes as natural_modes
-from .natural import orbited as orbited
 from .natural import ring_modes as ring_modes
 from .natural import stiffness as stiffness
 from .orders import KinematicFrequencies as KinematicFrequencies

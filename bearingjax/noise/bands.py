@@ -138,7 +138,7 @@ def is_held(
 ) -> Bool[Array, "band ..."]:
     """Return which bands a record covers, see `band_root_mean_square` (band, ...)."""
     lower, upper = _edges(spectrum, bands)
-    return _held(spectrum, lower, upper, _highest(spectrum, highest))
+    return _hold(spectrum, lower, upper, _highest(spectrum, highest))
 
 
 class Leakage(NamedTuple):
@@ -263,7 +263,7 @@ def _powers(spectrum, lower, upper):
 
 @program(quick=True)
 def _by_band(spectrum, lower, upper, highest):
-    held = _held(spectrum, lower, upper, highest)
+    held = _hold(spectrum, lower, upper, highest)
     return jnp.where(held, _root(_sums(spectrum, lower, upper)), jnp.nan)
 
 
@@ -288,7 +288,7 @@ def _covers(spectrum, lower, upper, highest):
 
 
 @program(quick=True)
-def _held(spectrum, lower, upper, highest):
+def _hold(spectrum, lower, upper, highest):
     wide, within = _covers(spectrum, lower, upper, highest)
     *powers, _ = _powers(stop_gradient(spectrum), lower, upper)
     changed = shift(*powers)

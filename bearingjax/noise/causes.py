@@ -57,7 +57,7 @@ def line_causes(
     """
     lines = tuple(lines)
     highest = max((line.frequency for line in lines), default=0.0) + tolerance
-    known = sorted(_known(model, highest), key=lambda one: -one.size)
+    known = sorted(_known_waves(model, highest), key=lambda one: -one.size)
     rows = len(rows_of(model.element.bearing))
     return tuple(
         _named_lines(
@@ -87,7 +87,7 @@ def _named_lines(causes: list[_Cause], rows: int) -> tuple[str, ...]:
     return tuple(texts)
 
 
-def _known(model: NoiseModel, highest: float) -> Iterator[_Cause]:
+def _known_waves(model: NoiseModel, highest: float) -> Iterator[_Cause]:
     parts = rows_of(model.element.bearing)
     for k, (row, errors) in enumerate(zip(parts, model.errors_of_rows, strict=True)):
         for cause in _of_row(row.bearing, errors, model, highest):

@@ -7,7 +7,7 @@ pressure. With x = k b, of order k/R around a radius R and the half width b, tha
 
 of the wave. The equations of motion take the height in the middle of the contact
 instead, and overstate waves from x = 1 on by 10 % (13 % of rollers) and more, unless
-`bridged` gives them the mean.
+`with_bridged_waves` gives them the mean.
 
 Source: integral of cos over the pressures of Hertz, (1 - s²) per width of an ellipse
     and √(1 - s²) of a line.
@@ -29,7 +29,7 @@ from .model import NoiseModel
 from .static_start import static_start
 
 
-def bridged(model: NoiseModel) -> NoiseModel:
+def with_bridged_waves(model: NoiseModel) -> NoiseModel:
     """Return the model with waves averaged over the width of its contacts.
 
     Contacts have the width under their mean load in static equilibrium; waves of

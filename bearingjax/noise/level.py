@@ -73,7 +73,7 @@ def acceleration_of(
     return reference * 10.0 ** (as_real(level) / 20.0)
 
 
-def combined(levels: Any) -> Float[Array, "..."]:
+def combine_levels(levels: Any) -> Float[Array, "..."]:
     """Return the sum of incoherent levels, 10 lg Σ 10^(L/10) [dB].
 
     The parts are of different frequencies, or without relation to each other: their

@@ -75,7 +75,7 @@ def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "
     return k.at[:3, :3].add(s.stiffness * s.projector)
 
 
-def orbited(model: NoiseModel, angle: Any) -> NoiseModel:
+def after_orbit(model: NoiseModel, angle: Any) -> NoiseModel:
     """Return a copy with its rolling elements orbited on from time zero.
 
     Args:
@@ -93,7 +93,7 @@ def natural_modes(model: NoiseModel) -> NaturalModes:
     """Return the natural modes of a bearing under its load.
 
     Rolling elements are at their positions of time zero; for others, as modes change
-    along the orbit where elements differ or few of them carry load, see `orbited`.
+    along the orbit where elements differ or few of them carry load, see `after_orbit`.
 
     Args:
         model: The bearing; its form errors are ignored.

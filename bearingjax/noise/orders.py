@@ -152,7 +152,7 @@ def waviness_force(
             radial.append(cage - passed)
     in_hertz = 1.0 / (2.0 * np.pi)
     return WavinessForce(
-        in_hertz * jnp.abs(_stacked(axial, cage)), in_hertz * _stacked(radial, cage)
+        in_hertz * jnp.abs(_stack(axial, cage)), in_hertz * _stack(radial, cage)
     )
 
 
@@ -188,5 +188,5 @@ def _speeds(owner, bearing, speed, contact_angle) -> _Speeds:
     return _Speeds(speed.inner, speed.outer, orbit(ratio, *rings), turned)
 
 
-def _stacked(lines, like):
+def _stack(lines, like):
     return jnp.stack(lines) if lines else jnp.zeros((0,), like.dtype)

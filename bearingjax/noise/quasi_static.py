@@ -18,7 +18,7 @@ from ..design import BearingSet, bearings_of
 from ..design.checks import check, count, of_class
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
-from ..element.rolling_element import split
+from ..element.rolling_element import split_rings
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
@@ -144,7 +144,7 @@ def _excitation(model, turns, samples, held) -> Excitation:
     options = model.solve_options
     whole = model.small
     standing = solve(whole, model.load, options)
-    start = split(standing.displacement)[system.moving]
+    start = split_rings(standing.displacement)[system.moving]
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     time = jnp.arange(turns * samples, dtype=frequency.dtype) / (frequency * samples)
 
@@ -156,9 +156,9 @@ def _excitation(model, turns, samples, held) -> Excitation:
         else:
             found = solve(element, model.load, options, start=start)
             force = found.force
-            moved = split(found.displacement)[system.moving] - start
+            moved = split_rings(found.displacement)[system.moving] - start
         # The contacts push the ring with what would have to hold it, reversed.
-        pushed = model.load - split(force)[system.moving]
+        pushed = model.load - split_rings(force)[system.moving]
         result = jnp.maximum(found.result, standing.result)
         return pushed, moved, system.azimuth(time), result
 

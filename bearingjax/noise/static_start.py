@@ -8,7 +8,7 @@ from jaxtyping import Array, Float, Int
 from ..element.balls.ball_speed import CentrifugalOnly
 from ..element.choices import BallChoices
 from ..numerics.implicit import stop_gradient
-from ..numerics.linear import combined
+from ..numerics.linear import combine_rows
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics import solution as statics_solution
@@ -61,18 +61,18 @@ def static_start(
         )
 
     def place(element, *motion):
-        return combined(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
+        return combine_rows(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
 
     places = system.row.each(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
     motion = jnp.concatenate([ring, places.T.ravel()])
-    between, most = _carried(system, motion)
+    between, most = _carried_loads(system, motion)
     loose = (solution.result == Result.CONVERGED) & ~(between > _CARRIES * most)
     result = jnp.where(loose, int(Result.NO_LOAD_PATH), solution.result)
     return motion, result.astype(jnp.int32)
 
 
-def _carried(system, motion) -> tuple[Scalar, Scalar]:
+def _carried_loads(system, motion) -> tuple[Scalar, Scalar]:
     """Return the largest load through an element, and the largest of all [N]."""
     motion = stop_gradient(motion)
     found = ElementPositions.at(system.azimuth(jnp.zeros((), motion.dtype)))

@@ -22,7 +22,7 @@ from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..statics.options import DEFAULT_TOLERANCE
 from .dynamics.cage import fastest_of_cage
-from .dynamics.stepping import HELD, stepped
+from .dynamics.stepping import HELD, step_motion
 from .model import NoiseModel
 from .natural import natural_modes
 from .static_start import failure_message, static_start
@@ -273,7 +273,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     def kept(acceleration):
         return acceleration[:k], None if model.cage is None else acceleration[-3:]
 
-    moved = stepped(acceleration, begin, h, steps, number, kept, known)
+    moved = step_motion(acceleration, begin, h, steps, number, kept, known)
     motion, (seen, of_cage) = jax.tree.map(lambda r: r[settle * samples :], moved[:2])
     numbers = jnp.arange(settle * samples, number, dtype=start.dtype)
     time = numbers * (h * steps)

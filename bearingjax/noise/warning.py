@@ -10,7 +10,7 @@ import numpy as np
 
 from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
-from ..element.balls.ball_inertia import ball_inertia, carried
+from ..element.balls.ball_inertia import ball_inertia, carried_loads
 from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
 from ..element.choices import BallChoices
 from ..numerics.result import Result
@@ -19,7 +19,7 @@ from .contact_width import contact_half_width
 from .dynamics.contact_states import contact_states
 from .dynamics.dynamic_row import of_rows
 from .model import NoiseModel
-from .natural import natural_modes, orbited, ring_modes
+from .natural import after_orbit, natural_modes, ring_modes
 from .orders import kinematic_frequencies
 from .scatter import Tolerances
 from .source_contributions import SourceContributions
@@ -92,7 +92,7 @@ def record_warnings(
         *_short_waves(model, np.asarray(record.contact_load), tolerances),
         *_gyroscopic(model, np.asarray(record.contact_load)),
         *_halves(record),
-        *_lost(record),
+        *_lost_contacts(record),
     ]
 
 
@@ -135,7 +135,7 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
     angles = 2.0 * np.pi / count * (np.floor(count * share) + share)
     every: dict[str, list[float]] = {}
     for angle in angles if model.orbits else ():
-        modes = jax.device_get(natural_modes(orbited(model, angle)))
+        modes = jax.device_get(natural_modes(after_orbit(model, angle)))
         if int(modes.result) == Result.CONVERGED:
             for name, frequency in ring_modes(modes, model):
                 every.setdefault(name, []).append(frequency)
@@ -282,7 +282,7 @@ def _gyroscopic(model, load) -> Iterator[str]:
         cosine = min(float(bearing.free_cosine), math.sqrt(max(0.0, 1.0 - sine**2)))
         normal = jnp.array([math.sqrt(1.0 - cosine**2), cosine])
         ball = ball_inertia(bearing, bearing.ball_diameter, model.speed, OuterControl())
-        found = carried(ball, jnp.stack([normal] * 2), jnp.full(2, each))
+        found = carried_loads(ball, jnp.stack([normal] * 2), jnp.full(2, each))
         share = float(jnp.max(jnp.abs(found.traction))) / each
         if share > _GYROSCOPIC:
             yield (
@@ -308,7 +308,7 @@ def _halves(record) -> Iterator[str]:
         )
 
 
-def _lost(record) -> Iterator[str]:
+def _lost_contacts(record) -> Iterator[str]:
     lost = contact_states(record).shares[0]
     if lost > 0:
         yield (

@@ -44,7 +44,7 @@ Function = Callable[[Any, Any, int], Expansion]
 value, 1 gradient, 2 Hessian. Higher terms may be left out."""
 
 
-def expanded(
+def expand(
     function: Function, u: Any, args: Any, known: Expansion | None = None
 ) -> Any:
     """The value of a function, with the derivatives that the same pass has found.
@@ -66,7 +66,7 @@ def expanded(
 def expanded_all(
     function: Function, u: Any, args: Any, known: Expansion | None = None
 ) -> Expansion:
-    """Value, gradient and Hessian as in `expanded`, each with its derivatives."""
+    """Value, gradient and Hessian as in `expand`, each with its derivatives."""
     orders, given = _orders(function, u, args, known)
     value, gradient, hessian = (order(*given) for order in orders)
     return Expansion(value, gradient, hessian, given[-1].aux)
@@ -97,7 +97,7 @@ def _orders(function, u, args, known):
 
     def of_hessian(primals, tangents):
         u, traced, others, _ = primals
-        change = jax.tree.map(_filled, (u, traced), tangents[:2])
+        change = jax.tree.map(_fill, (u, traced), tangents[:2])
         _, third = jax.jvp(
             lambda u, t: bound(u, t, others).hessian, (u, traced), change
         )
@@ -132,7 +132,7 @@ def _and_of_args(bound, order, primals, tangents, change):
     u, traced, others, _ = primals
     if all(_is_zero(leaf) for leaf in jax.tree.leaves(tangents[1])):
         return change
-    dtraced = jax.tree.map(_filled, traced, tangents[1])
+    dtraced = jax.tree.map(_fill, traced, tangents[1])
     _, more = jax.jvp(
         lambda t: bound(u, t, others, order)[order], (traced,), (dtraced,)
     )
@@ -161,7 +161,7 @@ def _inner(gradient, change):
     return sum(terms[1:], start=terms[0])
 
 
-def _filled(x, change):
+def _fill(x, change):
     return jnp.zeros_like(x) if _is_zero(change) else change
 
 
@@ -169,7 +169,7 @@ def _is_zero(x):
     return isinstance(x, SymbolicZero)
 
 
-def composed(outer: Expansion, inner: Expansion) -> Expansion:
+def compose(outer: Expansion, inner: Expansion) -> Expansion:
     """Expansion of functions of functions, by the chain rule.
 
     Args:

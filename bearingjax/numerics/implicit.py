@@ -78,7 +78,7 @@ def attach_by(residual, solution, args, correction):
     Returns:
         `solution`, differentiable with respect to `args`.
     """
-    traced, others, joined = _parted(args)
+    traced, others, joined = _partition(args)
 
     def bound(y, traced, others):
         return residual(y, joined(traced, others))
@@ -98,7 +98,7 @@ def attach_by(residual, solution, args, correction):
     return attached(stop_gradient(solution), traced, others)
 
 
-def _parted(args):
+def _partition(args):
     """Floating arrays of a pytree, its other arrays, and how to join them again.
 
     A derivative rule must be given all that is traced, flags and counts too.
@@ -124,17 +124,17 @@ def unless_failed(function, args, solved):
     Returns:
         Result of `function`, differentiable with respect to `args`.
     """
-    traced, others, joined = _parted(args)
+    traced, others, joined = _partition(args)
     # No change gets through if not solved, in neither direction.
     gated = jax.tree.map(lambda x: jnp.where(solved, x, lax.stop_gradient(x)), traced)
-    found, rest, whole = _parted(function(*joined(gated, others)))
+    found, rest, whole = _partition(function(*joined(gated, others)))
     # One by one: components without a tangent are not differentiated.
-    marked = jax.tree.map(lambda effect: _marked(effect, traced, solved), found)
+    marked = jax.tree.map(lambda effect: _mark_unsolved(effect, traced, solved), found)
     return whole(marked, rest)
 
 
 @jax.custom_jvp
-def _marked(effect, cause, solved):
+def _mark_unsolved(effect, cause, solved):
     """The effect; if not solved, its changes are NaN where its cause changes."""
     return effect
 
@@ -145,24 +145,24 @@ def _marked_rule(primals, tangents):
     changes = jax.tree.leaves(tangents[0])
     effects = [e for e in changes if not _is_none(e)]
     if causes and effects:
-        effects = _spoiled(causes, effects, primals[2])
+        effects = _spoil_unsolved(causes, effects, primals[2])
     known = iter(effects)
     # No symbolic zeros: under `vmap` they would miss the axis of the batch.
     changes = [
         jnp.zeros_like(v) if _is_none(c) else next(known)
         for v, c in zip(values, changes, strict=True)
     ]
-    return _marked(*primals), jax.tree.unflatten(tree, changes)
+    return _mark_unsolved(*primals), jax.tree.unflatten(tree, changes)
 
 
 def _is_none(change):
     return isinstance(change, SymbolicZero)
 
 
-_marked.defjvp(_marked_rule, symbolic_zeros=True)
+_mark_unsolved.defjvp(_marked_rule, symbolic_zeros=True)
 
 
-def _spoiled(causes, effects, solved):
+def _spoil_unsolved(causes, effects, solved):
     """The effects; if not solved, NaN if any cause is not zero, else zero.
 
     To JAX it is a linear solve, which says itself what its transpose is: the same with
@@ -207,7 +207,7 @@ def recall(function, values, args):
     Returns:
         `values`, differentiable with respect to `args`.
     """
-    traced, others, joined = _parted(args)
+    traced, others, joined = _partition(args)
 
     @jax.custom_jvp
     def recalled(values, traced, others):

@@ -45,7 +45,7 @@ class Integrated(NamedTuple):
     result: Int[Array, ""]
 
 
-def integrated(
+def integrate(
     rates: Callable[[Any, Any, Any], Any],
     args: Any,
     start: Any,

@@ -268,7 +268,7 @@ def expm(matrices: Float[Array, "matrix n n"]) -> Float[Array, "matrix n n"]:
 
     Source: Higham, SIAM J. Matrix Anal. Appl. 26 (2005) 1179, order 13 throughout.
     """
-    units = _balanced(lax.stop_gradient(matrices))
+    units = _balance(lax.stop_gradient(matrices))
     turned = (units[:, None] / units[None, :])[None]
     matrices = matrices * turned
     size = jnp.max(jnp.sum(jnp.abs(lax.stop_gradient(matrices)), axis=-2))
@@ -295,7 +295,7 @@ def expm(matrices: Float[Array, "matrix n n"]) -> Float[Array, "matrix n n"]:
     return jnp.where(count <= _SQUARINGS, found / turned, jnp.nan)
 
 
-def _balanced(matrices):
+def _balance(matrices):
     """Factors of components with which rows and columns are about the same (n,).
 
     A stiff vibration has its squared frequency in one of them and one in the other:

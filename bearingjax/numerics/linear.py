@@ -42,7 +42,7 @@ def lengths(vectors: Any) -> Any:
     return xp.where(none, 0.0, xp.sqrt(xp.where(none, 1.0, squares)))
 
 
-def combined(
+def combine_rows(
     rows: Float[Array, "n m"], shares: Float[Array, " n"]
 ) -> Float[Array, " m"]:
     """Σ shares_i rows_i, for a few rows [any unit]."""

@@ -12,7 +12,7 @@ from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions, life_of
 from ..life.life_warning import ALL, life_sizes
-from ..statics.warning import counted
+from ..statics.warning import sentences_of_cases
 from .measure import AbstractMeasure
 from .system import element_of, loads_of
 
@@ -84,7 +84,7 @@ class OfLife(AbstractMeasure):
             element, solution: As in `__call__`, concrete.
         """
         sizes = jax.device_get(self._sizes(element_of(element), solution))
-        return counted(sizes, ALL)
+        return sentences_of_cases(sizes, ALL)
 
     @eqx.filter_jit
     def _sizes(self, element, solution):

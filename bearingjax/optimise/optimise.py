@@ -213,7 +213,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
         best = trials.steps[-1]
     result, text = verdict(trials, ending, best, slopes, max_steps, tolerance)
     if result == "infeasible":
-        text += _missed(problem, best)
+        text += _most_violated(problem, best)
     if result != "converged":
         text += _near_by(problem, trials, best)
     text += _idle(problem, trials)
@@ -286,7 +286,7 @@ def verdict(
     return "stalled", text
 
 
-def _missed(problem: Problem, best: Trial) -> str:
+def _most_violated(problem: Problem, best: Trial) -> str:
     """Name the measure that violates its bound most, in words."""
     bound = problem.bounds[int(np.argmin(best.margins))]
     measure = problem.measures[bound.measure]

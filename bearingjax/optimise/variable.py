@@ -122,14 +122,14 @@ def design_numbers(design: Any, entries: bool = False) -> dict[str, Any]:
         if not jnp.issubdtype(jnp.result_type(leaf), jnp.floating):
             continue
         if jnp.shape(leaf) == ():
-            found[dotted(keys)] = leaf
+            found[dotted_path(keys)] = leaf
         elif entries and jnp.ndim(leaf) == 1:
-            head, values = dotted(keys), np.asarray(leaf)
+            head, values = dotted_path(keys), np.asarray(leaf)
             found |= {f"{head}.{k}": one for k, one in enumerate(values)}
     return found
 
 
-def dotted(keys: Any) -> str:
+def dotted_path(keys: Any) -> str:
     """Dotted path of a leaf.
 
     Args:
@@ -140,7 +140,7 @@ def dotted(keys: Any) -> str:
     return ".".join(name for name in names if name != "choices")
 
 
-def changed(design: Any, values: Mapping[str, Any]) -> Any:
+def with_numbers(design: Any, values: Mapping[str, Any]) -> Any:
     """The design with other numbers, constructed again, so that its checks run.
 
     A bearing with another dimension on which its load ratings depend no longer has
@@ -166,9 +166,9 @@ def changed(design: Any, values: Mapping[str, Any]) -> Any:
     if isinstance(design, tuple):
         parts = enumerate(design)
         return tuple(
-            changed(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
+            with_numbers(p, inner[str(k)]) if str(k) in inner else p for k, p in parts
         )
-    parts = {k: changed(getattr(design, k), v) for k, v in inner.items()}
+    parts = {k: with_numbers(getattr(design, k), v) for k, v in inner.items()}
     published = getattr(design, "published", None)
     if published is not None and set(parts) & set(design.rated_fields):
         # At its start too, or the first step would leap to the ratings of standards.
@@ -190,7 +190,7 @@ def with_values(element: Design, paths: Sequence[Sequence[str]], values: Any) ->
         ValueError: If the design does not allow them.
     """
     pairs = zip(paths, values, strict=True)
-    return changed(element, {path: v for several, v in pairs for path in several})
+    return with_numbers(element, {path: v for several, v in pairs for path in several})
 
 
 def check_variables(element: Design, variables: Sequence[Variable]) -> list[float]:

@@ -17,7 +17,7 @@ from .style import (
     raceway_index,
     row_slice,
     row_slices,
-    widened,
+    widen_limits,
 )
 
 _MARKERS = ("o", "s", "^", "D")
@@ -73,7 +73,7 @@ def contact_angles(solution: BallSolution, ax: Ax = None) -> Axes:
                     zorder=3,
                 )
     ax.set_xlim(*_AZIMUTHS)
-    ax.set_ylim(*widened(angle[loaded], _LEAST_SPAN))
+    ax.set_ylim(*widen_limits(angle[loaded], _LEAST_SPAN))
     ax.set_xticks(np.arange(0, 361, 60))
     title = "Contact angles (area of a marker: load)"
     finish(ax, title, "azimuth [deg]", "contact angle [deg]")
@@ -145,7 +145,7 @@ def ellipses(
     cut = grooves[0].open_side and bearing.groove_axis == 0.0
     ends = [-0.2 * arc if cut else -arc, arc, *(place - across), *(place + across)]
     ends += [float(np.asarray(line.get_ydata())[0]) for line in ax.lines]
-    ax.set_ylim(*widened(ends, 0.0))
+    ax.set_ylim(*widen_limits(ends, 0.0))
     ax.set_xlim(*_AZIMUTHS)
     ax.set_box_aspect(_BOX)
     scale = _ellipse_patches(ax, patches, COLOURS[raceway], mine.stop - mine.start)

@@ -113,14 +113,14 @@ def _finish(run, order, ax, title, of):
     names = [str(k) for k in order]
     if len(order) <= _NAMED:
         across = _ACROSS // len(order)
-        names = [_named(k, run.words(int(k)), across) for k in order]
+        names = [_name_case(k, run.words(int(k)), across) for k in order]
     ax.set_xticks(np.arange(len(order)), names, fontsize=SMALL)
     over = f"case (the worst; {left} more are not drawn)" if left else "case"
     finish(ax, title, over, of, axis="y")
     ax.legend(fontsize=SMALL)
 
 
-def _named(case, words, across: int) -> str:
+def _name_case(case, words, across: int) -> str:
     """Return the number of a case and its settings, in lines of limited width."""
     lines = []
     for k, word in enumerate(words):

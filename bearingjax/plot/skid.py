@@ -230,11 +230,11 @@ def _text(ax, found):
         "cage": f"{float(found.cage_speed):.5g} rad/s",
         "pure rolling": f"{float(found.rolling_orbit_speed[0]):.5g} rad/s",
         "slip of the orbit": f"{100.0 * float(found.slip[0]):.3g} %",
-        "spin: tangential, radial, axial": _listed(spin, "rad/s"),
+        "spin: tangential, radial, axial": _list_cases(spin, "rad/s"),
         "pitch angle of the spin": f"{np.rad2deg(float(found.pitch_angle[0])):.3g}°",
-        "contact load: outer, inner": _listed(load, "N"),
-        "film: outer, inner": _listed(1e6 * film, "µm"),
-        "sliding: outer, inner": _listed(1e3 * slide, "mm/s"),
+        "contact load: outer, inner": _list_cases(load, "N"),
+        "film: outer, inner": _list_cases(1e6 * film, "µm"),
+        "sliding: outer, inner": _list_cases(1e3 * slide, "mm/s"),
         "friction torque": f"{1e3 * float(found.friction_torque):.4g} N mm",
     }
     ax.set_axis_off()
@@ -245,5 +245,5 @@ def _text(ax, found):
     ax.set_title("All balls alike")
 
 
-def _listed(values: Any, unit: str) -> str:
+def _list_cases(values: Any, unit: str) -> str:
     return ", ".join(f"{v + 0.0:.3g}" for v in values) + f" {unit}"

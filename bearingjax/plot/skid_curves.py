@@ -58,7 +58,7 @@ def speed_over_time(found: History, ax: Ax = None) -> Panel:
     """Plot cage speed and orbital speeds of the balls, with pure rolling [rad/s]."""
     rolling = np.asarray(found.rolling_orbit_speed).mean(axis=1)
     marks = [
-        *_spread(found, found.orbit_speed),
+        *_mean_and_band(found, found.orbit_speed),
         Curve(found.time, found.cage_speed, "cage", INNER),
         Curve(found.time, rolling, "rolling", GREY, "--", {"linewidth": 1}),
     ]
@@ -68,7 +68,7 @@ def speed_over_time(found: History, ax: Ax = None) -> Panel:
 @chart
 def slip_over_time(found: History, ax: Ax = None) -> Panel:
     """Plot slip of the orbits against pure rolling [%]."""
-    return _over_time(found, "Slip", _SLIP, _spread(found, found.slip))
+    return _over_time(found, "Slip", _SLIP, _mean_and_band(found, found.slip))
 
 
 @chart
@@ -135,7 +135,7 @@ def _kind(found):
     return "ball" if isinstance(found, SkidHistory) else "roller"
 
 
-def _spread(found, values) -> list[Curve]:
+def _mean_and_band(found, values) -> list[Curve]:
     """Return the mean over the balls, and a band from the least to the largest."""
     values, time = np.asarray(values), found.time
     low, high = values.min(axis=1), values.max(axis=1)
@@ -225,7 +225,7 @@ def sliding_over_orbit(found: Steady, ax: Ax = None) -> Panel:
 
     And, on an axis of its own, the slip of the orbit against pure rolling [%].
     """
-    slip = Curve(*_closed(found, found.slip), "orbit slip", GREY, ":")
+    slip = Curve(*_close_circle(found, found.slip), "orbit slip", GREY, ":")
     title = "Sliding in the middle of the contacts"
     marks = _both(found, found.sliding_speed)
     twin = _over_orbit(found, "", _SLIP, [slip])
@@ -236,10 +236,10 @@ def sliding_over_orbit(found: Steady, ax: Ax = None) -> Panel:
 def spin_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     """Plot spin in the orbiting frame [rad/s] against azimuth [deg]; of rollers about
     their axes, with that of pure rolling."""
-    azimuth, spin = _closed(found, found.spin)
+    azimuth, spin = _close_circle(found, found.spin)
     if isinstance(found, SteadySkid):
         return _over_orbit(found, "Spin", _SPIN, _spins(azimuth, spin))
-    rolling = _closed(found, found.rolling_spin)
+    rolling = _close_circle(found, found.rolling_spin)
     marks = [
         Curve(azimuth, spin, "spin", SPIN_COLOURS[2]),
         Curve(*rolling, "rolling", GREY, "--", {"linewidth": 1}),
@@ -258,16 +258,16 @@ def heat_over_orbit(found: Steady, ax: Ax = None) -> Panel:
 def cage_force_over_orbit(found: SteadyRollerSkid, ax: Ax = None) -> Panel:
     """Plot the force of the cage on a roller [N] against azimuth [deg]."""
     label = "above zero: pushed forwards"
-    marks = [Curve(*_closed(found, found.cage_force), label, ROLLER)]
+    marks = [Curve(*_close_circle(found, found.cage_force), label, ROLLER)]
     of = Axis.of(found, "cage_force", NEWTONS)
     return _over_orbit(found, "Force of the cage on a roller", of, marks)
 
 
 def _both(found, values) -> list[Curve]:
-    return _raceways(*_closed(found, by_raceway(values, found.contact_load)))
+    return _raceways(*_close_circle(found, by_raceway(values, found.contact_load)))
 
 
-def _closed(found, values):
+def _close_circle(found, values):
     """Return azimuth [deg] from 0 to 360 and values, the first repeated at the end."""
     azimuth = np.rad2deg(np.asarray(found.azimuth)) % 360.0
     azimuth = np.where(azimuth > 360.0 - 1e-9, 0.0, azimuth)

@@ -95,7 +95,7 @@ def power_of_ten(largest: float) -> tuple[float, str]:
     return 10.0**-power, f"10{str(power).translate(_POWERS)}"
 
 
-def widened(values, least: float, share: float = 0.08) -> tuple[float, float]:
+def widen_limits(values, least: float, share: float = 0.08) -> tuple[float, float]:
     """Return limits of an axis around values, wide enough to hide round-off.
 
     Args:

@@ -66,7 +66,7 @@ def sweep_overview(
     label, note, curves = _curves(inputs, good)
     for k, (header, values) in enumerate(shown):
         ax = without_offset(figure.add_subplot(down, across, k + 1))
-        words, scale = _shown(header, values)
+        words, scale = _display(header, values)
         number, many = label == _NUMBER, len(good) > 60
         look: Any = {"linewidth": 1.0, "markersize": 3.0 if many else 7.0}
         for curve in curves:
@@ -136,13 +136,13 @@ def _curves(inputs, good) -> tuple[str, str, list[_Curve]]:
     groups = [solved[kind == k] for k in range(kind.max() + 1)]
     if not all(len(set(x[mine])) == len(mine) > 1 for mine in groups):
         return by_number
-    words, scale = _shown(along, x)
+    words, scale = _display(along, x)
     name, values, kinds = _colouring(others, solved)
     curves = []
     for mine in groups:
         rising = mine[np.argsort(x[mine])]
         colour = int(np.searchsorted(kinds, values[mine[0]])) if name else 0
-        text, factor = _shown(name, values) if name else ("", 0.0)
+        text, factor = _display(name, values) if name else ("", 0.0)
         name_and_value = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
         curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
     rest = ", ".join(_span(*pair) for pair in others if pair[0] != name)
@@ -151,7 +151,7 @@ def _curves(inputs, good) -> tuple[str, str, list[_Curve]]:
 
 def _span(header, values):
     """Return the name of an input, and its least and largest value, as text."""
-    words, scale = _shown(header, values)
+    words, scale = _display(header, values)
     low, high = scale * np.nanmin(values), scale * np.nanmax(values)
     name = words.partition(" [")[0]
     return f"{name} from {low:.4g} to {high:.4g} {_unit(words)}".rstrip()
@@ -170,7 +170,7 @@ def _unit(header):
     return header.partition(" [")[2].rstrip("]")
 
 
-def _shown(header, values) -> tuple[str, float]:
+def _display(header, values) -> tuple[str, float]:
     """Return the header with its display unit, and the factor to it."""
     name = header.partition(" [")[0]
     largest = float(np.nanmax(np.abs(values)))

@@ -230,7 +230,7 @@ def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
     elif isinstance(held, Sequence) and any(isinstance(x, Mapping) for x in held):
         pairs = ((str(k), one) for k, one in enumerate(held))
     else:
-        return [(key, _shown(held))]
+        return [(key, _format_value(held))]
     return [
         pair
         for name, one in pairs
@@ -238,10 +238,10 @@ def flat(held: Any, key: str = "") -> list[tuple[str, str]]:
     ]
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     """Format a value as text: numbers with at most eight digits, integers with all."""
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return ", ".join(map(_shown, value))
+        return ", ".join(map(_format_value, value))
     if isinstance(value, bool):
         return str(value).lower()  # as in TOML
     if isinstance(value, int):

@@ -119,11 +119,11 @@ class Grid:
         ]
         if left[-1]:
             indent = " " * (sum(width[:-1]) + 2 * (len(width) - 1))
-            lines = [part for line in lines for part in _wrapped(line, indent)]
+            lines = [part for line in lines for part in _wrap_row(line, indent)]
         return "\n".join([*([self.title] if self.title else []), *lines])
 
 
-def _wrapped(line: str, indent: str) -> list[str]:
+def _wrap_row(line: str, indent: str) -> list[str]:
     """Wrap a row that is too long, with its last words indented below themselves."""
     head, words = line[: len(indent)], line[len(indent) :]
     room = max(_WIDTH - len(indent), _WIDTH // 3)
@@ -156,7 +156,7 @@ def load_text(load: Iterable[Any]) -> str:
     return ", ".join(f"{name} {x:.5g} {unit}" for name, unit, x in parts if x)
 
 
-def labelled(rows: Iterable[tuple[str, str]]) -> Grid:
+def labelled_facts(rows: Iterable[tuple[str, str]]) -> Grid:
     """Return a table of facts, each preceded by a label.
 
     Args:

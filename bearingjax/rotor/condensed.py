@@ -74,7 +74,7 @@ class Condensed(eqx.Module):
         return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness
 
 
-def condensed(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Condensed:
+def condense(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Condensed:
     """Return a rotor condensed to its supported stations.
 
     Shifts of supported stations are in m, tilts in m at the end of half the shaft.

@@ -12,7 +12,7 @@ from ..numerics.types import as_count, as_real
 from ..numerics.units import unit
 from .linear.response import Unbalance
 from .parts import check_station
-from .rotor import N_HOUSING, N_STATION, Rotor, listed
+from .rotor import N_HOUSING, N_STATION, Rotor, as_parts
 
 Motions = Float[Array, " motion"]
 
@@ -57,8 +57,8 @@ class RotorLoads(eqx.Module):
     Traced: all but the numbers of stations.
     """
 
-    unbalances: tuple[Unbalance, ...] = eqx.field(converter=listed, default=())
-    forces: tuple[StationForce, ...] = eqx.field(converter=listed, default=())
+    unbalances: tuple[Unbalance, ...] = eqx.field(converter=as_parts, default=())
+    forces: tuple[StationForce, ...] = eqx.field(converter=as_parts, default=())
     gravity: Float[Array, "3"] = eqx.field(
         converter=as_real, metadata=unit(3 * ("m/s²",)), default=(0.0, 0.0, 0.0)
     )
@@ -102,7 +102,7 @@ class RotorLoads(eqx.Module):
         Args:
             rotor: The rotor.
         """
-        force = accelerated(rotor, self.gravity)
+        force = acceleration_load(rotor, self.gravity)
         for one in self.forces:
             force = force.at[rotor.at(one.station)].add(one.force)
         return force
@@ -131,10 +131,10 @@ class RotorLoads(eqx.Module):
         Args:
             rotor: The rotor.
         """
-        return -accelerated(rotor, self.base_acceleration)
+        return -acceleration_load(rotor, self.base_acceleration)
 
 
-def accelerated(rotor: Rotor, acceleration: Any) -> Motions:
+def acceleration_load(rotor: Rotor, acceleration: Any) -> Motions:
     """Return the mass times a uniform acceleration of the rotor (motion,) [N, N m].
 
     Args:

@@ -22,7 +22,7 @@ N_STATION = len(STATION_FREEDOMS)
 N_HOUSING = 3
 
 
-def listed(parts: Any) -> tuple:
+def as_parts(parts: Any) -> tuple:
     """Converter: one part, or several, as a tuple."""
     return tuple(parts) if isinstance(parts, Iterable) else (parts,)
 
@@ -126,8 +126,8 @@ class Rotor(eqx.Module):
     """
 
     shaft: Shaft
-    discs: tuple[AbstractPart, ...] = eqx.field(converter=listed, default=())
-    supports: tuple[AbstractSupport, ...] = eqx.field(converter=listed, default=())
+    discs: tuple[AbstractPart, ...] = eqx.field(converter=as_parts, default=())
+    supports: tuple[AbstractSupport, ...] = eqx.field(converter=as_parts, default=())
     damping: AbstractDamping | None = None
     rigid: bool = eqx.field(static=True, default=False)
 
@@ -222,7 +222,7 @@ class Rotor(eqx.Module):
         Returns:
             RotorMatrices, differentiable with respect to every number.
         """
-        return _linearised(self, as_real(speed), motion)
+        return _linearise(self, as_real(speed), motion)
 
     @eqx.filter_jit
     def unsupported(self) -> "Unsupported":
@@ -254,7 +254,7 @@ class Rotor(eqx.Module):
 
 
 @program(quick=True)
-def _linearised(rotor, speed, motion):
+def _linearise(rotor, speed, motion):
     return matrices_about(rotor, speed, motion)
 
 

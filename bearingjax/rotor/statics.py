@@ -20,7 +20,7 @@ from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
-from .condensed import Condensed, Supported, condensed
+from .condensed import Condensed, Supported, condense
 from .loads import Motions, RotorLoads
 from .parts import LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
@@ -191,7 +191,7 @@ def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]
     They are differentiable with respect to `parts`, and NaN if the search failed.
 
     Args:
-        found: From `searched`.
+        found: From `search_equilibrium`.
         parts: Condensed rotor, or several.
     """
     solved = found.result == Result.CONVERGED
@@ -210,7 +210,7 @@ def equilibrium_at(
     Args:
         rotor, loads, speed: As in `static_equilibrium`, checked.
     """
-    parts = condensed(rotor, loads.constant(rotor), speed)
+    parts = condense(rotor, loads.constant(rotor), speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
     found = search_equilibrium(stop_gradient(parts), stop_gradient(length))
     solved = found.result == Result.CONVERGED

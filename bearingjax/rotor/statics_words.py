@@ -18,7 +18,7 @@ _SUSPECT, _KEPT = 0.2, 0.05
 preload is checked, and is lost [1]."""
 
 
-def _named(rotor, motion) -> str:
+def _largest_freedom(rotor, motion) -> str:
     """Return the name of the freedom with the largest motion."""
     n = N_STATION * rotor.shaft.n_nodes
     length = float(rotor.shaft.stations[-1] - rotor.shaft.stations[0])
@@ -46,7 +46,7 @@ def failure_message(rotor: Any, found: Any, place: Any) -> str:
     if result is Result.NO_LOAD_PATH and not is_traced(place):
         return (
             f"{start} nothing takes up the load along"
-            f" {_named(rotor, np.asarray(place))}; give the rotor a"
+            f" {_largest_freedom(rotor, np.asarray(place))}; give the rotor a"
             " support that holds it, or less load."
         )
     if result is Result.NON_FINITE:
@@ -132,7 +132,7 @@ def warn_of(rotor: Any, found: Any) -> None:
     springs = all(isinstance(support, LinearSupport) for support in rotor.supports)
     if free.any() and not springs:
         warnings.warn(
-            f"static_equilibrium: nothing holds {_named(rotor, free)}: it stays where"
-            " it is, and a mode of frequency zero goes with it",
+            f"static_equilibrium: nothing holds {_largest_freedom(rotor, free)}: it"
+            " stays where it is, and a mode of frequency zero goes with it",
             stacklevel=3,
         )

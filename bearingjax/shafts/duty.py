@@ -130,7 +130,7 @@ def solve_duty(
                 systems, found["motion"][:, k], speeds, conditions, strict=True
             )
         ]
-        lives.append(_map(_rated, given, fast))
+        lives.append(_map(_rate, given, fast))
     names = [n for n in LIVES if any(n in life[1] for life in lives)]
     never = np.full(len(systems), np.nan)
     return DutyResult(
@@ -208,12 +208,12 @@ def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
     if all(v is None for v in varying):
         once = jax.device_get(function(given[0], *static))
         return jax.tree.map(lambda x: np.stack([x] * len(given)), once)
-    both = _mapped(function, varying, shared, trees[0], static)
+    both = _map_cases(function, varying, shared, trees[0], static)
     return jax.device_get(both)
 
 
 @program
-def _mapped(function, varying, shared, tree, static):
+def _map_cases(function, varying, shared, tree, static):
     def one(mine):
         leaves = [s if v is None else v for v, s in zip(mine, shared, strict=True)]
         return function(jax.tree.unflatten(tree, leaves), *static)
@@ -225,7 +225,7 @@ def state_of(system: ShaftSystem) -> dict[str, Any]:
     """Return loads, motions, speeds, losses and result of one case by their names.
 
     Args:
-        system: From `adjusted`.
+        system: From `with_preload_offsets`.
     """
     found, _ = system_state(system)
     names = "load displacement misalignment motion result".split()
@@ -236,7 +236,7 @@ def state_of(system: ShaftSystem) -> dict[str, Any]:
     return {**kept, "speed": found.power.speed, **more}
 
 
-def _rated(
+def _rate(
     given: Any, inertia: bool | None
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given

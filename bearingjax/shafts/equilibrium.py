@@ -18,14 +18,14 @@ from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..rotor import Rotor
-from ..rotor.condensed import Condensed, condensed
-from ..rotor.loads import accelerated
+from ..rotor.condensed import Condensed, condense
+from ..rotor.loads import acceleration_load
 from ..rotor.rotor import N_STATION
 from ..rotor.statics import search_equilibrium
 from ..statics.support import axial_senses
 from .power import PowerFlow, power_flow
 from .seats import supports_of, with_preload_offsets
-from .state import SystemSolution, described, moving
+from .state import SystemSolution, describe_state, moving
 from .system import ShaftSystem
 
 _SLID = 1e-3
@@ -125,7 +125,7 @@ def system_state(
     """Return the solution, and the end of the search even if it failed (motion,).
 
     Args:
-        system: From `adjusted`.
+        system: From `with_preload_offsets`.
     """
     power = power_flow(system)
     rotors, points = [], []
@@ -135,8 +135,8 @@ def system_state(
         line, beam = system.shafts[index], system.beam(index)
         rotors.append(Rotor(beam, (), here, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
-    whole = _coupled(system, rotors, points, power)
-    found = _named(
+    whole = _couple(system, rotors, points, power)
+    found = _name_end(
         system,
         search_equilibrium(stop_gradient(whole), stop_gradient(max_length(system))),
         whole,
@@ -144,13 +144,13 @@ def system_state(
     solved = found.result == Result.CONVERGED
 
     def there(*given: Any) -> SystemSolution:
-        return described(found, *given)
+        return describe_state(found, *given)
 
     given = system, rotors, points, whole, power
     return unless_failed(there, given, solved), stop_gradient(whole).motion(found.x)
 
 
-def _named(system, found, whole):
+def _name_end(system, found, whole):
     """Return the end of a search; of a shaft that slid off its bearings in a direction
     in which none holds it, `NO_LOAD_PATH` in place of `STEP_LIMIT`: the search may end
     before it is far."""
@@ -159,7 +159,7 @@ def _named(system, found, whole):
     for index, line in enumerate(system.shafts):
         count = N_STATION * (sum(system.plans[index].divisions) + 1)
         along, first = motion[first + 2 : first + count : N_STATION], first + count
-        for sense in {1, -1} - _held(system, index):
+        for sense in {1, -1} - _held_senses(system, index):
             slid = jnp.min(sense * along) > _SLID * jnp.sum(stop_gradient(line.length))
             away = away | slid
     away = away & (found.result == Result.STEP_LIMIT)
@@ -167,7 +167,7 @@ def _named(system, found, whole):
     return found._replace(result=jnp.where(away, code, found.result))
 
 
-def _held(system, index) -> set[int]:
+def _held_senses(system, index) -> set[int]:
     """Return the senses along a shaft in which a bearing holds it."""
     held: set[int] = set()
     for k in system.seats_on(index):
@@ -205,13 +205,13 @@ def _points(system, power, index, beam) -> Float[Array, "node 5"]:
     return nodes
 
 
-def _coupled(system, rotors, points, power) -> Condensed:
+def _couple(system, rotors, points, power) -> Condensed:
     """Return all shafts on their bearings, with seats and floating rings, as one."""
     parts, order, turns = [], [], []
     for index, rotor in enumerate(rotors):
-        weight = accelerated(rotor, system.shafts[index].frame @ system.gravity)
+        weight = acceleration_load(rotor, system.shafts[index].frame @ system.gravity)
         force = weight + points[index].reshape(-1)
-        parts.append(condensed(rotor, force, power.speed[index]))
+        parts.append(condense(rotor, force, power.speed[index]))
         here = system.seats_on(index)
         order += here
         turns += [power.speed[index]] * len(here)

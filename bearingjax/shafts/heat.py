@@ -29,9 +29,9 @@ from .bearing_oil import BearingOil
 from .equilibrium import system_state
 from .heat_balance import (
     HOTTEST,
-    integrated,
+    integrate_heat,
     rises_over_time,
-    searched,
+    search_temperatures,
     steady_rises,
     stepped_scan,
     stepped_while,
@@ -220,7 +220,7 @@ def solve_heat(
             return _at(cold, network, rise)
 
         given = [_conductance(network), _capacity(network)]
-        found, solution = searched(evaluated, given, None, stepped_while)
+        found, solution = search_temperatures(evaluated, given, None, stepped_while)
         rise, slowest, residual = found.rise, -found.fastest, found.residual
         steps, solved, known = found.steps, found.solved, _within(rise)
         if np.any(np.asarray(known) != np.asarray(rise)):
@@ -292,7 +292,7 @@ def warm_up(
         return evaluated(rise)[0]
 
     given = [_conductance(network), _capacity(network)]
-    return network.ambient + integrated(
+    return network.ambient + integrate_heat(
         evaluated, made, given, times, steps, stepped_scan
     )
 
@@ -343,9 +343,9 @@ def _check(system, network) -> None:
 
 
 def _at(system, network, rise):
-    """Return `_evaluated`; at rest nothing makes heat."""
+    """Return `_evaluate`; at rest nothing makes heat."""
     if system.turns:
-        return _evaluated(system, network, rise)
+        return _evaluate(system, network, rise)
     solution, _ = system_state(with_temperatures(system, network, rise))
     return jnp.zeros_like(rise), jnp.zeros((rise.size, rise.size)), solution
 
@@ -360,7 +360,7 @@ def _within(rise):
 
 
 @program(quick=True)
-def _evaluated(system, network, rise):
+def _evaluate(system, network, rise):
     """Return heat made at every node, its slope, and the equilibrium there.
 
     The one program of search and warming up, where nothing is traced: their loops run
@@ -439,7 +439,7 @@ def heat_made(
 
     Args:
         rises: Of the nodes above the ambience (node,) [K].
-        args: The system, from `adjusted`, and its network.
+        args: The system, from `with_preload_offsets`, and its network.
     """
     return heat_and_state(rises, *args)[0]
 
@@ -451,7 +451,7 @@ def heat_and_state(
 
     Args:
         rises: Of the nodes above the ambience (node,) [K].
-        system: The system, from `adjusted`.
+        system: The system, from `with_preload_offsets`.
         network: Paths of its heat.
     """
     warm = with_temperatures(system, network, rises)

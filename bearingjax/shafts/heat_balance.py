@@ -53,7 +53,7 @@ def steady_rises(
     def evaluated(rise):
         return with_slope(lambda rise: (heat(rise, still), ()), rise)
 
-    found, _ = searched(evaluated, network, (), lax.while_loop)
+    found, _ = search_temperatures(evaluated, network, (), lax.while_loop)
 
     def balance(rise, args):
         heat_args, conductance = args
@@ -109,7 +109,7 @@ class _Search(NamedTuple):
         return (self.residual <= _TOLERANCE) & (self.fastest < 0)
 
 
-def searched(evaluated, network, nothing, while_loop):
+def search_temperatures(evaluated, network, nothing, while_loop):
     """Search the temperatures that a system reaches from the cold.
 
     Args:
@@ -124,7 +124,7 @@ def searched(evaluated, network, nothing, while_loop):
 
     def step(carry):
         made, slope, more = evaluated(carry[0].after)
-        return _advanced(carry[0], made, slope, network), more
+        return _advance(carry[0], made, slope, network), more
 
     begin = _beginning(network)
     return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
@@ -147,7 +147,7 @@ def _beginning(network):
 
 
 @program(quick=True)
-def _advanced(state, made, slope, network):
+def _advance(state, made, slope, network):
     """Return the state after a step, from heat and slope at `state.after`."""
     rise, (conductance, capacity) = state.after, network
     slope, left = slope - conductance, made - conductance @ rise
@@ -190,13 +190,13 @@ def rises_over_time(
     def made(rise):
         return heat(rise, args)
 
-    return integrated(evaluated, made, [conductance, capacity], times, n, lax.scan)
+    return integrate_heat(evaluated, made, [conductance, capacity], times, n, lax.scan)
 
 
 _GAMMA = 1.0 - np.sqrt(0.5)
 
 
-def integrated(evaluated, made, network, times, n, scan):
+def integrate_heat(evaluated, made, network, times, n, scan):
     """Return rises over time (time, node) [K].
 
     Args:

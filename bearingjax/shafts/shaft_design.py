@@ -23,8 +23,8 @@ from ..numerics.units import unit
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
-from ..optimise.variable import dotted
-from ..statics.warning import counted
+from ..optimise.variable import dotted_path
+from ..statics.warning import sentences_of_cases
 from .bearing_oil import BearingOil
 from .doubts import load_doubts
 from .duty import (
@@ -69,7 +69,7 @@ class ShaftCases(eqx.Module):
             design: From `load_cases`.
         """
         leaves, _ = jax.tree_util.tree_flatten_with_path(design)
-        return {dotted(leaves[place][0]) for place in self.places}
+        return {dotted_path(leaves[place][0]) for place in self.places}
 
 
 class ShaftDesign(AbstractSystem):
@@ -168,7 +168,7 @@ class ShaftDesign(AbstractSystem):
     def warnings(self, cases, solved):
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
-            texts = counted(jax.device_get(sizes), ALL)
+            texts = sentences_of_cases(jax.device_get(sizes), ALL)
             found += [f"{seat.name}: {text}" for text in texts]
         return [*found, *load_doubts(self.system, solved.load)]
 

@@ -86,13 +86,13 @@ class SystemSolution(eqx.Module):
         return self.result == Result.CONVERGED
 
 
-def described(
+def describe_state(
     found: Any, system: ShaftSystem, rotors: Any, points: Any, whole: Any, power: Any
 ) -> SystemSolution:
     """Return the state at the end of a search, with derivatives; NaN if it failed.
 
     Args:
-        found: From `searched`.
+        found: From `search_temperatures`.
         system: The system.
         rotors: Its shafts on their bearings.
         points: Forces of wheels and loads on the nodes of each [N, N m].

@@ -15,7 +15,7 @@ from ..design.checks import check, concrete, instance, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit
 from ..rotor import Shaft
-from ..rotor.rotor import listed
+from ..rotor.rotor import as_parts
 from .line import Plan, ShaftLine
 from .mesh_place import mesh_place, outward
 from .parts import (
@@ -176,10 +176,10 @@ class ShaftSystem(eqx.Module):
         housing: HousingStiffness | None = None,
         gravity: Any = (0.0, 0.0, 0.0),
     ):
-        self.shafts, self.seats = listed(shafts), listed(seats)
+        self.shafts, self.seats = as_parts(shafts), as_parts(seats)
         self.drive, self.housing = drive, housing
-        self.wheels, self.couplings = listed(wheels), listed(couplings)
-        self.loads, self.gravity = listed(loads), as_real(gravity)
+        self.wheels, self.couplings = as_parts(wheels), as_parts(couplings)
+        self.loads, self.gravity = as_parts(loads), as_real(gravity)
         self._check_kinds()
         self._check_names()
         self.plans = tuple(

@@ -18,7 +18,7 @@ from ..element.balls.ball_speed import ball_mass
 from ..element.bearing_model import BearingModel
 from ..element.energy import derivatives, ring_motions
 from ..element.inertia import Speed
-from ..element.rolling_element import RingMotion, split
+from ..element.rolling_element import RingMotion, split_rings
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from .ball_motion import LoadedBall
@@ -79,7 +79,7 @@ class BalancedLoads(eqx.Module):
             model = skid.element.model(speed)
         ball = model.rows[0].element
         axes = ball.axes(azimuth)
-        both = RingMotion(*split(self.balance.ring_freedoms(ring)))
+        both = RingMotion(*split_rings(self.balance.ring_freedoms(ring)))
         seen = axes @ both.between
         if not ball.sees_difference:
             seen = jnp.concatenate([axes @ both.outer, axes @ both.inner])

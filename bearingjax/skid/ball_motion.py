@@ -220,13 +220,13 @@ def rates(
         along_orbit: Other forces on it in the sense in which angles are counted, such
             as those of cage and oil [N].
     """
-    spinning, orbiting = unbalanced(ball, state, drag, along_orbit)
+    spinning, orbiting = residual_moments(ball, state, drag, along_orbit)
     turning = orbiting / (ball.mass * ball.pitch_radius)
     spin = spinning / ball.moment
     return BallState(spin.at[2].add(-turning), turning)
 
 
-def unbalanced(
+def residual_moments(
     ball: LoadedBall, state: BallState, drag: Tractions, along_orbit: Scalar
 ) -> tuple[Float[Array, "3"], Scalar]:
     """Return moments, the gyroscopic one included, and the force along the orbit.

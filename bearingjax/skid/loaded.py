@@ -16,7 +16,7 @@ from ..element.balls.ball_speed import ball_mass
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, RowGroup
 from ..element.constants import ContactConstants, relative_radii
-from ..element.equilibrium import condensed
+from ..element.equilibrium import condense
 from ..element.inertia import Speed, mass_and_inertia
 from ..element.row import Row
 from ..element.solved_row import RowResults, SolvedRow
@@ -26,7 +26,7 @@ from ..lubrication import (
     line_patch,
     point_film,
 )
-from ..numerics.expansion import expanded
+from ..numerics.expansion import expand
 from ..numerics.types import Ring
 from ..statics import rollers
 from ..statics.balls import ball_results
@@ -86,7 +86,7 @@ def ring_forces(
 
     def energy(rings):
         def one(solved_element, rings, energies):
-            return expanded(condensed, rings, solved_element, energies)
+            return expand(condense, rings, solved_element, energies)
 
         return jnp.sum(solved.each(row, one, rings))
 

@@ -179,12 +179,12 @@ def rates(
         along_orbit: Other forces on it in the sense in which angles are counted, such
             as those of cage and oil [N].
     """
-    spinning, orbiting = unbalanced(roller, drag, along_orbit)
+    spinning, orbiting = residual_moments(roller, drag, along_orbit)
     turning = orbiting / (roller.mass * roller.pitch_radius)
     return RollerState(spinning / roller.moment - turning, turning)
 
 
-def unbalanced(
+def residual_moments(
     roller: LoadedRoller, drag: RollerTractions, along_orbit: Scalar
 ) -> tuple[Scalar, Scalar]:
     """Return the residual moment and force.

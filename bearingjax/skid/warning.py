@@ -45,13 +45,13 @@ def skid_warnings(
         cases = range(len(held[0].result))
         ones = (jax.tree.map(lambda leaf, k=k: leaf[k], held) for k in cases)
         kinds = zip(*(_doubts(model, *one) for one in ones), strict=True)
-        texts = [_counted(kind) for kind in kinds if any(kind)]
+        texts = [_count_cases(kind) for kind in kinds if any(kind)]
     else:
         texts = [doubt[1] for doubt in _doubts(model, *held) if doubt]
     return [*_pockets(model), *texts]
 
 
-def _counted(doubts):
+def _count_cases(doubts):
     """Return the sentence of the worst case, with the number of cases."""
     doubtful = [k for k, doubt in enumerate(doubts) if doubt]
     worst = max(doubtful, key=lambda k: doubts[k][0])
@@ -70,10 +70,10 @@ def _doubts(model, found, state):
     return (
         _wander(model, found),
         _slip(found, turning, loaded.all(axis=-1)),
-        _sheared(model, state, found.contact_load, loaded),
+        _sheared_films(model, state, found.contact_load, loaded),
         _glass(model, state, loaded),
         _regimes(state, loaded),
-        _mixed(model, state, loaded),
+        _mixed_films(model, state, loaded),
     )
 
 
@@ -125,7 +125,7 @@ def _slip(found, turning, driven):
     return largest, text
 
 
-def _sheared(model, state, load, loaded):
+def _sheared_films(model, state, load, loaded):
     # These laws are measured, or of no oil.
     if isinstance(model.traction, DryFriction | SlipCurve):
         return None
@@ -170,7 +170,7 @@ def _regimes(state, loaded):
     )
 
 
-def _mixed(model, state, loaded):
+def _mixed_films(model, state, loaded):
     least = MIXED * float(model.least_film)
     mixed = (state.least_film < least) & loaded
     if not mixed.any():

@@ -95,7 +95,7 @@ def ball_results(
     return jax.tree.map(lambda *values: jnp.concatenate(values), *parts)
 
 
-def _spread(values, contacts):
+def _per_arc(values, contacts):
     """Values of a row with one arc per ring in the shape of rows with two."""
     if values.shape[1] == contacts:
         return values
@@ -144,7 +144,7 @@ def _row_results(
         "shoulder_margin": _margins(bearing, vectors, axes, load),
     }
     return {
-        **{name: _spread(values, contacts) for name, values in by_contact.items()},
+        **{name: _per_arc(values, contacts) for name, values in by_contact.items()},
         "roller_load": sides,
         "roller_pressure": jnp.max(pressure.reshape(-1, 2, half), axis=2),
         "kinematics": kinematics,

@@ -73,7 +73,7 @@ def load_case(
     dtype = bearings_of(bearing)[0].pitch_diameter.dtype
     forces = _six("load", load, dtype)
     fixed = _six("fixed_displacement", fixed_displacement, dtype)
-    prescribed = _named(prescribed)
+    prescribed = _name_freedoms(prescribed)
     check_names("solve_load", "prescribed", tuple(prescribed))
     given = _six("prescribed", [prescribed.get(f, 0.0) for f in FREEDOMS], dtype)
     free = options.free
@@ -103,7 +103,7 @@ def load_case(
     )
 
 
-def _named(prescribed) -> dict:
+def _name_freedoms(prescribed) -> dict:
     if prescribed is None:
         return {}
     if not isinstance(prescribed, Mapping):

@@ -37,7 +37,7 @@ def warnings(solution: Solution) -> list[str]:
         ]
         found = [sizes(one) for one in ones]
         warned = {name: np.array([f[name] for f in found]) for name in found[0]}
-        return counted(warned)
+        return sentences_of_cases(warned)
     out = []
     for name, size in sizes(held).items():
         kind = KINDS[name]
@@ -73,7 +73,7 @@ def sizes(solution: Solution) -> dict[str, Any]:
         }
 
 
-def given(
+def exceeded_kinds(
     warned: Mapping[str, np.ndarray], kinds: Mapping[str, Any] = KINDS
 ) -> dict[str, np.ndarray]:
     """Whether each case has each kind, by name (case,); kinds without cases left out.
@@ -90,16 +90,16 @@ def given(
     return {name: cases for name, cases in over.items() if cases.any()}
 
 
-def counted(
+def sentences_of_cases(
     warned: Mapping[str, np.ndarray], kinds: Mapping[str, Any] = KINDS
 ) -> list[str]:
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned, kinds: As in `given`.
+        warned, kinds: As in `exceeded_kinds`.
     """
     out = []
-    for name, cases in given(warned, kinds).items():
+    for name, cases in exceeded_kinds(warned, kinds).items():
         worst = int(np.nanargmax(warned[name]))
         said = kinds[name].words(float(warned[name][worst]), "")
         out.append(

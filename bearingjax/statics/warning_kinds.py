@@ -286,7 +286,9 @@ KINDS: dict[str, Kind] = {
         "lifted off the inner raceway by centrifugal force, more than"
         f" {100.0 * sizes.SMALLEST_LOAD:g} %"
         " of the largest load: {where}",
-        lambda s: sizes.numbered("ball", np.flatnonzero(sizes.balls_off_inner_ring(s))),
+        lambda s: sizes.name_by_number(
+            "ball", np.flatnonzero(sizes.balls_off_inner_ring(s))
+        ),
         _balls,
     ),
     "edge_loaded": Kind(

@@ -150,7 +150,7 @@ def _one(solution, flags):
     return array_namespace(solution.result).where(flags, 1.0, 0.0)
 
 
-def listed(numbers: Any) -> str:
+def number_ranges(numbers: Any) -> str:
     """Rising whole numbers in words: "0 to 2, 10, 11"."""
     found = np.asarray(numbers, dtype=int)
     runs = np.split(found, np.flatnonzero(np.diff(found) != 1) + 1)
@@ -161,16 +161,16 @@ def listed(numbers: Any) -> str:
     )
 
 
-def numbered(noun: str, numbers: Any) -> str:
+def name_by_number(noun: str, numbers: Any) -> str:
     """Some of several by their numbers, in words: "roller 2", "balls 0 to 3"."""
-    return f"{noun}{'' if len(numbers) == 1 else 's'} {listed(numbers)}"
+    return f"{noun}{'' if len(numbers) == 1 else 's'} {number_ranges(numbers)}"
 
 
 def of_raceways(solution: Solution, flags: Any) -> str:
     """Raceways and rolling elements where `flags` (element, 2) are set, in words."""
     noun = solution.element.bearing.noun
     return "; ".join(
-        f"{ring} raceway: {numbered(noun, np.flatnonzero(mine))}"
+        f"{ring} raceway: {name_by_number(noun, np.flatnonzero(mine))}"
         for ring, mine in zip(RINGS, np.asarray(flags).T, strict=True)
         if mine.any()
     )
@@ -233,7 +233,7 @@ def unrestrained_directions(solution: Solution) -> Any:
 
 
 def loose_names(solution: Solution) -> str:
-    """Directions that `loose` counts, each by the freedom that moves most in it."""
+    """Directions that `unrestrained_directions` counts, each by the freedom that moves most in it."""
     k, nothing = _free_stiffness(solution)
     values, vectors = np.linalg.eigh(k)
     names = {
@@ -253,11 +253,11 @@ def unloaded_rows(solution: Solution) -> Any:
 
 
 def idle_numbers(solution: Solution) -> str:
-    """Rows that `idle_rows` counts, in words."""
+    """Rows that `unloaded_rows` counts, in words."""
     load = solution.roller_load.min(axis=1)
     tops = [part.max() for _, part in _by_row(solution, load)]
     idle = [k for k, top in enumerate(tops) if top <= 1e-9 * max(tops)]
-    return f"row {listed(idle)}"
+    return f"row {number_ranges(idle)}"
 
 
 def slack_springs(solution: Solution) -> Any:
@@ -269,7 +269,7 @@ def slack_springs(solution: Solution) -> Any:
 def slack_numbers(solution: Solution) -> str:
     """Rows whose springs `slack_springs` counts, in words."""
     slack = (solution.spring_force == 0) & (solution.spring_travel != 0)
-    return f"row {listed(np.flatnonzero(slack))}"
+    return f"row {number_ranges(np.flatnonzero(slack))}"
 
 
 def static_limit(bearing: AbstractBearing | BearingSet) -> float:
@@ -504,7 +504,7 @@ def implausible_dimensions(solution: Solution) -> Any:
 
 
 def odd_names(solution: Solution) -> str:
-    """Numbers that `oddities` counts, in words."""
+    """Numbers that `implausible_dimensions` counts, in words."""
     rows = rows_of(solution.element.bearing)
     found = [part for row in rows for part in _implausible(row.bearing)]
     return ", ".join(
@@ -579,7 +579,7 @@ def load_beyond_groove(solution: Solution) -> Any:
 
 
 def on_land_count(solution: Solution) -> Any:
-    """Number of balls that `on_land` marks."""
+    """Number of balls that `load_beyond_groove` marks."""
     return _one(solution, load_beyond_groove(solution).any(axis=1)).sum()
 
 
@@ -597,7 +597,7 @@ def balls_off_inner_ring(solution: Solution) -> Any:
 
 
 def lifted_count(solution: Solution) -> Any:
-    """Number of balls that `lifted` marks."""
+    """Number of balls that `balls_off_inner_ring` marks."""
     return _one(solution, balls_off_inner_ring(solution)).sum()
 
 
@@ -608,10 +608,10 @@ def edge_pressure(solution: Solution) -> Any:
     flat.
     """
     rollers = _of_rollers(solution)
-    return _passed(rollers, rollers.edge_pressure).max()
+    return _end_pressures(rollers, rollers.edge_pressure).max()
 
 
-def _passed(rollers, pressure):
+def _end_pressures(rollers, pressure):
     """Pressures (roller, 2, end) of rollers that pass a load, 0 of others [Pa]."""
     load = rollers.roller_load
     passes = load.min(axis=1) > SMALLEST_LOAD * load.max()
@@ -621,4 +621,4 @@ def _passed(rollers, pressure):
 def ends_over(solution: Solution) -> Any:
     """Whether ends of rollers that pass a load are edge-loaded (roller, 2, end)."""
     rollers = _of_rollers(solution)
-    return _passed(rollers, rollers.edge_pressure) > EDGE_PRESSURE
+    return _end_pressures(rollers, rollers.edge_pressure) > EDGE_PRESSURE

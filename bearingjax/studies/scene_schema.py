@@ -66,7 +66,7 @@ def scene_schema() -> dict[str, Any]:
     defs = {
         "bearing": _bearing(),
         "set": _set(),
-        "contact": _merged("laws of the contacts", LineContactKeys, PointContactKeys),
+        "contact": _merge("laws of the contacts", LineContactKeys, PointContactKeys),
         "fit": table_schema(FitKeys),
         "temperature": table_schema(TemperatureKeys),
         "material": numbers,
@@ -113,8 +113,8 @@ def _bearing_scene() -> dict[str, Any]:
         "bearing": _ref("bearing"),
         "set": _ref("set"),
         "contact": _ref("contact"),
-        "operating": _merged("load, support and speeds", OperatingKeys, ControlKeys),
-        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
+        "operating": _merge("load, support and speeds", OperatingKeys, ControlKeys),
+        "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
         "fit": _ref("fit"),
         "temperature": _ref("temperature"),
         "lubricant": _ref("lubricant"),
@@ -150,7 +150,7 @@ def _rotor_scene() -> dict[str, Any]:
         "contact": _ref("contact", "as of a bearing alone"),
         "fit": _ref("fit", "as of a bearing alone"),
         "temperature": _ref("temperature", "as of a bearing alone"),
-        "numerics": _merged("solvers", BallNumericsKeys, RollerNumericsKeys),
+        "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys),
         **table_schema(ControlKeys)["properties"],
     }
     within |= {"life": _ref("life"), "lubricant": _ref("lubricant")}
@@ -241,7 +241,7 @@ def _shaft_scene() -> dict[str, Any]:
     return object_schema(tables, ["shaft", "bearings"], "a system of shafts")
 
 
-def _merged(about: str, *kinds: type[Keys]) -> dict[str, Any]:
+def _merge(about: str, *kinds: type[Keys]) -> dict[str, Any]:
     """Schema of a table whose keys are read by several classes."""
     first, *more = (table_schema(kind) for kind in kinds)
     properties = dict(first["properties"])

@@ -227,13 +227,13 @@ def test_play_lifted_balls_and_designs_end_where_first_contact_ends(made, axial,
 @pytest.mark.slow
 def test_cases_in_a_queue_are_solved_as_together(from_contact, monkeypatch):
     """Fewer slots than cases: each bad one leaves its slot to the next."""
-    used, honest = [], batched_loop._queued
+    used, honest = [], batched_loop._run_queue
 
     def seen(task, *of_lanes):
         used.append(task.slots[0])
         return honest(task, *of_lanes)
 
-    monkeypatch.setattr(batched_loop, "_queued", seen)
+    monkeypatch.setattr(batched_loop, "_run_queue", seen)
     monkeypatch.setattr(load_search, "SLOTS", 6)
     jax.clear_caches()  # a search traced before has the slots of then
     queued = bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=50)

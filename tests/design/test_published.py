@@ -15,7 +15,7 @@ import bearingjax as bj
 from bearingjax.catalogue.entry import catalogue_entries
 from bearingjax.design.published import is_as_published, rated_dimensions
 from bearingjax.life import equivalent_load, rating, ratings
-from bearingjax.optimise.variable import changed
+from bearingjax.optimise.variable import with_numbers
 from bearingjax.studies.bearing.read_scene import read_scene
 
 LOAD = np.array([2e3, 0.0, 4e3, 0.0, 0.0, 0.0])
@@ -137,10 +137,10 @@ def test_published_capacity_has_the_relative_slope_of_the_formula():
 def test_optimised_dimension_voids_the_published_ratings():
     """From the first step on, in the same structure; a clearance does not."""
     bearing = bj.load_bearing("6205")
-    same = changed(bearing, {"ball_diameter": bearing.ball_diameter})
+    same = with_numbers(bearing, {"ball_diameter": bearing.ball_diameter})
     assert jax.tree.structure(same) == jax.tree.structure(bearing)
     assert ratings(same).dynamic_source == "ISO 281 from geometry"
-    looser = changed(bearing, {"radial_internal_clearance": jnp.asarray(2e-5)})
+    looser = with_numbers(bearing, {"radial_internal_clearance": jnp.asarray(2e-5)})
     assert float(ratings(looser).dynamic_capacity) == 14.8e3
 
 

@@ -43,7 +43,7 @@ from bearingjax.life.equivalent_load import (
 from bearingjax.life.life import (
     FRAMES,
     LIFE_OUTPUTS,
-    _modified,
+    _modified_damage,
     _rows,
     life_outputs,
     turns_against_load,
@@ -57,7 +57,7 @@ from bearingjax.life.reference_life import (
 )
 from bearingjax.life.refined_life import _of_laminae, _peaks_at_an_end
 from bearingjax.optimise.design_problem import Problem
-from bearingjax.statics.warning import counted
+from bearingjax.statics.warning import sentences_of_cases
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
@@ -594,7 +594,7 @@ def test_four_points_live_as_one_row_by_axial_and_as_two_by_radial_load():
         rated = bj.ratings(bearing, dynamic_capacity=c, fatigue_load_limit=900.0)
         oil = jnp.asarray(1.5), jnp.asarray(0.5)  # κ and e_C
         rows = _rows(bearing, sizes, loads, rated, turning)
-        tired = sum(_modified(*row, *oil, BALLS) for row in rows)
+        tired = sum(_modified_damage(*row, *oil, BALLS) for row in rows)
         return jnp.stack([sum(row.fatigue.share.sum() for row in rows), tired])
 
     of_four = numbers(four, (14,), jnp.asarray(np.concatenate([right, left], 2)), 7e4)
@@ -829,7 +829,9 @@ def test_optimise_life_warnings_match_rating_life():
         one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
         life = bj.rating_life(element, one)
         found = life_sizes(element.bearing, life.ratings, vars(life))
-        (alone,) = counted({name: np.atleast_1d(x) for name, x in found.items()}, ALL)
+        (alone,) = sentences_of_cases(
+            {name: np.atleast_1d(x) for name, x in found.items()}, ALL
+        )
         words, _, case = alone.partition(", in 1 of 1 cases, worst case ")
         assert text == f"{words}, in 1 of 3 cases, worst case {k}" and case == "0"
 
@@ -964,16 +966,19 @@ def test_life_warnings_of_each_kind(untyped):
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
     cases["viscosity_ratio"][:] = [0.08, 4.5, 0.02, np.nan]
-    heavy, thin, thick = counted(life_sizes(bearing, ratings, cases), ALL)  # pyright: ignore[reportArgumentType]
+    heavy, thin, thick = sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)  # pyright: ignore[reportArgumentType]
     assert "1.5 times the lesser" in heavy and "in 1 of 4 cases, worst" in heavy
     assert heavy.endswith("case 1")
     assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
     assert "of 4.5:" in thick and "in 1 of 4 cases, worst case 1" in thick
     # A standstill among other cases has no life in hours, and needs none.
     cases["life_hours"][2] = np.inf
-    assert len(counted(life_sizes(bearing, ratings, cases), ALL)) == 3  # pyright: ignore[reportArgumentType]
+    assert len(sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)) == 3  # pyright: ignore[reportArgumentType]
     cases["life_hours"][:] = np.inf
-    assert "no life in hours" in counted(life_sizes(bearing, ratings, cases), ALL)[-1]  # pyright: ignore[reportArgumentType]
+    assert (
+        "no life in hours"
+        in sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)[-1]
+    )  # pyright: ignore[reportArgumentType]
 
 
 def nj_element():

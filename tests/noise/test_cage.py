@@ -18,7 +18,7 @@ from bearingjax.noise import (
     vibration,
 )
 from bearingjax.noise.dynamics.cage import cage_forces, cage_loads, fastest_of_cage
-from bearingjax.noise.dynamics.stepping import stepped
+from bearingjax.noise.dynamics.stepping import step_motion
 from bearingjax.noise.static_start import static_start
 
 RADIUS = 0.026
@@ -85,7 +85,7 @@ def moved():
             return system.forces(motion, velocity, time, start) / masses
 
         step = jnp.asarray(2e-6)
-        found = stepped(acceleration, (start, velocity), step, 40, 25)
+        found = step_motion(acceleration, (start, velocity), step, 40, 25)
         return found, system.masses
 
     return run

@@ -14,7 +14,7 @@ from bearingjax.design.form_error import (
     Surface,
     Surfaces,
 )
-from bearingjax.noise import NoiseModel, bridged, contact_half_width
+from bearingjax.noise import NoiseModel, contact_half_width, with_bridged_waves
 from bearingjax.noise.static_start import static_start
 from bearingjax.noise.warning import _short_waves
 
@@ -75,7 +75,7 @@ def test_bridged_model_attenuates_short_waves():
             bj.Speed(inner=200.0), FormErrors(outer=waves), tilts=False,
         )  # fmt: skip
 
-    given = bridged(model([1e-6, 1e-6]))
+    given = with_bridged_waves(model([1e-6, 1e-6]))
     assert given.half_width is not None
     (half,) = given.half_width
     system = given.still_system()

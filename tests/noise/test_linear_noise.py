@@ -20,7 +20,7 @@ from bearingjax.noise import (
     transfer,
     vibration,
 )
-from bearingjax.noise.dynamics.stepping import stepped
+from bearingjax.noise.dynamics.stepping import step_motion
 
 BEARING = balls(7)
 INNER = 1200.0  # rad/s
@@ -80,7 +80,9 @@ def test_the_linear_equations_stepped_in_time(answer):
     turn, samples, settle, steps = 2 * np.pi / INNER, 64, 8, 60
     step = jnp.asarray(turn / samples / steps)
     moved = jax.jit(
-        lambda: stepped(acceleration, (zero, zero), step, steps, (settle + 1) * samples)
+        lambda: step_motion(
+            acceleration, (zero, zero), step, steps, (settle + 1) * samples
+        )
     )()
     found = moved.acceleration[settle * samples :, :3]
     want = expected(answer, np.arange(samples) * turn / samples)

@@ -82,7 +82,7 @@ def test_tones_in_their_bands():
     levels = np.asarray(band_levels(found, octave_bands()))
     np.testing.assert_allclose(levels[9], noise.level(3.0 / np.sqrt(2)))
     total = noise.level(total_root_mean_square(found))
-    np.testing.assert_allclose(noise.combined(levels[1:]), total)
+    np.testing.assert_allclose(noise.combine_levels(levels[1:]), total)
 
 
 @pytest.mark.parametrize("window", [None, Hann()], ids=["none", "Hann"])
@@ -201,7 +201,7 @@ def test_derivatives_of_bands():
 
     def loudest(y):
         levels = band_levels(spectrum(y, 0.16, SHAFT), bands)
-        return noise.combined(levels)
+        return noise.combine_levels(levels)
 
     slope = jax.grad(loudest)(y) @ way
     step = 1e-5

@@ -27,7 +27,7 @@ def test_accelerations_of_the_printed_levels():
 def test_combined_octave_levels_match_paper_totals():
     bands = np.array(list(MEASURED.values()), dtype=float)
     assert bands.shape == (7, len(NORM))
-    sums = noise.combined(np.array([NORM, *bands], dtype=float))
+    sums = noise.combine_levels(np.array([NORM, *bands], dtype=float))
     want = [79.59, 77.26, 77.75, 77.74, 78.02, 77.16, 76.89, 76.91]
     np.testing.assert_allclose(sums, want, atol=5e-3)  # printed digits
     printed = [TOTAL["serial"], *(TOTAL[name] for name in MEASURED)]
@@ -36,15 +36,15 @@ def test_combined_octave_levels_match_paper_totals():
 
 def test_sums_of_levels():
     np.testing.assert_allclose(
-        noise.combined(np.array([70.0, 70.0])), 70 + 10 * np.log10(2.0)
+        noise.combine_levels(np.array([70.0, 70.0])), 70 + 10 * np.log10(2.0)
     )
-    np.testing.assert_allclose(noise.combined(np.array([61.0])), 61.0)
+    np.testing.assert_allclose(noise.combine_levels(np.array([61.0])), 61.0)
     # Sizes whose powers overflow, and silence beside sound.
     np.testing.assert_allclose(
-        noise.combined(np.array([[5000.0, 5000.0], [LOWEST_LEVEL, 40.0]])),
+        noise.combine_levels(np.array([[5000.0, 5000.0], [LOWEST_LEVEL, 40.0]])),
         [5000 + 10 * np.log10(2.0), 40.0],
     )
-    assert np.isnan(noise.combined(np.array([np.nan, 40.0])))
+    assert np.isnan(noise.combine_levels(np.array([np.nan, 40.0])))
 
 
 def test_level_at_and_near_zero():
@@ -73,7 +73,7 @@ def test_another_reference():
 
 def test_derivatives_of_levels():
     def loudness(parts):
-        return noise.combined(noise.level(noise.acceleration_of(parts)))
+        return noise.combine_levels(noise.level(noise.acceleration_of(parts)))
 
     parts = np.array([60.0, 71.0, 68.0])
     way, step = np.array([0.3, -1.0, 0.7]), 1e-4

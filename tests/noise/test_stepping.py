@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tolerances import DIFFERENCE
 
-from bearingjax.noise.dynamics.stepping import HELD, REACH, stepped
+from bearingjax.noise.dynamics.stepping import HELD, REACH, step_motion
 
 STEPS, SAMPLES = 64, 3 * REACH
 
@@ -20,7 +20,7 @@ def swinging():
         omega2 = (2.0 * jnp.pi * frequency) ** 2
         start = jnp.array([1.0]), jnp.array([0.0])
         step = jnp.asarray(1.0 / STEPS)
-        moved = stepped(lambda x, v, t: -omega2 * x, start, step, STEPS, SAMPLES)
+        moved = step_motion(lambda x, v, t: -omega2 * x, start, step, STEPS, SAMPLES)
         # From when on the start, before which all is zero, counts no more.
         return moved.acceleration[REACH:, 0] / omega2, moved.motion[REACH:, 0]
 

@@ -71,7 +71,7 @@ def name_of(monkeypatch, store):
             raise Named(name)
         return function(*given[0], **given[1])  # such as a rating, while it is read
 
-    monkeypatch.setattr(programs, "_kept", name)
+    monkeypatch.setattr(programs, "_run_kept", name)
 
     def call(scene, *settings):
         with pytest.raises(Named) as found:
@@ -400,7 +400,7 @@ def test_stored_program_failing_to_run_is_recompiled(kept, monkeypatch):
         raise jax.errors.JaxRuntimeError("NOT_FOUND: Function")
 
     with monkeypatch.context() as here:
-        here.setattr(programs, "_loaded", lambda place, name: broken)
+        here.setattr(programs, "_load", lambda place, name: broken)
         assert kept()
     assert not kept()
 

@@ -14,11 +14,11 @@ from tolerances import DIFFERENCE, ROUNDING
 import bearingjax as bj
 from bearingjax.optimise import design_numbers
 from bearingjax.optimise.design_problem import Bound, Problem, Run
-from bearingjax.optimise.optimise import _missed, verdict
+from bearingjax.optimise.optimise import _most_violated, verdict
 from bearingjax.optimise.search import SearchOutcome
 from bearingjax.optimise.smooth import smooth_maximum, smooth_minimum
 from bearingjax.optimise.trials import Trial, Trials, optimality
-from bearingjax.optimise.variable import changed
+from bearingjax.optimise.variable import with_numbers
 from bearingjax.statics import SolveOptions
 
 PROFILE = "bearing.roller_profile."
@@ -72,7 +72,7 @@ def play(lower=0.0, upper=40e-6, start=None):
 @pytest.fixture(scope="module")
 def wanted(straight, one_case):
     """Stiffness in uy at a clearance of 15 µm."""
-    element = changed(straight, {PLAY: 15e-6})
+    element = with_numbers(straight, {PLAY: 15e-6})
     tilts = {"gx": 0.0, "gy": 0.0}
     solution = bj.solve_load(element, one_case.load[0], prescribed=tilts)
     return float(solution.stiffness[7, 7])
@@ -408,13 +408,13 @@ def test_numbers_of_a_design_and_their_change(fujiwara):
     numbers = design_numbers(fujiwara)
     assert float(numbers[PROFILE + "end_drop"]) == 9e-6
     assert float(numbers["bearing.material.density"]) == 7850.0
-    new = changed(fujiwara, {PROFILE + "end_drop": 7e-6, PLAY: 1e-6})
+    new = with_numbers(fujiwara, {PROFILE + "end_drop": 7e-6, PLAY: 1e-6})
     assert float(new.bearing.roller_profile.end_drop) == 7e-6
     assert float(new.bearing.roller_profile.load_factor) == 1.5
     assert float(new.bearing.radial_internal_clearance) == 1e-6
     assert jax.tree.structure(new) == jax.tree.structure(fujiwara)
     with pytest.raises(ValueError, match="`crowned_fraction` is 1.2"):
-        changed(fujiwara, {PROFILE + "crowned_fraction": 1.2})
+        with_numbers(fujiwara, {PROFILE + "crowned_fraction": 1.2})
 
 
 def test_rows_of_a_set_change_together():
@@ -425,7 +425,7 @@ def test_rows_of_a_set_change_together():
     element = bj.BearingElement(bj.BearingSet.back_to_back(row, 0.017))
     paths = [f"bearing.rows.{k}.bearing.contact_angle" for k in (0, 1)]
     assert set(paths) <= set(design_numbers(element))
-    new = changed(element, dict.fromkeys(paths, 0.5))
+    new = with_numbers(element, dict.fromkeys(paths, 0.5))
     assert all(float(r.bearing.contact_angle) == 0.5 for r in new.bearing.rows)
 
 
@@ -566,4 +566,4 @@ def test_missed_bound_is_shown_with_its_unit():
     problem.bounds, problem.measures = (bound,), (bj.optimise.PeakPressure(),)
     best = Trial(np.zeros(1), 1.0, None, np.array([-20.9648]), None)
     told = "; peak pressure is 2196 MPa, above its bound 100 MPa"
-    assert _missed(problem, best) == told
+    assert _most_violated(problem, best) == told

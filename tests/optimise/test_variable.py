@@ -8,7 +8,7 @@ import registry
 
 import bearingjax as bj
 from bearingjax.optimise import design_numbers
-from bearingjax.optimise.variable import changed
+from bearingjax.optimise.variable import with_numbers
 
 
 def special():
@@ -67,16 +67,16 @@ def test_element_made_anew_is_the_same(name):
     numbers = design_numbers(element)
     assert len(numbers) >= 6
     for values in (numbers, {path: float(x) for path, x in numbers.items()}):
-        assert eqx.tree_equal(changed(element, values), element)
+        assert eqx.tree_equal(with_numbers(element, values), element)
     for path, value in numbers.items():
-        assert eqx.tree_equal(changed(element, {path: value}), element), path
+        assert eqx.tree_equal(with_numbers(element, {path: value}), element), path
 
 
 @pytest.mark.parametrize("name", elements())
 def test_one_number_changes_alone_and_designs_stack(name):
     element = elements()[name]
     path, value = list(design_numbers(element).items())[-1]
-    other = changed(element, {path: 1.0001 * value})
+    other = with_numbers(element, {path: 1.0001 * value})
     before, after = design_numbers(element), design_numbers(other)
     assert [p for p in before if before[p] != after[p]] == (
         [path] if value != 0 else []

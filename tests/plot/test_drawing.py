@@ -13,7 +13,7 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import plot
-from bearingjax.plot.drawings.dimension import magnification, quantity, spread
+from bearingjax.plot.drawings.dimension import magnification, quantity, spread_labels
 from bearingjax.plot.drawings.drawing import IN_WORDS
 from bearingjax.plot.drawings.face_drawing import DEVIATIONS
 from bearingjax.plot.drawings.set_drawing import arrangement_view
@@ -277,8 +277,8 @@ def test_magnification_is_a_round_number():
 
 
 def test_labels_spread_to_where_there_is_room():
-    at = spread([0.5, 0.5, 0.5], [0.1, 0.2, 0.1])
+    at = spread_labels([0.5, 0.5, 0.5], [0.1, 0.2, 0.1])
     np.testing.assert_allclose(at, [0.35, 0.5, 0.65], rtol=ROUNDING)
-    at = spread([0.0, 0.9, 1.0], [0.2, 0.2, 0.2])
+    at = spread_labels([0.0, 0.9, 1.0], [0.2, 0.2, 0.2])
     np.testing.assert_allclose(at, [0.1, 0.7, 0.9], rtol=ROUNDING)
-    assert np.diff(spread([0.1] * 9, [0.2] * 9)).min() > 0.1  # reduced
+    assert np.diff(spread_labels([0.1] * 9, [0.2] * 9)).min() > 0.1  # reduced

@@ -10,7 +10,7 @@ from tolerances import DIFFERENCE, PUBLISHED, SOLVER
 
 import bearingjax as bj
 from bearingjax.rotor import AbstractSupport
-from bearingjax.rotor.linear.critical import _missed
+from bearingjax.rotor.linear.critical import _count_missed
 
 # Method 002, section 002.4: angle, c_r [1e8 N/m], c_a [1e7 N/m], radial f, axial f,
 # forward critical [Hz].
@@ -72,7 +72,7 @@ def test_critical_speeds_lie_on_campbell_diagram():
     point = jnp.stack([rate, critical.speed], axis=1)
     for found, missed in (([1, 1, 1, 1], 0), ([1, 0, 1, 1], 1)):
         found = jnp.array(found, dtype=bool)
-        assert eqx.filter_jit(_missed)(rotor, found, point) == missed
+        assert eqx.filter_jit(_count_missed)(rotor, found, point) == missed
     # Dampers that all but lock the supports: still all of them, each once, and within
     # what the dampers still give way.
     locked = bj.rotor.critical_speeds(friswell(1e6, 0.8e6, 6e4), count=4)

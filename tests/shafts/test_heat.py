@@ -191,7 +191,7 @@ def test_solve_heat_of_constant_losses(monkeypatch, untyped):
     def evaluated(system, network, rise):
         return made, jnp.zeros((5, 5)), state
 
-    monkeypatch.setattr(heat, "_evaluated", evaluated)
+    monkeypatch.setattr(heat, "_evaluate", evaluated)
     found = solve_heat(spindle(mounting=None), network())
     rises = np.linalg.solve(np.asarray(network().conductance()), made)
     for got, wanted in (

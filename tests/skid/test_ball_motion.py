@@ -24,9 +24,9 @@ from bearingjax.skid.ball_motion import (
     BallState,
     kinetic_energy,
     rates,
+    residual_moments,
     sliding,
     tractions,
-    unbalanced,
 )
 from bearingjax.skid.loaded import loaded_ball
 from bearingjax.skid.model import Oil
@@ -188,7 +188,7 @@ def test_rates_of_free_ball_keep_angular_momentum(ball):
 def test_rates_and_forces_agree(ball):
     for state, speed in motions():
         pulls = tractions(ball, Newtonian(), sliding(ball, state, speed))
-        moment, force = unbalanced(ball, state, pulls, jnp.asarray(1.0))
+        moment, force = residual_moments(ball, state, pulls, jnp.asarray(1.0))
         change = rates(ball, state, pulls, jnp.asarray(1.0))
         mass = float(ball.mass * ball.pitch_radius)
         np.testing.assert_allclose(mass * change.orbit, force, rtol=1e-12)

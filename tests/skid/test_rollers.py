@@ -20,10 +20,10 @@ from bearingjax.skid.roller_motion import (
     RollerState,
     kinetic_energy,
     rates,
+    residual_moments,
     rolling,
     sliding,
     tractions,
-    unbalanced,
 )
 
 ROLLERS, PLACES = 7, 56
@@ -121,7 +121,7 @@ def test_power(roller, law):
         torque = pulls.ring_torque
         rings = -(torque[0] * speed.outer + torque[1] * speed.inner)
         other = pull * roller.pitch_radius * state.orbit
-        spinning, orbiting = unbalanced(roller, pulls, pull)
+        spinning, orbiting = residual_moments(roller, pulls, pull)
         held = spinning - roller.moment * (change.spin + change.orbit)
         pushed = orbiting - roller.mass * roller.pitch_radius * change.orbit
         return rings + other, stored, pulls.heat, held, pushed

@@ -18,7 +18,7 @@ from bearingjax.element import azimuths
 from bearingjax.lubrication import iso_vg
 from bearingjax.statics import load_result, warnings
 from bearingjax.statics.solution import failure_message
-from bearingjax.statics.warning import counted, sizes
+from bearingjax.statics.warning import sentences_of_cases, sizes
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -272,7 +272,9 @@ def test_solve_load_batch_equals_single_solutions(bearing):
             size = np.abs(np.where(np.isfinite(stacked), stacked, 0.0)).max()
             close = np.allclose(value, stacked, 1e-6, 1e-7 * size, equal_nan=True)
             assert close, (what, name)
-    assert warnings(batch) == counted(jax.tree.map(np.asarray, together["warnings"]))
+    assert warnings(batch) == sentences_of_cases(
+        jax.tree.map(np.asarray, together["warnings"])
+    )
     for function in (
         lambda s: bj.friction_torque(s, 2e-5),
         lambda s: bj.films(s, iso_vg(68.0), 340.0),

@@ -19,7 +19,7 @@ from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
 from bearingjax.statics.warning_sizes import (
     idle_numbers,
-    listed,
+    number_ranges,
     travel_error,
     unloaded_rows,
 )
@@ -80,7 +80,7 @@ def test_balls_out_of_the_load_zone_are_not_lifted(deep):
     fast = solved(deep, [0, -50.0, 0, 0, 0, 0], bj.Speed(inner=2000.0))
     (told,) = (t for t in bj.warnings(fast) if t.startswith("lifted off"))
     lifted = np.flatnonzero(np.asarray(fast.lifted))
-    assert told.endswith(f"largest load: balls {listed(lifted)}")
+    assert told.endswith(f"largest load: balls {number_ranges(lifted)}")
     # On both sides of the share that counts.
     top = float(slow.contact_load.max())
     for share, count in ((0.049, 0), (0.051, np.asarray(slow.lifted).sum())):
@@ -479,9 +479,9 @@ def test_balls_beyond_the_bottom_of_their_groove():
         assert bool(texts) is told
     load = np.asarray(s.contact_load)
     loaded = np.flatnonzero(load[:, 1] > 0.05 * load.max())
-    assert f"inner raceway: balls {listed(loaded)};" in texts[0]
+    assert f"inner raceway: balls {number_ranges(loaded)};" in texts[0]
 
 
 def test_numbers_in_a_row_are_listed_by_their_ends():
-    assert listed(np.array([0, 1, 2, 10, 11, 13])) == "0 to 2, 10, 11, 13"
-    assert listed(np.array([4])) == "4"
+    assert number_ranges(np.array([0, 1, 2, 10, 11, 13])) == "0 to 2, 10, 11, 13"
+    assert number_ranges(np.array([4])) == "4"

@@ -304,10 +304,10 @@ def test_spectrum_page_fits_of_scene():
 
 
 def test_labels_of_many_settings_say_how_many_are_left_out():
-    from bearingjax.plot.life import _named
+    from bearingjax.plot.life import _name_case
 
     words = [f"number {k} of many 12 mm" for k in range(9)]
-    lines = _named(3, words, 13).splitlines()
+    lines = _name_case(3, words, 13).splitlines()
     assert max(map(len, lines)) <= 13 and len(lines) <= 8
     assert lines[:3] == ["3", "number 0 of", "many 12 mm"] and lines[-1] == "and 6 more"
-    assert _named(3, words[:3], 30).splitlines() == ["3", *words[:3]]
+    assert _name_case(3, words[:3], 30).splitlines() == ["3", *words[:3]]

@@ -18,7 +18,7 @@ from bearingjax.files import shipped_scenes
 from bearingjax.files.quantity import kind_of
 from bearingjax.numerics.units import unit_of
 from bearingjax.optimise import design_numbers
-from bearingjax.optimise.variable import changed
+from bearingjax.optimise.variable import with_numbers
 from bearingjax.studies.optimise.read_optimise import scene_numbers
 from bearingjax.studies.optimise.read_shaft_optimise import (
     read_optimisation,
@@ -89,7 +89,7 @@ class TestRuns(Runs):
 def test_command_finds_the_clearance_of_a_stiffness(run, written, undrawn, tmp_path):
     done, numbers, paths = written("clearance")
     found = bj.solve_load(
-        changed(read_scene(CLEARANCE).element, {f"bearing.{PLAY}": 15e-6}),
+        with_numbers(read_scene(CLEARANCE).element, {f"bearing.{PLAY}": 15e-6}),
         [0, -3e3, 0, 0, 0, 0],
         free=["uy"],
     ).stiffness[7, 7]

@@ -6,7 +6,7 @@ from pages import missing_on_page
 
 from bearingjax.report import Column, Grid, Origin, Report, report_page
 from bearingjax.report.html_report import flat
-from bearingjax.report.report_model import DEGREES, labelled
+from bearingjax.report.report_model import DEGREES, labelled_facts
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_grid_text_wraps_long_words_below_themselves():
 def test_report_text_and_page_hold_the_same():
     report = Report(
         {
-            "First": ["<said> once", labelled([("power", "2 W & more")])],
+            "First": ["<said> once", labelled_facts([("power", "2 W & more")])],
             "Empty": [],
             "Second": [Grid([Column("x < y", [1.0, 2.0], "m")], "of all")],
         },

@@ -15,7 +15,7 @@ from bearingjax.cases.sweep_table import (
     case_columns,
     left_out,
     read,
-    restored,
+    restore_outputs,
     write,
     write_columns,
 )
@@ -186,7 +186,7 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
     write(Sweep(table.cases, outputs, "inner"), place, designs)
     known = read(place)
     resume.check_asked(place, known, {**designs, **case_columns(table.cases)}, 8)
-    again = restored(known, outputs)
+    again = restore_outputs(known, outputs)
     for name, values in outputs.items():
         np.testing.assert_array_equal(again[name], values)
 
@@ -211,12 +211,12 @@ def test_resume_restores_omitted_zero_columns(tmp_path):
     wanted = [f"displacement_inner_{name}" for name in ("uy [m]", "gy [rad]")]
     given = ["Fy [N]", "prescribed_gy [rad]", "inner_speed [rad/s]"]
     assert list(known) == [*given, "result", *wanted]
-    again = restored(known, outputs, left_out(sweep))
+    again = restore_outputs(known, outputs, left_out(sweep))
     for name, values in outputs.items():
         np.testing.assert_array_equal(again[name], values)
     del known["displacement_inner_uy [m]"]
     with pytest.raises(ValueError, match="no column 'displacement_inner_uy"):
-        restored(known, outputs, left_out(sweep))
+        restore_outputs(known, outputs, left_out(sweep))
 
 
 def test_interrupted_while_the_table_is_written(

@@ -104,7 +104,7 @@ class ConjugateGradients(AbstractPressureSolver):
             displacement,
             _energy(problem, pressure, displacement),
             touching,
-            *_judged(problem, pressure, displacement, touching),
+            *_judge(problem, pressure, displacement, touching),
             direction=jnp.zeros_like(pressure),
             fall=jnp.ones((), pressure.dtype),
             follows=jnp.asarray(False),
@@ -119,7 +119,7 @@ class ConjugateGradients(AbstractPressureSolver):
         rest = jnp.where(touching, state.distance, 0.0)
         steepest = rest
         if self.preconditioned:
-            steepest = projected(problem, touching, rest)
+            steepest = projected_pressure(problem, touching, rest)
         fall = jnp.sum(area * rest * steepest)
         # The published update; that of Polak and Ribière does not pay here.
         share = jnp.where(state.follows & ~jnp.any(enters), fall / state.fall, 0.0)
@@ -138,12 +138,12 @@ class ConjugateGradients(AbstractPressureSolver):
         def all_leave():
             least = 0.01 * jnp.max(state.pressure)
             weight = jnp.where(touching, jnp.maximum(state.pressure, least), 0.0)
-            pressure = _balanced(problem, state.pressure - whole, weight)
+            pressure = _balance(problem, state.pressure - whole, weight)
             displacement = problem.influence(pressure)
             energy = _energy(problem, pressure, displacement)
             lower = (energy < state.energy) | (state.steps < _BOLD)
             lower = lower & (
-                _unbalanced(problem, pressure) <= 10.0 * _rounding(pressure.dtype)
+                _imbalance(problem, pressure) <= 10.0 * _rounding(pressure.dtype)
             )
             # As far as the first that leaves.
             ratio = state.pressure / jnp.where(leaves, whole, 1.0)
@@ -164,7 +164,7 @@ class ConjugateGradients(AbstractPressureSolver):
             displacement,
             _energy(problem, pressure, displacement),
             touching,
-            *_judged(problem, pressure, displacement, touching),
+            *_judge(problem, pressure, displacement, touching),
             direction=direction,
             fall=jnp.where(fall > 0, fall, 1.0),
             follows=~clipped,
@@ -210,7 +210,7 @@ def rigid_fit(problem: Problem, touching, distance) -> Float[Array, " k"]:
     return solve_symmetric(matrix, jnp.einsum("kmn,mn->k", weighted, distance))
 
 
-def projected(problem: Problem, touching, rest) -> Float[Array, "m n"]:
+def projected_pressure(problem: Problem, touching, rest) -> Float[Array, "m n"]:
     """Estimated pressure in contact, without load and moment [Pa]."""
     modes = problem.modes
     if not modes.shape[0]:
@@ -224,7 +224,7 @@ def projected(problem: Problem, touching, rest) -> Float[Array, "m n"]:
     return estimates[0] - jnp.einsum("k,kmn->mn", part, estimates[1:])
 
 
-def _judged(problem, pressure, displacement, touching):
+def _judge(problem, pressure, displacement, touching):
     """Distance of the surfaces, rigid motion, residual."""
     distance = displacement + problem.given
     rigid = rigid_fit(problem, touching, distance)
@@ -238,7 +238,7 @@ def _judged(problem, pressure, displacement, touching):
     # Before anything is loaded, what is to be displaced is the measure.
     scale = jnp.where(loaded, mean, jnp.max(overlap))
     residual = jnp.where(off == 0, 0.0, off / jnp.where(scale > 0, scale, 1.0))
-    return distance, rigid, jnp.maximum(residual, _unbalanced(problem, pressure))
+    return distance, rigid, jnp.maximum(residual, _imbalance(problem, pressure))
 
 
 def _energy(problem, pressure, displacement):
@@ -253,7 +253,7 @@ def _missing(problem, pressure):
     return problem.goal.astype(pressure.dtype) - sums
 
 
-def _unbalanced(problem, pressure):
+def _imbalance(problem, pressure):
     """The largest of `_missing`, over the load [1]."""
     if problem.load is None:
         return jnp.zeros((), pressure.dtype)
@@ -262,7 +262,7 @@ def _unbalanced(problem, pressure):
     return lack / jnp.where(loaded, problem.load, 1.0)
 
 
-def _balanced(problem, pressure, weight):
+def _balance(problem, pressure, weight):
     """Nearest pressure, nowhere negative, with load and moment as given.
 
     Near by the sum of change²/weight: a projection, Newton's method in the two
@@ -315,7 +315,7 @@ def _start(problem):
         slope = off * (3.0 - off * off) / (1.0 - off * off)
         y = problem.grid.y / problem.lever
         pressure = pressure * jnp.exp(slope * y - jnp.abs(slope))[None]
-        pressure = _balanced(problem, pressure, pressure)
+        pressure = _balance(problem, pressure, pressure)
     return pressure, jnp.ones_like(given, bool)
 
 

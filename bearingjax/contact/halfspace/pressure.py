@@ -22,7 +22,7 @@ from ...numerics.types import Count, Flag, Scalar, as_real
 from .gradients import (
     AbstractPressureSolver,
     ConjugateGradients,
-    projected,
+    projected_pressure,
     rigid_fit,
 )
 from .grid import Grid
@@ -132,7 +132,7 @@ class ContactSolution(eqx.Module):
 
         Where it carries more than a thousandth of the load there, it is not solved.
         """
-        return _truncated(self.grid, self.touching)
+        return _is_truncated(self.grid, self.touching)
 
     @property
     def cells(self) -> tuple[Count, Count]:
@@ -204,7 +204,7 @@ def solve_pressure(
     problem = Problem(
         influence, gap, real(load), real(approach), real(moment), real(tilt)
     )
-    solution = _solved(problem, ConjugateGradients() if solver is None else solver)
+    solution = _solve(problem, ConjugateGradients() if solver is None else solver)
     if not throw:
         return solution
     return raise_unless_converged(
@@ -213,7 +213,7 @@ def solve_pressure(
 
 
 @program
-def _solved(problem, solver):
+def _solve(problem, solver):
     dtype = problem.gap.dtype
     pressed = batched_loop.run(solver.loop(), stop_gradient(problem))
     result = pressed.result
@@ -239,7 +239,7 @@ def _solved(problem, solver):
     )
 
 
-def _truncated(grid, touching):
+def _is_truncated(grid, touching):
     sides = touching[-1:]
     if not grid.symmetric:
         sides = jnp.concatenate([sides, touching[:1]])
@@ -380,13 +380,13 @@ def _linear(problem, touching, wanted, carried):
         length = fall / jnp.where(stiff > 0, stiff, 1.0)
         pressure = pressure - length * direction
         rest, _ = fitted(rest - length * pushed)
-        steepest = projected(problem, touching, rest)
+        steepest = projected_pressure(problem, touching, rest)
         new = jnp.sum(area * rest * steepest)
         direction = steepest + new / jnp.where(fall > 0, fall, 1.0) * direction
         return pressure, rest, direction, new, first, steps + 1
 
     rest, _ = rest_of(start)
-    steepest = projected(problem, touching, rest)
+    steepest = projected_pressure(problem, touching, rest)
     fall = jnp.sum(area * rest * steepest)
     # Round-off of what `start` displaces bounds what can be had.
     scale = jnp.sum(area * jnp.abs(start * problem.influence(start)))

@@ -18,7 +18,7 @@ from ..rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from ..search_hints import SearchHints
 from .ball_contacts import Contacts, GrooveGeometry, along_normals, angles, bent
 from .ball_geometry import AbstractBallGeometry
-from .ball_inertia import BallInertia, Carried, carried
+from .ball_inertia import BallInertia, Carried, carried_loads
 from .ball_speed import BallKinematics
 
 _N, _D = EXPONENT
@@ -137,7 +137,7 @@ class Ball(AbstractRollingElement):
         power = positive_power(contacts.approach, _N, _D)
         load = self.constants(contacts) * power
         directions = self.grooves.directions(contacts, load, self.diameter)
-        return carried(self.ball_inertia, *directions)
+        return carried_loads(self.ball_inertia, *directions)
 
     def motion(self, rings, x):
         return self.geometry.motion(rings, x)

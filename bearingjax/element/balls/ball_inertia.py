@@ -90,7 +90,9 @@ def ball_inertia(
     )
 
 
-def carried(t: BallInertia, normals: Float[Array, "2 2"], loads: Float[Array, "2"]):
+def carried_loads(
+    t: BallInertia, normals: Float[Array, "2 2"], loads: Float[Array, "2"]
+):
     """Orbit, rotation and tractions of a ball at given contact angles.
 
     Args:

@@ -21,7 +21,7 @@ from ...element.frame import FREEDOMS
 from ...element.inertia import Speed, inertia_force, mass_and_inertia
 from ...element.roller import Roller
 from ...element.rolling_element import RingMotion
-from ...numerics.linear import combined
+from ...numerics.linear import combine_rows
 from ...numerics.types import Scalar
 
 
@@ -53,11 +53,13 @@ class DynamicElement(eqx.Module):
         Args:
             outer, inner: (u, v, θ) of each ring [m, rad].
         """
-        return RingMotion(combined(self.own.T, outer), combined(self.own.T, inner))
+        return RingMotion(
+            combine_rows(self.own.T, outer), combine_rows(self.own.T, inner)
+        )
 
     def in_section(self, forces: Float[Array, " h"]) -> Float[Array, "3"]:
         """Return forces on (u, v, θ) of a ring, from those in its axes [N, N m]."""
-        return combined(self.own, forces)
+        return combine_rows(self.own, forces)
 
     def unknowns(
         self, rings: RingMotion, place: Float[Array, " n"]

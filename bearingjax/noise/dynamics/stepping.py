@@ -63,7 +63,7 @@ class Stepped(NamedTuple):
     end: tuple[Vector, Vector]
 
 
-def stepped(
+def step_motion(
     acceleration: Callable[[Vector, Vector, Any], Vector],
     start: tuple[Vector, Vector],
     step: Scalar,

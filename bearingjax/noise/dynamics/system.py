@@ -157,7 +157,7 @@ class NoiseSystem(eqx.Module):
         return (
             deviations
             if self.growth is None
-            else _grown(time / self.growth) * deviations
+            else _smooth_step(time / self.growth) * deviations
         )
 
     def positions(
@@ -398,7 +398,7 @@ class _Pressed(NamedTuple):
     land: Scalar | None
 
 
-def _grown(share):
+def _smooth_step(share):
     """Return a smooth step from 0 at 0 to 1 at 1, with two derivatives."""
     t = jnp.clip(share, 0.0, 1.0)
     return t * t * t * (10.0 - t * (15.0 - 6.0 * t))

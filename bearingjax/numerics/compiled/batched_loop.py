@@ -265,7 +265,7 @@ _batched_loop.multiple_results = True
 
 
 @_batched_loop.def_impl
-def _called(*leaves, task, **choices):
+def _call(*leaves, task, **choices):
     return jax.jit(functools.partial(task.program, **choices))(*leaves)
 
 
@@ -274,25 +274,25 @@ def _abstract(*leaves, task, flags, count):
     return task.avals(count)
 
 
-def _lowered(*leaves, task, **choices):
+def _lower(*leaves, task, **choices):
     return task.program(*leaves, **choices)
 
 
 def _lowered_wide(*leaves, task, **choices):
     slots, idle = (WIDER * n for n in task.slots)
-    return _lowered(
+    return _lower(
         *leaves, task=dataclasses.replace(task, slots=(slots, idle)), **choices
     )
 
 
-mlir.register_lowering(_batched_loop, mlir.lower_fun(_lowered))
+mlir.register_lowering(_batched_loop, mlir.lower_fun(_lower))
 for _platform in ("cuda", "rocm"):
     mlir.register_lowering(
         _batched_loop, mlir.lower_fun(_lowered_wide), platform=_platform
     )
 
 
-def _batched(leaves, axes, *, task, flags, count):
+def _batch(leaves, axes, *, task, flags, count):
     """One more axis of `vmap` makes more lanes of the same kind."""
     more = [axis is not None for axis in axes]
     leaves = [
@@ -320,7 +320,7 @@ def _batched(leaves, axes, *, task, flags, count):
     return out, [0] * len(out)
 
 
-batching.primitive_batchers[_batched_loop] = _batched
+batching.primitive_batchers[_batched_loop] = _batch
 
 
 def _in_lanes(task, flags, leaves, count):
@@ -333,10 +333,10 @@ def _in_lanes(task, flags, leaves, count):
 
     if count < 2 * task.slots[0]:
         return jax.vmap(lambda mine: task.loop.run(given(mine)))(own)
-    return _queued(task, given, own, count)
+    return _run_queue(task, given, own, count)
 
 
-def _queued(task, given, own, count):
+def _run_queue(task, given, own, count):
     """All problems, some at a time; see the top of this file."""
     loop, (width, spare) = task.loop, task.slots
     one = [jax.ShapeDtypeStruct(a.shape[1:], a.dtype) for a in own]

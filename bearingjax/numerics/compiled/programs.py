@@ -132,7 +132,7 @@ def program(function: F | None = None, *, quick: bool = False, level: int = 0) -
         name = _name(call, given) if _can_keep(given) else None
         if name is None:
             return jitted(*args, **kwargs)
-        return _kept(name, function, given, OPTIONS[level] if quick else {})
+        return _run_kept(name, function, given, OPTIONS[level] if quick else {})
 
     return call  # pyright: ignore
 
@@ -153,7 +153,7 @@ def call_stored(function: Callable, *arguments: Any) -> Any:
     name = _name(function, given) if _can_keep(given) else None
     if name is None:
         return function(*arguments)
-    return _kept(name, function, given, OPTIONS[0])
+    return _run_kept(name, function, given, OPTIONS[0])
 
 
 def _can_keep(given: tuple) -> bool:
@@ -176,7 +176,7 @@ def _as_array(leaf: Any) -> Any:
     return jnp.asarray(leaf) if isinstance(leaf, np.ndarray | np.generic) else leaf
 
 
-def _kept(name: str, function: Callable, given: tuple, options: dict) -> Any:
+def _run_kept(name: str, function: Callable, given: tuple, options: dict) -> Any:
     """Result of a program at hand, of one that was kept, or of one made now.
 
     Args:
@@ -186,7 +186,7 @@ def _kept(name: str, function: Callable, given: tuple, options: dict) -> Any:
         options: Options of the compiler.
     """
     assert _STORE.folder is not None  # checked by `_can_keep`
-    flat = _flattened(lambda args, kwargs: function(*args, **kwargs), given)
+    flat = _flatten_function(lambda args, kwargs: function(*args, **kwargs), given)
     run = _STORE.at_hand.get(name)
     if run is not None:
         return run(flat[1])
@@ -200,14 +200,14 @@ def _first_run(
     """Load or compile a program, and run it; return the program and its result.
 
     Args:
-        flat: From `_flattened`.
+        flat: From `_flatten_function`.
         name: Name of its file.
         folder: As in `keep_programs`.
         options: Options of the compiler.
     """
     function, arrays, outputs = flat
-    with _opened(folder) as place:
-        kept = _loaded(place, name)
+    with _open_folder(folder) as place:
+        kept = _load(place, name)
         if kept is not None:
             # A program of another jaxlib may lack a function.
             with contextlib.suppress(jax.errors.JaxRuntimeError):
@@ -215,25 +215,25 @@ def _first_run(
         lowered = jax.jit(function).lower(*arrays)
         libraries = _libraries(lowered)
         keep = place is not None and all(x.startswith("lapack_") for x in libraries)
-        compiled = _compiled(lowered, options, keep)
+        compiled = _compile(lowered, options, keep)
         if keep:
             devices = max((len(array.devices()) for array in arrays), default=1)
             more = len(arrays), outputs[0], bool(libraries), devices
             _keep(place, name, compiled, *more)
 
     def run(arrays):
-        return _filled(outputs[0], compiled(*arrays))
+        return _fill(outputs[0], compiled(*arrays))
 
     return run, run(arrays)
 
 
-def _flattened(
+def _flatten_function(
     function: Callable, arguments: tuple
 ) -> tuple[Callable, list[jax.Array], list]:
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function, arguments: As in `called`.
+        function, arguments: As in `call_stored`.
 
     Returns:
         The function; its arguments; a list that takes up, when the function is
@@ -266,7 +266,7 @@ def _libraries(lowered) -> set[str]:
     return set(re.findall(r"custom_call @(\w+)", lowered.as_text()))
 
 
-def _filled(outputs: Any, values: list) -> Any:
+def _fill(outputs: Any, values: list) -> Any:
     def is_place(leaf):
         return isinstance(leaf, _Place)
 
@@ -285,7 +285,7 @@ _ANEW = {
 from there lacks functions when it is kept once more (jaxlib 0.10)."""
 
 
-def _compiled(lowered, options: dict, keep: bool):
+def _compile(lowered, options: dict, keep: bool):
     """Compile, once in this process; kept programs bypass JAX's own cache."""
     before = {name: jax.config.values[name] for name in _ANEW}
     for name, value in _ANEW.items() if keep else ():
@@ -352,7 +352,7 @@ def _processor() -> str:
 
 
 @contextlib.contextmanager
-def _opened(folder: Path) -> Iterator[int | None]:
+def _open_folder(folder: Path) -> Iterator[int | None]:
     """A folder that the user alone can write, as a file descriptor; else `None`."""
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -379,7 +379,7 @@ def is_private(status: os.stat_result) -> bool:
     return kind and status.st_uid == os.geteuid() and not status.st_mode & shared
 
 
-def _loaded(place: int | None, name: str):
+def _load(place: int | None, name: str):
     """The kept program as a function of a list of arrays, or `None`."""
     if place is None:
         return None
@@ -401,7 +401,7 @@ def _loaded(place: int | None, name: str):
             )
     except Exception:  # a damaged file may raise anything
         return None
-    return lambda arrays: _filled(program.outputs, run(*arrays))
+    return lambda arrays: _fill(program.outputs, run(*arrays))
 
 
 @contextlib.contextmanager

@@ -29,10 +29,10 @@ def structure(tree: Any) -> str:
         UnknownStructure: For classes from outside the package, functions that are not
             found by their name, and all other objects.
     """
-    return _named(tree, False)
+    return _name(tree, False)
 
 
-def _named(value: Any, static: bool) -> str:
+def _name(value: Any, static: bool) -> str:
     if value is None or type(value) in (bool, int, float, str):
         return repr(value)
     if isinstance(value, jax.Array) and not static:
@@ -49,16 +49,16 @@ def _named(value: Any, static: bool) -> str:
     if isinstance(value, enum.Enum):
         return f"{_place(type(value))}.{value.name}"
     if type(value) in (tuple, list):
-        inner = ",".join(_named(one, static) for one in value)
+        inner = ",".join(_name(one, static) for one in value)
         return f"{type(value).__name__}({inner})"
     if isinstance(value, tuple) and hasattr(value, "_fields"):
-        inner = ",".join(_named(one, static) for one in value)
+        inner = ",".join(_name(one, static) for one in value)
         return f"{_place(type(value))}({inner})"
     if type(value) is dict:
         if not all(type(key) is str for key in value):
             raise UnknownStructure("dict whose keys are not all text")
         # As JAX does, whatever the order in which they were written.
-        inner = ",".join(f"{k!r}:{_named(value[k], static)}" for k in sorted(value))
+        inner = ",".join(f"{k!r}:{_name(value[k], static)}" for k in sorted(value))
         return f"dict({inner})"
     if isinstance(value, type) or hasattr(value, "__qualname__"):
         return _place(value)
@@ -74,7 +74,7 @@ def _module(value: Any, static: bool) -> str:
     if not vars(value).keys() <= names:
         raise UnknownStructure(f"{type(value).__qualname__} with more than its fields")
     inner = ",".join(
-        f"{field.name}={_named(getattr(value, field.name), _is_static(field, static))}"
+        f"{field.name}={_name(getattr(value, field.name), _is_static(field, static))}"
         for field in fields
     )
     return f"{_place(type(value))}({inner})"

@@ -10,7 +10,7 @@ from .dimension import (
     Label,
     angle,
     between,
-    fit,
+    fit_view,
     label,
     magnification,
     put_labels,
@@ -44,7 +44,7 @@ def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size) -> None:
     ]
     if isinstance(bearing, SelfAligningBallRow):
         labels.append(_offset(ax, bearing, -corners[0, 1]))
-    fit(ax, np.concatenate([corners, [one.at for one in labels]]), size)
+    fit_view(ax, np.concatenate([corners, [one.at for one in labels]]), size)
     put_labels(ax, labels, size)
     ax.set_title("Axial section, to scale; ring bodies schematic")
 
@@ -169,7 +169,7 @@ def ball_clearance_view(ax: Axes, bearing, size) -> None:
         for name, outwards in (("outer", 1.0), ("inner", -1.0)):
             line = contour(bearing, name) + [0.0, outwards * (times - 1.0) * gap]
             ax.plot(*line.T, color=COLOURS[name], linewidth=1.2, zorder=4)
-    fit(ax, rings, size, (0.9, 0.96))
+    fit_view(ax, rings, size, (0.9, 0.96))
     text = label(bearing, "radial_internal_clearance")
     if bearing.radial_internal_clearance is None:
         follows = isinstance(bearing, DeepGrooveBallBearing) and bearing.contact_angle

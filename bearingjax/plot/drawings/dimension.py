@@ -79,7 +79,7 @@ def width(text: str) -> float:
     return max(line.get_extents().width for line in lines) / 72.0
 
 
-def fit(ax: Axes, points, size, middle=(0.48, 0.86)) -> None:
+def fit_view(ax: Axes, points, size, middle=(0.48, 0.86)) -> None:
     """Set the limits of a view, to scale, with its parts in the middle.
 
     Args:
@@ -102,7 +102,7 @@ def put_labels(ax: Axes, labels: list[Label], size, column=0.25):
     """Write labels in columns at both sides of a view, each with a line to its point.
 
     Args:
-        ax: Axes after `fit`.
+        ax: Axes after `fit_view`.
         labels: The labels; those of points further left are on the left.
         size: Width and height of the axes [inch].
         column: Width of a column, share of the axes.
@@ -113,7 +113,7 @@ def put_labels(ax: Axes, labels: list[Label], size, column=0.25):
     for side, part in (("right", order[:cut]), ("left", order[cut:])):
         part = sorted(part, key=lambda one: float(one.at[1]))
         edge = column if side == "right" else 1.0 - column
-        part, places = _uncrossed(part, (low, high), ax.get_xlim(), edge, size[1])
+        part, places = _uncross_labels(part, (low, high), ax.get_xlim(), edge, size[1])
         for one, place in zip(part, places, strict=True):
             ax.annotate(
                 one.text,
@@ -135,7 +135,7 @@ def put_labels(ax: Axes, labels: list[Label], size, column=0.25):
             )
 
 
-def _uncrossed(labels, low_high, left_right, edge, height):
+def _uncross_labels(labels, low_high, left_right, edge, height):
     """Labels from below, and their places, so that no two lines to points cross."""
     corner = np.array([left_right[0], low_high[0]])
     whole = np.array([np.ptp(left_right), np.ptp(low_high)])
@@ -143,7 +143,7 @@ def _uncrossed(labels, low_high, left_right, edge, height):
     for _ in range(len(labels) + 1):
         ats = [(np.asarray(one.at, dtype=float) - corner) / whole for one in labels]
         lines = np.array([1 + one.text.count("\n") for one in labels])
-        places = spread([at[1] for at in ats], (LINE * lines + _FREE) / height)
+        places = spread_labels([at[1] for at in ats], (LINE * lines + _FREE) / height)
         starts = [np.array([edge, place]) for place in places]
         crossing = [
             k
@@ -187,7 +187,7 @@ def middle_only(ax: Axes, column: float) -> None:
         artist.set_clip_path(room)
 
 
-def spread(wanted, heights) -> np.ndarray:
+def spread_labels(wanted, heights) -> np.ndarray:
     """Return centres of labels in a column from 0 to 1, near given ones.
 
     Args:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...design import AbstractBearing
 from ..style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, Axes, axes_or_new
-from .dimension import AXIS, angle, between, fit, label
+from .dimension import AXIS, angle, between, fit_view, label
 
 DEVIATIONS = {
     "azimuth_deviation": (180.0 / np.pi, "deg"),
@@ -32,7 +32,7 @@ def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
     if bearing.azimuth_deviation is not None:
         azimuth = azimuth + np.asarray(bearing.azimuth_deviation)
     centres = pitch * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
-    shape = _seen(bearing)
+    shape = _axial_outline(bearing)
     for turn in azimuth:
         way = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
         place = way[0] * pitch + shape @ way
@@ -65,7 +65,7 @@ def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
             centres[np.argmax(centres.sum(axis=1))],
         ),
     }
-    fit(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.78, 0.84))
+    fit_view(ax, np.array([[-1.0, -1.0], [1.0, 1.0]]) * reach, size, (0.78, 0.84))
     for corner, (text, at) in corners.items():
         _in_corner(ax, corner, text, at)
     for end, name in (((1.12 * reach, 0.0), "x"), ((0.0, 1.12 * reach), "y")):
@@ -75,7 +75,7 @@ def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
     ax.set_title(f"{word.capitalize()}s, seen against z, to scale")
 
 
-def _seen(bearing):
+def _axial_outline(bearing):
     """Outline of a rolling element along the axis (point, 2), radial coordinate first,
     from its centre [mm]."""
     turn = np.linspace(0.0, 2.0 * np.pi, 60)

@@ -16,7 +16,7 @@ from .dimension import (
     Label,
     angle,
     between,
-    fit,
+    fit_view,
     label,
     magnification,
     middle_only,
@@ -58,7 +58,7 @@ def dimensioned_rollers(
         labels.append(Label("ribs: none", parts.axis[0]))
     # Names of radii are long.
     column = 0.29 if isinstance(bearing, AbstractBarrelBearing) else 0.25
-    fit(ax, np.concatenate(seen), size, (0.98 - 2.0 * column, 0.86))
+    fit_view(ax, np.concatenate(seen), size, (0.98 - 2.0 * column, 0.86))
     put_labels(ax, labels, size, column)
     ax.set_title("Axial section, to scale; ring bodies schematic")
 
@@ -158,7 +158,7 @@ def roller_clearance_view(
         if gap != 0.0:
             ends = (near, far) if gap > 0.0 else (far, near)
             squeeze(ax, ends[0], ends[1], 0.25 * parts.diameter)
-    fit(ax, corners, size, (0.8, 0.9))
+    fit_view(ax, corners, size, (0.8, 0.9))
     text = label(bearing, "radial_internal_clearance")
     quarter = 0.25e3 * float(bearing.radial_internal_clearance)
     share = "" if np.isclose(gap, quarter) else f", times {gap / quarter:.4g},"
@@ -221,7 +221,7 @@ def rib_view(
         Label(f"{label(rib, 'axial_gap')}{note}", 0.5 * (point + face)),
     ]
     around = np.array([[-1.0, -1.0], [1.0, 1.0]]) * 2.0 * reach + point
-    fit(ax, around, size, (0.98 - 2.0 * _RIB_COLUMN, 0.9))
+    fit_view(ax, around, size, (0.98 - 2.0 * _RIB_COLUMN, 0.9))
     middle_only(ax, _RIB_COLUMN)
     put_labels(ax, labels, size, _RIB_COLUMN)
     words = [f"ribs.{one}" for one in names]

@@ -10,7 +10,16 @@ from ...design import (
 )
 from ..style import INNER, SMALL, Axes
 from .ball_section import ball_row, row_position
-from .dimension import AXIS, LINE, between, fit, label, quantity, spread, width
+from .dimension import (
+    AXIS,
+    LINE,
+    between,
+    fit_view,
+    label,
+    quantity,
+    spread_labels,
+    width,
+)
 from .outline import section
 from .roller_section import roller_row
 
@@ -56,7 +65,7 @@ def arrangement_view(ax: Axes, bearing: BearingSet, turned: list[int], size) -> 
     deep = LINE * (lines + 1)
     below = deep * -(-len(texts) // across)
     corners = [(left, depth), (right, high + 0.15 * tall)]
-    fit(ax, corners, (size[0], size[1] - below), (0.76, 0.98))
+    fit_view(ax, corners, (size[0], size[1] - below), (0.76, 0.98))
     bottom, top = ax.get_ylim()
     ax.set_ylim(bottom - (top - bottom) * below / (size[1] - below), top)
     ax.set_box_aspect(size[1] / size[0])
@@ -65,7 +74,7 @@ def arrangement_view(ax: Axes, bearing: BearingSet, turned: list[int], size) -> 
     for m in range(0, len(order), across):
         part = order[m : m + across]
         wanted = [(outlines[k].mean(axis=0)[0] - start) / (stop - start) for k in part]
-        places = spread(wanted, np.full(len(part), block / size[0]))
+        places = spread_labels(wanted, np.full(len(part), block / size[0]))
         up = (below - deep * (m // across) - 0.5 * LINE) / size[1]
         for k, place in zip(part, places, strict=True):
             ax.text(

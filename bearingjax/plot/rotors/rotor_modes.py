@@ -40,7 +40,7 @@ def mode_shapes(
     axial = is_axial(found.shape)
     for lane, k in enumerate(chosen):
         whirl, colour = WHIRLS[0 if axial[k] else int(found.whirl[k])]
-        line, band = _drawn(np.asarray(found.shape[k]), axial[k])
+        line, band = _mode_lines(np.asarray(found.shape[k]), axial[k])
         base = len(chosen) - 1.0 - lane
         ax.axhline(base, color=GREY, lw=0.7, zorder=1, label="_rest")
         ax.fill_between(
@@ -73,7 +73,7 @@ def _percent(ratio):
     return f"{100.0 * float(np.where(np.abs(ratio) < 1e-9, 0.0, ratio)):.3g}"
 
 
-def _drawn(shape, axial):
+def _mode_lines(shape, axial):
     """Return line and half width of the band of a mode, at most one."""
     x, y, z = shape[:, 0], shape[:, 1], shape[:, 2]
     if axial:

@@ -84,7 +84,7 @@ def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
             radius = 0.5e3 * float(part.pitch_diameter)
             centre = np.array([z + turned * row_position(row), radius])
             for side in (1.0, -1.0):
-                ball_row(ax, part, _placed(sense, centre, side))
+                ball_row(ax, part, _place(sense, centre, side))
             outside = max(outside, centre[1] + 0.9e3 * float(part.ball_diameter))
             if part.is_one_sided:
                 _line_of_action(ax, float(part.free_contact_angle), sense, centre)
@@ -94,7 +94,7 @@ def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
     return outside
 
 
-def _placed(sense, centre, side):
+def _place(sense, centre, side):
     def place(points):
         there = centre + np.asarray(points) * np.array([sense, 1.0])
         return there * np.array([1.0, side])
@@ -105,7 +105,7 @@ def _placed(sense, centre, side):
 def _draw_rollers(ax, bearing, sense, at):
     parts = section(bearing)
     for side in (1.0, -1.0):
-        place = _placed(sense, at, side)
+        place = _place(sense, at, side)
         for name, ring in zip(RACEWAYS, parts.rings, strict=True):
             fill = towards_white(COLOURS[name], _LIGHT)
             ax.fill(*place(ring).T, facecolor=fill, edgecolor=COLOURS[name], zorder=3)

@@ -61,7 +61,7 @@ def stiffness_table(
     Warns:
         UserWarning: If nothing holds a direction at some speed, as without load.
     """
-    speeds, load = _checked(element, speeds, load, tilts, fixed_ring)
+    speeds, load = _check(element, speeds, load, tilts, fixed_ring)
     stiffness, result = _sweep(element, speeds, load, tilts, fixed_ring)
 
     def first_failure():
@@ -123,7 +123,7 @@ def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
     )
 
 
-def _checked(element, speeds, load, tilts, fixed_ring):
+def _check(element, speeds, load, tilts, fixed_ring):
     """Return checked speeds (speed,) and loads (speed, 6)."""
     name = "stiffness_table"
     SolveOptions(fixed_ring=fixed_ring).check(name)

@@ -136,14 +136,18 @@ def _critical(rotor, count):
     _, nodes = largest_real(nodes, matrices.length)
     nodes = jnp.where(found[:, None, None], nodes, jnp.nan)
     return CriticalSpeeds(
-        speed, whirl, -rate / size, nodes, _missed(fixed, found, stop_gradient(at))
+        speed,
+        whirl,
+        -rate / size,
+        nodes,
+        _count_missed(fixed, found, stop_gradient(at)),
     )
 
 
 def _search(rotor, count):
     """Run Newton's method from two sets of starts."""
     rest = rotor.linearised(0.0)
-    speed, shape = _undamped(rest, count)
+    speed, shape = _undamped_speeds(rest, count)
     there = speed > 0
     # Damped modes at a speed in the middle of these: forward and backward stand apart.
     middle = jnp.where(jnp.any(there), jnp.mean(speed, where=there), 1.0)
@@ -155,13 +159,13 @@ def _search(rotor, count):
     left = jnp.concatenate([shape, pairs.left])
     full = jnp.where(jnp.arange(len(speed)) < there.shape[0], 0.0, 1.0)
     start = jnp.where(speed[:, None] > 0, start, 1.0)
-    follow = jax.vmap(lambda *at: _followed(rotor, *at))
+    follow = jax.vmap(lambda *at: _follow(rotor, *at))
     point, right, left, change = follow(start, right, left, full)
     found = (speed > 0) & (change <= _SETTLED) & (point[:, 1] > 0)
     return found, point, right, left
 
 
-def _missed(rotor, found, point):
+def _count_missed(rotor, found, point):
     """Return the number of resonances passed by the speed but not found."""
     rate, speed = point.T
     last = (1.0 - 1e-6) * jnp.max(jnp.where(found, speed, 0.0))
@@ -194,7 +198,7 @@ def _once(found, point, right):
     return lax.fori_loop(0, found.shape[0], take, state)[0]
 
 
-def _undamped(matrices: RotorMatrices, count):
+def _undamped_speeds(matrices: RotorMatrices, count):
     """Return critical speeds without damping and their motions; 0 beyond the last one.
 
     In the modes at rest, of frequency ω, the problem is that of the matrix
@@ -228,7 +232,7 @@ def _undamped(matrices: RotorMatrices, count):
     return speed, motion.T
 
 
-def _followed(rotor, point, right, left, least):
+def _follow(rotor, point, right, left, least):
     """Run Newton's method with inverse iteration for both vectors, as damping rises.
 
     It rises with the third power of the steps, because strong dampers change the mode
@@ -249,7 +253,7 @@ def _followed(rotor, point, right, left, least):
         share = jnp.clip(((k + 1.0) / _RISING) ** 3, least, 1.0)
         new = _newton(rotor, point, right, left, share)
         change = jnp.max(jnp.abs(new - point)) / jnp.abs(new[1])
-        matrices = _damped(rotor.linearised(new[1]), share)
+        matrices = _with_damping(rotor.linearised(new[1]), share)
         right, left = _vectors(matrices, new, right, left)
         return new, right, left, change
 
@@ -257,7 +261,7 @@ def _followed(rotor, point, right, left, least):
     return lax.fori_loop(0, _RISING + _FULL, step, state)
 
 
-def _damped(matrices, share):
+def _with_damping(matrices, share):
     """Return the matrices with a share of the damping."""
     return eqx.tree_at(lambda m: m.damping, matrices, replace_fn=lambda c: share * c)
 
@@ -266,7 +270,7 @@ def _newton(rotor, point, right, left, share: Any = 1.0):
     """Make a Newton step of (Re λ, Ω) for wᵀP(λ, Ω)v = 0, λ = Re λ + iΩ."""
 
     def residual(point):
-        matrices = _damped(rotor.linearised(point[1]), share)
+        matrices = _with_damping(rotor.linearised(point[1]), share)
         value = left.conj() @ (matrices.dynamic_stiffness(lax.complex(*point)) @ right)
         return jnp.stack([value.real, value.imag])
 

@@ -140,7 +140,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
     """
     speed = as_real(speed)
     number("modes", "speed", speed, "rad/s")
-    found, driven = _modes(rotor, speed, _counted("modes", count))
+    found, driven = _modes(rotor, speed, _count("modes", count))
     if not is_traced(driven) and not is_traced(found.eigenvalue):
         _warn_of_growth(found, float(speed), np.asarray(driven))
     return found
@@ -156,7 +156,7 @@ def _modes(rotor, speed, count):
     unsymmetric = to_complex(0.5 * (fixed.stiffness - fixed.stiffness.T))
     work = jnp.sum((known.left.conj() @ unsymmetric) * known.right, axis=1)
     driven = jnp.where(own == 0, 0.0, -work / jnp.where(own == 0, 1.0, own)).real
-    return shown(pairs, matrices, speed), driven
+    return modes_of(pairs, matrices, speed), driven
 
 
 def _warn_of_growth(found, speed, driven):
@@ -210,7 +210,7 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
             the step; it may then change places with another one.
     """
     speeds = speed_list("campbell", speeds)
-    found, overlap = followed(rotor, speeds, _counted("campbell", count))
+    found, overlap = follow_modes(rotor, speeds, _count("campbell", count))
     if not is_traced(overlap):
         _warn_of_swaps(np.asarray(speeds), np.asarray(overlap))
     return found
@@ -241,7 +241,7 @@ def _warn_of_swaps(speeds, overlap):
 
 
 @program(quick=True)
-def followed(
+def follow_modes(
     rotor: Rotor, speeds: Float[Array, " speed"], count: int | None
 ) -> tuple[Modes, Float[Array, "speed mode"]]:
     """Return modes over speeds, and the least overlap of each between them.
@@ -259,7 +259,7 @@ def followed(
         """Return eigenpairs, their order by those before, and the overlaps."""
         there = fixed.linearised(speed)
         now = _biorthogonal(eigenpairs(there, None), there)
-        return now, *_matched(before, now, there)
+        return now, *_match(before, now, there)
 
     def follow(state, given):
         before, at = state
@@ -276,7 +276,9 @@ def followed(
             overlap = jnp.where(first, 1.0, overlap[:count])
             now = jax.tree.map(lambda leaf: leaf[order], now)
             short = jnp.abs(size) <= jnp.abs(way) / 2**_HALVINGS
-            crossed = (jnp.abs(size) > crossing) & _crossed(pairs, now, count) & ~first
+            crossed = (
+                (jnp.abs(size) > crossing) & _has_crossed(pairs, now, count) & ~first
+            )
             good = (jnp.all(overlap >= _ALIKE) & ~crossed) | short
             pairs = jax.tree.map(lambda a, b: jnp.where(good, a, b), now, pairs)
             least = jnp.where(good, jnp.minimum(least, overlap), least)
@@ -296,11 +298,11 @@ def followed(
     def show(pairs, speed):
         # Vectors have no derivative; eigenvalues have that of one Newton step.
         own = rotor.linearised(speed)
-        value = jax.vmap(lambda *pair: _refined(own, *pair))(
+        value = jax.vmap(lambda *pair: _refine(own, *pair))(
             pairs.value, pairs.right, pairs.left
         )
         pairs = eqx.tree_at(lambda p: p.value, pairs, value)
-        return shown(pairs, matrices, speed)
+        return modes_of(pairs, matrices, speed)
 
     return lax.map(lambda both: show(*both), (pairs, speeds)), overlap
 
@@ -331,7 +333,7 @@ def _biorthogonal(pairs, matrices):
     return eqx.tree_at(lambda p: p.left, pairs, left)
 
 
-def _matched(before, now, matrices):
+def _match(before, now, matrices):
     """Match each mode to one of the next speed; return their numbers and overlaps, of
     coincident modes those of their subspaces [1]."""
     shares = _products(before, now, matrices) * _products(now, before, matrices).T
@@ -345,7 +347,7 @@ def _matched(before, now, matrices):
     return order, jnp.where(swings, jnp.minimum(overlap, 1.0), 1.0)
 
 
-def _crossed(before, now, count):
+def _has_crossed(before, now, count):
     """Return whether the frequency of one of the first modes crosses another."""
     one, other = before.value.imag, now.value.imag
     gaps = (x[:count, None] - x[None, :] for x in (one, other))
@@ -409,7 +411,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
         return solve_any(to_complex(factor.T), unit, "upper").T
 
     right, left = vectors(right[:n, chosen]), vectors(left[n:, chosen])
-    value = jax.vmap(lambda *pair: _refined(matrices, *pair))(value, right, left)
+    value = jax.vmap(lambda *pair: _refine(matrices, *pair))(value, right, left)
     return Pairs(value, coincident, right, left)
 
 
@@ -443,7 +445,7 @@ def resonates(value: Complex[Array, "*mode"]) -> Bool[Array, "*mode"]:
     return jnp.abs(value.real) < value.imag
 
 
-def _refined(matrices, value, right, left):
+def _refine(matrices, value, right, left):
     """Make one Newton step of an eigenvalue, with its derivative."""
     left = left.conj()
     rates = to_complex(matrices.rates) @ right
@@ -457,7 +459,7 @@ def _refined(matrices, value, right, left):
     return jnp.where(value.imag > 0, refined, to_complex(refined.real))
 
 
-def shown(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
+def modes_of(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
     """Return `Modes` from eigenpairs.
 
     Args:
@@ -524,7 +526,7 @@ def speed_list(owner: str, speeds: Any) -> Float[Array, " speed"]:
     return speeds
 
 
-def _counted(owner, count):
+def _count(owner, count):
     count = as_count(count)
     if count is not None:
         whole(owner, "count", count)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...numerics.types import as_real
 from ..rotor import Rotor
-from .modes import Modes, followed, speed_list
+from .modes import Modes, follow_modes, speed_list
 
 _UNSTABLE = 1e-5
 """Negative damping ratio below which a mode is unstable, beyond the small unsymmetric
@@ -81,7 +81,7 @@ def _crossing(rotor, ends, before):
     level = 0.0 if _ratio(before) > 0 else _UNSTABLE
 
     def at(speed):
-        way, _ = followed(rotor, as_real(jnp.asarray([ends[0], speed])), None)
+        way, _ = follow_modes(rotor, as_real(jnp.asarray([ends[0], speed])), None)
         value = np.asarray(way.eigenvalue)
         return value[1, np.argmin(np.abs(value[0] - before))]
 

@@ -145,7 +145,7 @@ def backbone(
                 f"backbone: `{name}` is {number}; the system has {count} freedoms,"
                 f" from 0 to {count - 1}."
             )
-    found = _followed(system, as_real(peaks), freedom, method, mode)
+    found = _follow(system, as_real(peaks), freedom, method, mode)
     if not throw:
         return found
     return raise_unless_converged(
@@ -233,7 +233,7 @@ def _linear(system, rest, freedom, method, mode):
 
 
 @program
-def _followed(system, peaks, freedom, method, mode):
+def _follow(system, peaks, freedom, method, mode):
     fixed, size = stop_gradient(system), stop_gradient(system.scale[freedom])
     where = _at_rest(system)
     rest, growth = _linear(fixed, stop_gradient(where), freedom, method, mode)

@@ -130,7 +130,7 @@ def follow(
     positive("follow", "begin", begin, "rad/s")
     parameter, steps = parameter or Arclength(), steps or Steps()
     motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
-    found = _traced(system, method, motion, begin, end, parameter, steps, points)
+    found = _trace(system, method, motion, begin, end, parameter, steps, points)
     *every, count, refused, ending = jax.tree.map(np.asarray, found)
     at = BranchPoint(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
@@ -152,7 +152,7 @@ def follow(
 
 
 @program(quick=True, level=1)
-def _traced(system, method, motion, begin, end, parameter, steps, points) -> Traced:
+def _trace(system, method, motion, begin, end, parameter, steps, points) -> Traced:
     z, unit = method.unknowns(motion), system.reference_frequency
     return trace(
         system,
@@ -211,13 +211,13 @@ def _events(system, method, points: BranchPoint) -> tuple[Event, ...]:
     for kind, test in _TESTS.items():
         signs = np.sign([test(point) for point in every])
         for k in np.nonzero(signs[1:] * signs[:-1] < 0)[0]:
-            found = _located(system, method, every, int(k), kind, test)
+            found = _locate(system, method, every, int(k), kind, test)
             if found is not None:
                 events.append(found)
     return tuple(event for _, event in sorted(events, key=lambda found: found[0]))
 
 
-def _located(system, method, every, k, kind, test):
+def _locate(system, method, every, k, kind, test):
     """Locate an event: return its position along the branch, in points, and itself."""
     # Imported here, which keeps the import of the package fast.
     from scipy.optimize import brentq

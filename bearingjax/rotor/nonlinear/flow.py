@@ -132,7 +132,7 @@ def _solve(at, begin, slopes, change):
     return -found.reshape(change.shape)
 
 
-def _solved(at, begin, guess):
+def _solve_stages(at, begin, guess):
     """Return accelerations of the stages (stage, n), and `_slopes` there.
 
     They have the derivatives of the stages; NaN if Newton's method did not find them.
@@ -185,7 +185,7 @@ def _solved(at, begin, guess):
     return second, slopes
 
 
-def _ended(at, u, rate, second):
+def _end_motion(at, u, rate, second):
     """Return the motion at the end of a step, or its changes."""
     parts = at.twice[-1], at.once[-1]
     moved, turned = (jnp.tensordot(part, second, 1) for part in parts)
@@ -214,9 +214,9 @@ def integrate(
 
     def step(state, phase):
         u, rate, guess = state
-        second, _ = _solved(at, StepStart(system, ratio, phase, u, rate), guess)
+        second, _ = _solve_stages(at, StepStart(system, ratio, phase, u, rate), guess)
         guess = jnp.broadcast_to(stop_gradient(second[-1]), guess.shape)
-        return (*_ended(at, u, rate, second), guess), jnp.concatenate([u, rate])
+        return (*_end_motion(at, u, rate, second), guess), jnp.concatenate([u, rate])
 
     u, rate = jnp.split(start, 2)
     guess = jnp.zeros((_STAGES, *u.shape), u.dtype)
@@ -240,13 +240,13 @@ def flow_slopes(
     def step(state, phase):
         u, rate, du, drate, guess = state
         begin = StepStart(system, ratio, phase, u, rate)
-        second, slopes = _solved(at, begin, guess)
+        second, slopes = _solve_stages(at, begin, guess)
         change = slopes[0] @ (du[None] + at.nodes[:, None, None] * drate[None])
         change = change + slopes[1] @ drate
         change = change.at[..., -1:].add(slopes[2])
-        grown = _ended(at, du, drate, _solve(at, begin, slopes, change))
+        grown = _end_motion(at, du, drate, _solve(at, begin, slopes, change))
         guess = jnp.broadcast_to(stop_gradient(second[-1]), guess.shape)
-        return (*_ended(at, u, rate, second), *grown, guess), None
+        return (*_end_motion(at, u, rate, second), *grown, guess), None
 
     u, rate = jnp.split(start, 2)
     unit = jnp.eye(len(start), len(start) + 1, dtype=start.dtype)

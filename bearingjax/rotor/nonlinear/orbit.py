@@ -212,7 +212,7 @@ def solve_orbit(
         SolveError: If it was not found and `throw`.
     """
     frequency, motion = as_real(frequency), beginning(system, start)
-    orbit = _solved(system, frequency, method, motion, max_steps)
+    orbit = _solve(system, frequency, method, motion, max_steps)
     if not throw:
         return orbit
     return raise_unless_converged(
@@ -242,7 +242,7 @@ def beginning(
 
 
 @program
-def _solved(system, frequency, method, motion, max_steps):
+def _solve(system, frequency, method, motion, max_steps):
     fixed, ratio = stop_gradient(system), frequency / system.reference_frequency
     begin = jnp.append(method.unknowns(stop_gradient(motion)), stop_gradient(ratio))
     hold = along_frequency(begin.shape[0] - 1, begin.dtype)

@@ -71,7 +71,7 @@ def peak(
     points = [
         jnp.append(jnp.asarray(branch.unknowns[i]), ratio[i]) for i in (k - 1, k, k + 1)
     ]
-    orbit = _found(system, jnp.stack(points), freedom, method)
+    orbit = _find(system, jnp.stack(points), freedom, method)
     if not throw:
         return orbit
     return raise_unless_converged(
@@ -97,7 +97,7 @@ def _size(system, freedom, method):
 
 
 @program
-def _found(system, points, freedom, method):
+def _find(system, points, freedom, method):
     fixed = stop_gradient(system)
     size = _size(fixed, freedom, method)
 

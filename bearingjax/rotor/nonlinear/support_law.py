@@ -54,7 +54,7 @@ def _around(count: int):
     return np.cos(azimuth), np.sin(azimuth)
 
 
-def _stored(constant, approach):
+def _hertz_energy(constant, approach):
     """Return the energy of Hertz contacts [J]."""
     return 0.4 * constant * jnp.sum(positive_power(approach, 5, 2))
 
@@ -73,7 +73,7 @@ class _Preloaded(NamedTuple):
     approach: Scalar
 
 
-def _preloaded(element: BearingElement, offset: Any) -> _Preloaded:
+def _preload(element: BearingElement, offset: Any) -> _Preloaded:
     bearing, offset = element.bearing, as_real(offset)
     if not isinstance(bearing, AbstractBallBearing) or len(bearing.grooves) != 2:
         raise TypeError(
@@ -129,7 +129,7 @@ class FixedAngle(AbstractSupportLaw):
             offset: Axial displacement of its inner ring under the preload, as in
                 `preload_offset` [m].
         """
-        constant, angle, approach = _preloaded(element, offset)
+        constant, angle, approach = _preload(element, offset)
         return cls(constant, angle, approach / jnp.sin(angle), element.bearing.n_balls)
 
     def potential(self, motion):
@@ -140,7 +140,7 @@ class FixedAngle(AbstractSupportLaw):
             for a, b in zip((x, y), _around(self.n_balls), strict=True)
         )
         axial = z + self.preload_displacement
-        return _stored(self.constant, radial * cosine + axial * sine)
+        return _hertz_energy(self.constant, radial * cosine + axial * sine)
 
     @eqx.filter_jit
     def preload(self) -> Scalar:
@@ -170,7 +170,7 @@ class MovingAngle(AbstractSupportLaw):
     @classmethod
     def of_bearing(cls, element: BearingElement, offset: Any) -> "MovingAngle":
         """The law of a ball bearing; arguments as in `FixedAngle.of_bearing`."""
-        constant, angle, approach = _preloaded(element, offset)
+        constant, angle, approach = _preload(element, offset)
         bearing = element.bearing
         distance = bearing.centre_distance
         return cls(constant, angle, approach, distance, bearing.n_balls)
@@ -185,7 +185,7 @@ class MovingAngle(AbstractSupportLaw):
         radial = radial + apart * jnp.cos(self.contact_angle)
         axial = z + apart * jnp.sin(self.contact_angle)
         length = jnp.sqrt(radial**2 + axial**2)
-        return _stored(self.constant, length - self.centre_distance)
+        return _hertz_energy(self.constant, length - self.centre_distance)
 
 
 class CubicExpansion(AbstractSupportLaw):

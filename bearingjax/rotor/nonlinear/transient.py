@@ -20,7 +20,7 @@ from ...design.checks import check, count, is_traced, one_of, positive
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.in_time import Options
-from ...numerics.in_time import integrated as in_time
+from ...numerics.in_time import integrate as in_time
 from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
@@ -112,7 +112,7 @@ def simulate(
     """
     positive("simulate", "duration", duration, "s")
     count("simulate", "n_times", n_times)
-    options = checked("simulate", tolerance, max_steps, derivatives)
+    options = check_settings("simulate", tolerance, max_steps, derivatives)
     table = as_frequency_table("simulate", frequency, duration, end_frequency)
     if times is None:
         times = as_real(duration) * as_real(np.linspace(0.0, 1.0, n_times))
@@ -122,7 +122,7 @@ def simulate(
         rising = bool(np.all(np.diff(each) > 0)) and inside
         check("simulate", "times", rising, "rising from 0 to `duration`", each, "s")
     begin, times = beginning("simulate", system, start), as_real(times)
-    found = _simulated(system, table, begin, force, times, as_real(duration), options)
+    found = _simulate(system, table, begin, force, times, as_real(duration), options)
     if not throw:
         return found
     return raise_unless_converged(
@@ -174,7 +174,7 @@ def poincare(
     return simulate(system, duration, table, start=start, times=times, **options)
 
 
-def checked(owner: str, tolerance, max_steps, derivatives) -> Options:
+def check_settings(owner: str, tolerance, max_steps, derivatives) -> Options:
     """Return checked settings of an integration."""
     positive(owner, "tolerance", tolerance, "")
     count(owner, "max_steps", max_steps)
@@ -200,8 +200,8 @@ def beginning(
 
 
 @program
-def _simulated(*given):
-    return moved(*given)
+def _simulate(*given):
+    return simulate_traced(*given)
 
 
 def _message(found):
@@ -221,7 +221,7 @@ def _message(found):
     )
 
 
-def moved(
+def simulate_traced(
     system: AbstractVibratingSystem,
     table: FrequencyTable,
     start: Start,

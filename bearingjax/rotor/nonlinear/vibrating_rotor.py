@@ -69,7 +69,7 @@ class VibratingRotor(AbstractVibratingSystem):
         angle = self.rotation * phase
         each = map_parts(
             lambda support, moved, rate: through_jacobian(
-                support, moved, rate, speed, angle, function=_supported
+                support, moved, rate, speed, angle, function=_support
             ),
             self.supports,
             self.rows @ q,
@@ -134,9 +134,9 @@ def vibrating_rotor(
     given = linear, as_real(scale), turning, modes, there
     if isinstance(loads, RotorLoads):
         loads.check(rotor)
-        own, rows, sizes, load = _assembled(*given, loads)
+        own, rows, sizes, load = _assemble(*given, loads)
     else:
-        own, rows, sizes, _ = _assembled(*given, None)
+        own, rows, sizes, _ = _assemble(*given, None)
         # A function of all motions, or of the freedoms of a rigid shaft.
         load = loads if modes is None else _Reduced(loads, own.motions)
     return VibratingRotor(
@@ -156,7 +156,7 @@ def vibrating_rotor(
 
 
 @program(quick=True)
-def _assembled(rotor, scale, speed, modes, about, loads) -> tuple[Any, ...]:
+def _assemble(rotor, scale, speed, modes, about, loads) -> tuple[Any, ...]:
     """Return matrices without supports, support rows, scales, and the load if known."""
     speed = jnp.zeros_like(scale) if speed is None else speed
     own = matrices_about(rotor, speed, about, supported=False)
@@ -181,7 +181,7 @@ def _sizes(rotor, matrices, size):
     return jnp.concatenate([body] * bodies + [body[:N_HOUSING]] * housings)
 
 
-def _supported(support, motion, velocity, speed, angle):
+def _support(support, motion, velocity, speed, angle):
     return support.force(motion, velocity, speed, angle)
 
 

@@ -14,7 +14,7 @@ from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.types import Scalar, as_real
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
-from .transient import Start, beginning, checked, moved
+from .transient import Start, beginning, check_settings, simulate_traced
 
 
 class Waterfall(eqx.Module):
@@ -72,7 +72,7 @@ def waterfall(
     real_numbers("waterfall", "frequencies", frequencies, "a row of numbers")
     each = as_real(frequencies)
     check("waterfall", "frequencies", each > 0, "above zero throughout", each, "rad/s")
-    options = checked("waterfall", tolerance, max_steps, "reverse")
+    options = check_settings("waterfall", tolerance, max_steps, "reverse")
     begin = beginning("waterfall", system, start)
     return _spectra(system, each, begin, options, tuple(numbers.values()))
 
@@ -92,7 +92,9 @@ def _spectra(system, frequencies, start, options, numbers):
     def one(frequency):
         table = as_frequency_table("waterfall", frequency)
         times = phases / frequency
-        found = moved(system, table, start, None, times, end / frequency, options)
+        found = simulate_traced(
+            system, table, start, None, times, end / frequency, options
+        )
         lines = jnp.fft.rfft(found.displacement, axis=0)
         return weight * jnp.abs(lines), found.result
 

@@ -12,7 +12,14 @@ import jax
 import jax.numpy as jnp
 
 from ...element.balls.ball_speed import ball_mass
-from ..ball_motion import LEAST_LOAD, BallState, rolling, sliding, tractions, unbalanced
+from ..ball_motion import (
+    LEAST_LOAD,
+    BallState,
+    residual_moments,
+    rolling,
+    sliding,
+    tractions,
+)
 from ..loaded import contact_loads, loaded_ball
 from .orbit_search import AbstractOrbit
 from .steady_results import Power, SteadySkid, driving
@@ -50,7 +57,7 @@ class BallOrbit(AbstractOrbit):
 
     def local(self, body, rolls, own, slope, common):
         state, _, pulls, drag = self.forces(body, rolls, own)
-        moment, force = unbalanced(body, state, pulls, drag)
+        moment, force = residual_moments(body, state, pulls, drag)
         change = state.orbit * slope
         rotation = change[:3].at[2].add(change[3])
         radius = 0.5 * body.diameter

@@ -339,7 +339,7 @@ def with_derivatives(
         result: `Result` code of all that was solved.
     """
     return unless_failed(
-        lambda orbit: attach_by(_unbalanced, y, orbit, _correction),
+        lambda orbit: attach_by(_residual, y, orbit, _correction),
         (orbit,),
         result == int(Result.CONVERGED),
     )
@@ -385,7 +385,7 @@ def _solve(matrix, right):
 def _init(orbit):
     y, n = orbit.start, orbit.start.size
     none = jnp.zeros_like(y), jnp.ones_like(y), jnp.zeros((n, n), y.dtype)
-    nothing = Evaluated(*none, _unsolved(orbit))
+    nothing = Evaluated(*none, _unsolved_motion(orbit))
     return _State(y, nothing, jnp.full_like(y[0], _FIRST), jnp.full((), -1, jnp.int32))
 
 
@@ -439,15 +439,15 @@ def _finish(orbit, state):
 
 def _trivial_result(orbit):
     y, none = orbit.start, jnp.zeros((), jnp.int32)
-    return y, jnp.zeros_like(y[0]), none, none, _unsolved(orbit)
+    return y, jnp.zeros_like(y[0]), none, none, _unsolved_motion(orbit)
 
 
-def _unsolved(orbit):
+def _unsolved_motion(orbit):
     (row,) = orbit.model.element.model(orbit.carried).rows
     return dataclasses.replace(row, azimuth=orbit.solved_at[0]).unsolved()
 
 
-def _unbalanced(y, orbit):
+def _residual(y, orbit):
     return orbit.unbalanced(y)
 
 

@@ -21,10 +21,10 @@ from ..loaded import loaded_rollers
 from ..roller_motion import (
     LoadedRoller,
     RollerState,
+    residual_moments,
     rolling,
     sliding,
     tractions,
-    unbalanced,
 )
 from .orbit_search import AbstractOrbit
 from .steady_results import Power, SteadyRollerSkid, driving
@@ -49,7 +49,7 @@ class RollerOrbit(AbstractOrbit):
 
     def local(self, body, rolls, own, slope, common):
         state, _, pulls, drag = self.forces(body, own[0], common[0])
-        moment, force = unbalanced(body, pulls, drag)
+        moment, force = residual_moments(body, pulls, drag)
         radius = 0.5 * body.diameter
         out = (moment - body.moment * state.orbit * slope[0]) / radius
         size = jnp.sum(jnp.abs(pulls.force)) + jnp.abs(drag)

@@ -28,7 +28,7 @@ from ..motion import SkidState, Surroundings, equations_of_motion
 from ..ring_speed import SpeedTable
 
 
-def tabulated(
+def tabulate_loads(
     model: SkidModel, solution: BallSolution | RollerSolution, speed: Speed, places: int
 ) -> LoadTable:
     """Tabulate the loads of balls or rollers around a solved bearing.
@@ -71,9 +71,9 @@ def surroundings(
         gravity: Against y [m/s²].
         places: Places of the table. Static.
     """
-    table = tabulated(model, solution, load_speed, places)
+    table = tabulate_loads(model, solution, load_speed, places)
     centre = jnp.zeros((*solution.azimuth.shape, 0))
-    return _begun(model, table, solution, speed, gravity, centre, jnp.zeros(0))
+    return _begin(model, table, solution, speed, gravity, centre, jnp.zeros(0))
 
 
 @program(quick=True)
@@ -105,10 +105,10 @@ def balanced_surroundings(
         ellipses = contact_ellipses(model.bearing, law, cosines)
     known = prepared, ellipses
     loads = BalancedLoads(model, *known, balance, load, *stop_gradient((unit, size)))
-    return _begun(model, loads, solution, speed, gravity, centre, ring)
+    return _begin(model, loads, solution, speed, gravity, centre, ring)
 
 
-def _begun(model, loads, solution, speed, gravity, centre, ring):
+def _begin(model, loads, solution, speed, gravity, centre, ring):
     density = model.lubricant.density.at(model.temperature)
     environment = Surroundings(model, loads, speed, solution.azimuth, density, gravity)
     return environment, rolling_start(environment, centre, ring)

@@ -41,7 +41,7 @@ class Integrated(NamedTuple):
     result: Int[Array, ""]
 
 
-def integrated(
+def integrate_motion(
     environment: Surroundings,
     start: SkidState,
     times: Float[Array, " time"],
@@ -61,7 +61,7 @@ def integrated(
     from .rosenbrock import Rodas
 
     system = _system(environment, start)
-    found = in_time.integrated(
+    found = in_time.integrate(
         lambda time, y, system: system.rates(time, y),
         system,
         system.packed(start),

@@ -35,7 +35,7 @@ from ..orbits.steady_results import driving
 from ..ring_speed import SpeedTable, as_table
 from .beginning import balanced_surroundings, surroundings
 from .history import SkidHistory, SkidRollerHistory
-from .integration import Options, integrated
+from .integration import Options, integrate_motion
 
 _PLACES = 96
 """Number of places of the table."""
@@ -238,8 +238,8 @@ def _taken_up(start, rolling):
 
 @program
 def _skid(environment, solution, start, times, duration, options):
-    moved = integrated(environment, start, times, duration, options)
-    found: Any = jax.vmap(partial(_reported, environment))(times, moved.state)
+    moved = integrate_motion(environment, start, times, duration, options)
+    found: Any = jax.vmap(partial(_report, environment))(times, moved.state)
     q = jnp.broadcast_to(solution.displacement, (times.shape[0], 12))
     result = jnp.maximum(moved.result, solution.result)
     if isinstance(environment.loads, BalancedLoads):
@@ -260,7 +260,7 @@ def _skid(environment, solution, start, times, duration, options):
     )
 
 
-def _reported(environment, time, state):
+def _report(environment, time, state):
     """Return the entries of a history at one instant."""
     balls = each_ball(environment, time, state)
     powers, energy = jax.tree.map(

@@ -142,13 +142,13 @@ def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
         value: Value as written in the scene.
     """
     own = as_keys({key: entry.design.get(key)})[key]
-    return _same(value, own) or _same(value, _filled(entry).get(key))
+    return _same(value, own) or _same(value, _fill_defaults(entry).get(key))
 
 
 _FILLED: dict[str, dict[str, Any]] = {}
 
 
-def _filled(entry: CatalogueEntry) -> dict[str, Any]:
+def _fill_defaults(entry: CatalogueEntry) -> dict[str, Any]:
     """Return the keys of a bearing with all defaults, as echoed in the JSON."""
     if entry.designation not in _FILLED:
         table = Table(as_keys(entry.design), entry.designation)

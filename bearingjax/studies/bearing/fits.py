@@ -110,7 +110,7 @@ def fits_at_speed(fits: Fits | None, speed: float) -> Fits | None:
     return dataclasses.replace(fits, conditions=given)
 
 
-def installed(
+def install(
     drawing: BearingElement[Any],
     preload: float | None,
     fits: Fits | None,

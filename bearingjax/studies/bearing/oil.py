@@ -24,7 +24,7 @@ from ...numerics.types import as_array
 from ...report.json_output import to_json
 from ...statics.solution import Solution
 from .catalogue_keys import FromCatalogue
-from .read_lubricant import LubricantKeys, described
+from .read_lubricant import LubricantKeys, describe_oil
 
 
 @dataclasses.dataclass(frozen=True)
@@ -133,7 +133,7 @@ def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
     friction = facts.friction
     lines = [
         f"{oil.name}, {oil.supply.replace('_', ' ')}, at"
-        f" {described(oil.lubricant, oil.temperature)}"
+        f" {describe_oil(oil.lubricant, oil.temperature)}"
     ]
     if friction is None:
         lines.append("friction torque: no constants of Palmgren's formula are known")

@@ -33,7 +33,7 @@ def read_bearing(
     Args:
         table: Table of the bearing.
         parent: The table that holds its `set`, if there is one.
-        found: From `designated`.
+        found: From `read_designation`.
 
     Returns:
         Bearing or set, and its preload force [N] or `None`.
@@ -41,7 +41,7 @@ def read_bearing(
     Raises:
         SceneError: For what is missing, unknown or not allowed.
     """
-    table = _completed(table, found)
+    table = _complete(table, found)
     bearing = _read_row(table, found)
     if "set" not in parent:
         return with_both_rows(table, bearing), None
@@ -59,7 +59,7 @@ def _read_row(
     return row if found is None else found[1].add_published(row)
 
 
-def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
+def read_designation(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     """Expand the `designation` of a [bearing]; `None` without one.
 
     Args:
@@ -92,7 +92,7 @@ def designated(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
     return merge_catalogue_keys(entry, given)
 
 
-def _completed(
+def _complete(
     table: Table, found: tuple[dict[str, Any], FromCatalogue] | None
 ) -> Table:
     """Return the keys of a bearing, with those of its designation."""
@@ -154,8 +154,8 @@ class RowKeys(SpringKeys):
         bearing = common
         if "bearing" in self.table:
             own = self.table.table("bearing")
-            found = designated(own)
-            bearing = _read_row(_completed(own, found), found)
+            found = read_designation(own)
+            bearing = _read_row(_complete(own, found), found)
         if shares_rings(bearing):
             problem = f"a {two_row_name(bearing)} bearing is no row of a set"
             raise self.table.error("bearing", problem)

@@ -17,7 +17,7 @@ from ...design import (
 )
 from ...design.keywords import BALLS, PROFILES, ROLLERS, both_rows
 from ...element import RINGS
-from ...files.table import Table, written, written_numbers
+from ...files.table import Table, format_number, written_numbers
 
 SPHERES = "spherical_roller", "spherical_thrust_roller"
 """Rollers in an outer raceway whose radius may stand for the pitch diameter."""
@@ -116,7 +116,7 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
     }
     if derived:
         values["pitch_diameter"] = pitch_on_sphere(**values)
-        table.fill("pitch_diameter", written(values["pitch_diameter"], "m"))
+        table.fill("pitch_diameter", format_number(values["pitch_diameter"], "m"))
     raceways = table.table("raceway_profile")
     for ring in RINGS:
         values[f"{ring}_raceway_profile"] = read_profile(raceways.table(ring))

@@ -361,7 +361,7 @@ def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
     """Return the diameters of the seats and of the housing."""
     found = {"housing_diameter": keys.housing_diameter}
     for key in ("bore", "outside_diameter"):
-        found[key] = _catalogued(keys, key, key, catalogue)
+        found[key] = _given_or_catalogue(keys, key, key, catalogue)
     size, most = found["housing_diameter"], _THICKEST * found["outside_diameter"]
     if size > most:
         given, allowed = (scene_number(x, "length") for x in (size, most))
@@ -370,7 +370,7 @@ def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
     return found
 
 
-def _catalogued(keys: FitKeys, key: str, name: str, catalogue) -> float:
+def _given_or_catalogue(keys: FitKeys, key: str, name: str, catalogue) -> float:
     """Return a length of [fit], or of the catalogue."""
     own = getattr(catalogue.entry, name, None) if catalogue else None
     return keys.table.quantity(key, "length", *([] if own is None else [own]))
@@ -408,7 +408,7 @@ def _width(keys: FitKeys, bearing, catalogue, taper: float) -> dict[str, float]:
         problem = "is missing: the width of a ring, B; between the rows of a set rings"
         cure = "grow over this length, beyond it shaft and housing"
         raise keys.table.error(key, f"{problem} {cure}")
-    return {key: _catalogued(keys, key, "width", catalogue)}
+    return {key: _given_or_catalogue(keys, key, "width", catalogue)}
 
 
 def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:

@@ -195,7 +195,7 @@ class LubricantKeys(Keys):
             return Exponential(**values)
 
 
-def described(lubricant: Lubricant, temperature: float) -> str:
+def describe_oil(lubricant: Lubricant, temperature: float) -> str:
     """Describe viscosity, pressure coefficient and density of an oil.
 
     Args:

@@ -34,7 +34,7 @@ class MotionKeys(Keys):
     gz: float | None = scene_key("turn about the axis", "angle")
 
 
-def _named(example: str) -> str:
+def _by_name(example: str) -> str:
     return f"name the components, {{ {example} }}"
 
 
@@ -47,10 +47,10 @@ class OperatingKeys(Keys):
         default="outer",
     )
     load: LoadKeys | None = scene_key(
-        "load on the moving ring", hint=_named('Fy = "-4 kN"')
+        "load on the moving ring", hint=_by_name('Fy = "-4 kN"')
     )
     prescribed: MotionKeys | None = scene_key(
-        "displacements at which the moving ring is held", hint=_named('uz = "10 um"')
+        "displacements at which the moving ring is held", hint=_by_name('uz = "10 um"')
     )
     free: tuple[str, ...] | None = scene_key(
         "freedoms that may move",

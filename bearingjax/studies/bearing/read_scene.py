@@ -24,11 +24,11 @@ from ...numerics.compiled.programs import call_stored
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE
 from .catalogue_keys import FromCatalogue
-from .fits import Fits, fit_warnings, installed
+from .fits import Fits, fit_warnings, install
 from .leftover_keys import leftover_warnings
 from .oil import Oil, read_oil
 from .preload_of_set import PreloadOfSet
-from .read_bearing import designated, read_bearing
+from .read_bearing import read_bearing, read_designation
 from .read_choices import KINEMATICS, read_choices
 from .read_fit import read_fits
 from .read_life import lubrication_warnings, rating_warnings, read_life
@@ -88,7 +88,7 @@ class Scene:
     @property
     def installed(self) -> Installed:
         """The bearing with its preload, seats and temperatures."""
-        return installed(self.element, self.preload_force, self.fits, self.catalogue)
+        return install(self.element, self.preload_force, self.fits, self.catalogue)
 
     def ground(self) -> Installed:
         """Return the installed bearing with its rows ground to their preload.
@@ -191,7 +191,7 @@ def scene_of(
         warnings.simplefilter("always")
         table = top.table("bearing", required=True)
         table.know(*other_keys)
-        found = designated(table)
+        found = read_designation(table)
         if found is not None:
             found = found[0], found[1].varied(varied)
         bearing, preload = read_bearing(table, top, found)

@@ -35,7 +35,7 @@ def case_words(found: dict[str, np.ndarray], case: int) -> list[str]:
     """Describe the settings that distinguish a case, one each: "Fy -2.5 kN".
 
     Args:
-        found: From `differing`.
+        found: From `varied_settings`.
         case: Number of the case.
     """
     names = [header.partition(" [")[0] for header in found]

@@ -198,7 +198,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     keys = read_keys(CasesKeys, Table(data, path.name).table("cases"))
     table, outputs = keys.table, keys.outputs
     columns = keys.columns(path)
-    data = _begun(data, columns, path.name)
+    data = _fill_first_values(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
@@ -214,11 +214,13 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         settings=made,
         outputs=outputs,
         warnings=_alike(scene.warnings, warned),
-        inputs=_inputs(scene, columns, _placed(data["cases"], path)),
+        inputs=_inputs(scene, columns, _with_path(data["cases"], path)),
     )
 
 
-def _begun(data: dict[str, Any], columns: list[Varied], file: str) -> dict[str, Any]:
+def _fill_first_values(
+    data: dict[str, Any], columns: list[Varied], file: str
+) -> dict[str, Any]:
     """Fill in the first value of each varied key that the scene does not give: a
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
@@ -293,7 +295,7 @@ def _inputs(scene, columns, cases) -> dict[str, Any]:
     return {**scene.inputs, "operating": operating, "cases": cases}
 
 
-def _placed(cases, path) -> dict[str, Any]:
+def _with_path(cases, path) -> dict[str, Any]:
     """Return the cases as written, with an absolute path of their file."""
     name = text_of(cases.get("file"))
     return {**cases, "file": str((path.parent / name).resolve())} if name else cases
@@ -397,7 +399,7 @@ def _range(table, key, data) -> Any:
         start, stop = _numbers(table, Varied(key, ends, np.arange(2)))
         return np.linspace(start, stop, count)
     # The kind of design numbers is not known here: the unit is kept.
-    parts = [_split(end) for end in ends]
+    parts = [_split_unit(end) for end in ends]
     if None in parts or parts[0][1] != parts[1][1]:
         problem = "`start` and `stop` must be numbers with one and the same unit"
         raise table.error(path, problem)
@@ -408,7 +410,7 @@ def _range(table, key, data) -> Any:
     return [float(x) if unit is None else f"{float(x)!r} {unit}" for x in numbers]
 
 
-def _split(value) -> Any:
+def _split_unit(value) -> Any:
     """Split into (number, unit), unit `None` for a bare number; `None` otherwise."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value), None
@@ -465,7 +467,7 @@ def _designs(data, path, columns):
             assign(changed, key, f"{value} rad/s" if speed else value, path.name)
         scene = scene_of(changed, path, settings)
         pairs = [
-            _resolved(scene.inputs, key, given)
+            _resolve(scene.inputs, key, given)
             for key, given in settings.items()
             if key not in OPERATING
         ]
@@ -496,7 +498,7 @@ def _published_speeds(scene: Scene) -> tuple[Any, ...]:
     return scene.catalogue.entry.limiting_speed, scene.catalogue.entry.reference_speed
 
 
-def _resolved(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
+def _resolve(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     """Return header and value of a setting: a number in SI, or text as given."""
     found: Any = inputs
     for part in key.split("."):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...cases.sweep import Sweep
 from ...cases.sweep_program import WARNED
-from ...cases.sweep_table import NOTHING, case_columns, left_out, read, restored
+from ...cases.sweep_table import NOTHING, case_columns, left_out, read, restore_outputs
 from ...files.quantity import SceneError
 from ...numerics.result import Result
 from .read_cases import CaseTable
@@ -66,7 +66,7 @@ def resume_cases(
     checked = run_cases(_part(table, again))
     whole = Sweep(table.cases, {}, checked.moving_ring, checked.zeros)
     try:
-        outputs = restored(known, checked.outputs, left_out(whole))
+        outputs = restore_outputs(known, checked.outputs, left_out(whole))
     except ValueError as error:
         raise SceneError(f"{path}: {error}; {_CURE}") from error
     _check_same(path, checked.outputs, {k: v[again] for k, v in outputs.items()})

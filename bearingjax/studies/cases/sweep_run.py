@@ -61,7 +61,7 @@ def run_cases(
             done.append((mine, _run(table, part, mine, progress, stop)))
     if len(table.design_groups) == 1:
         return done[0][1]
-    return _merged(table, done)
+    return _merge(table, done)
 
 
 def _run(table, part, mine, progress, stop) -> Sweep:
@@ -151,7 +151,7 @@ def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
     unloaded = Cases(
         np.zeros((first.size, 6)), inner_speed=inner, outer_speed=outer, design=design
     )
-    found = sweep(part.element, unloaded, outputs=_pressed, free=["uz"])
+    found = sweep(part.element, unloaded, outputs=_preload, free=["uz"])
     force = np.asarray(found.outputs["preload"])
     if design is None:
         return force
@@ -160,11 +160,11 @@ def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
     return of_all
 
 
-def _pressed(solution):
+def _preload(solution):
     return {"preload": row_preload_force(solution)}
 
 
-def _merged(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
+def _merge(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:
     """Merge the sweeps of the structures; cases without a sweep were not run."""
     outputs: dict[str, np.ndarray] = {}
     for mine, solved in done:

@@ -335,8 +335,8 @@ def _load(entry: CatalogueEntry) -> list[str]:
     share = "a tenth of C"
     if capacity is None:
         capacity, share = _rough_capacity(_row(entry)), "moderate"
-    load = f"{_rounded(_SHARE * capacity):g} N"
-    half = f"{_rounded(0.5 * _SHARE * capacity):g} N"
+    load = f"{_round(_SHARE * capacity):g} N"
+    half = f"{_round(0.5 * _SHARE * capacity):g} N"
     if _row(entry).is_thrust:
         comment = f"# axial, {share}, from the shaft washer at -z"
         return [f'load = {{ Fz = "{load}" }}  {comment}']
@@ -347,7 +347,7 @@ def _load(entry: CatalogueEntry) -> list[str]:
         row = _row(entry)
         # More for steep contact angles, so that about half of the rollers are loaded.
         needed = 1.3 * np.tan(float(row.axis_angle + row.half_angle))
-        axial = f"{_rounded(max(0.5, needed) * _SHARE * capacity):g} N"
+        axial = f"{_round(max(0.5, needed) * _SHARE * capacity):g} N"
         words = "half of it" if axial == half else "as its steep rollers need"
         comment = f"# radial {share}, axial {words}; +z closes the bearing"
         return [comment, f'load = {{ Fy = "-{load}", Fz = "{axial}" }}']
@@ -363,7 +363,7 @@ def _speed(entry: CatalogueEntry) -> str:
     known = entry.reference_speed or entry.limiting_speed
     mean = 0.5e3 * (entry.bore + entry.outside_diameter)
     most = 0.5 * _rpm(known) if known else _SPEED_FACTORS[entry.type] / mean
-    return f"{_rounded(min(_SPEED, most)):g} rpm"
+    return f"{_round(min(_SPEED, most)):g} rpm"
 
 
 def _rough_capacity(ball) -> float:
@@ -371,7 +371,7 @@ def _rough_capacity(ball) -> float:
     return 18e6 * ball.n_balls * float(ball.ball_diameter) ** 2
 
 
-def _rounded(value: float) -> float:
+def _round(value: float) -> float:
     return float(f"{value:.2g}")
 
 

@@ -65,7 +65,7 @@ def run(options, tools: Tools) -> Outcome:
     else:
         scene = read_contact(options.scene, options.set)
         cases = run_contact(scene)
-    lost = _lost(scene, cases)
+    lost = _why_lost(scene, cases)
 
     def draw():
         from ...plot import contact_overview
@@ -88,7 +88,7 @@ def run(options, tools: Tools) -> Outcome:
     )
 
 
-def _lost(scene, cases) -> list[str]:
+def _why_lost(scene, cases) -> list[str]:
     """Return the reasons why loads of a contact were not solved, by load."""
     from ...contact.halfspace.pressure import failure_message
     from ...numerics import Result

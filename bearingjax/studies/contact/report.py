@@ -45,20 +45,20 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
         if scene.half_width is not None:
             cure = "give a larger `numerics.half_width`, or none"
         found.append(
-            f"{_named(narrow)}: the contact reaches the sides of the grid; what it"
+            f"{_name(narrow)}: the contact reaches the sides of the grid; what it"
             f" carries beyond them is missing; {cure}"
         )
     coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
     if coarse:
         found.append(
-            f"{_named(coarse)}: the contact is less than {FEW} cells wide or long; its"
+            f"{_name(coarse)}: the contact is less than {FEW} cells wide or long; its"
             " pressures may be off by some hundredths: take more cells"
         )
     radius = 0.5 * float(scene.contact.small_diameter)
     wide = [case for case in solved if case.half_width.max() > WIDE * radius]
     if wide:
         found.append(
-            f"{_named(wide)}: the contact is too wide beside the roller, more than"
+            f"{_name(wide)}: the contact is too wide beside the roller, more than"
             f" {WIDE:g} of its radius to each side, for both bodies to be half-spaces"
         )
     ends = (0, scene.along - 1)
@@ -66,7 +66,7 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
     if sharp:
         length = 2e6 * float(sharp[0].solution.grid.half_y[0])
         found.append(
-            f"{_named(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
+            f"{_name(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
             " µm long; under a sharp end it grows without limit as cells shrink:"
             " compare at fixed distances from the end"
         )
@@ -78,7 +78,7 @@ def _is_coarse(solution):
     return across < FEW or along < min(FEW, solution.grid.shape[1])
 
 
-def _named(cases):
+def _name(cases):
     return ", ".join(f"{float(case.solution.load):.5g}" for case in cases) + " N"
 
 

@@ -38,8 +38,8 @@ def run_contact(scene: ContactScene) -> list[Compared]:
     given = {name: jnp.asarray([case[name] for case in cases]) for name in cases[0]}
     solver = ConjugateGradients(scene.tolerance, scene.max_steps)
     sizes = (scene.across, scene.along, scene.grading)
-    solved = _solved(contact, jnp.asarray(widths), given, solver, sizes)
-    sliced = _sliced(contact, solved, scene.law)
+    solved = _solve(contact, jnp.asarray(widths), given, solver, sizes)
+    sliced = _slice(contact, solved, scene.law)
     return [Compared(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
 
 
@@ -97,7 +97,7 @@ def run_refined(
 
 
 @program(quick=True)
-def _solved(contact, widths, given, solver, sizes):
+def _solve(contact, widths, given, solver, sizes):
     def solve(width, case):
         grid = contact.grid(width, *sizes)
         return contact.solve(**case, grid=grid, solver=solver, throw=False)
@@ -106,7 +106,7 @@ def _solved(contact, widths, given, solver, sizes):
 
 
 @program(quick=True)
-def _sliced(contact, solved, law):
+def _slice(contact, solved, law):
     def slice_(one):
         return slices(contact, one.load, one.tilt, one.grid.y, law)
 

@@ -214,7 +214,11 @@ def read_noise(
         tilting_inertia=HELD if inertia is None else float(inertia),
     )
     own = {"deviations": deviations.echo(), "vibration": vibration.table.echo()}
-    inputs = {**scene.inputs, "operating": _held(scene, model.moving_ring), **own}
+    inputs = {
+        **scene.inputs,
+        "operating": _without_supports(scene, model.moving_ring),
+        **own,
+    }
     return dataclasses.replace(found, inputs=inputs)
 
 
@@ -240,7 +244,7 @@ def _nominal(element: BearingElement) -> BearingElement:
     return dataclasses.replace(element, bearing=even(bearing))
 
 
-def _held(scene: Scene, moving: str) -> dict[str, Any]:
+def _without_supports(scene: Scene, moving: str) -> dict[str, Any]:
     """Return the echo of [operating] without supports (see `tilting_inertia`)."""
     kept = dict(scene.inputs["operating"])
     for key in ("free", "prescribed"):

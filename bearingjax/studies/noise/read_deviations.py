@@ -14,7 +14,7 @@ from ...design.form_error import (
 )
 from ...files.column_list import read_list
 from ...files.schema import Keys, read_keys, scene_key
-from ...files.table import Table, written
+from ...files.table import Table, format_number
 
 RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
 ELEMENTS = "elements"
@@ -216,7 +216,7 @@ class ProfileKeys(DirectedKeys):
                 raise table.error("file", problem)
             heights = found["height"]
             table.fill("file", None)  # in the echo its heights
-            table.fill("points", [written(height, "m") for height in heights])
+            table.fill("points", [format_number(height, "m") for height in heights])
         highest = self.highest or min(self.most, max(1, (len(heights) - 1) // 2))
         table.fill("highest", highest)
         waves = Harmonics.measured(heights, highest)

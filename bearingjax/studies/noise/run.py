@@ -17,7 +17,6 @@ from ...noise import (
     Spectrum,
     Vibration,
     band_levels,
-    bridged,
     contact_states,
     contribution_warnings,
     level,
@@ -33,6 +32,7 @@ from ...noise import (
     spectrum,
     total_root_mean_square,
     vibration,
+    with_bridged_waves,
 )
 from ...noise.static_start import failure_message
 from ...numerics.result import Result
@@ -140,7 +140,7 @@ def run_noise(
         words = f"standing under the load: {failure_message(model)}"
         return NoiseRun(task, result, words, warnings=task.warnings)
     if task.bridging:
-        width = bridged(model).half_width
+        width = with_bridged_waves(model).half_width
         models = (
             dataclasses.replace(one, half_width=width) for one in (model, task.line)
         )

@@ -223,7 +223,7 @@ def read_bearing_optimisation(
     path = find_scene(source)
     data = parse_bearing(path, settings)
     check_present(data, path)
-    begun = _begun(data)
+    begun = _start_values(data)
     if begun:
         settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
         data = parse_bearing(path, settings)
@@ -261,7 +261,7 @@ def check_present(data: dict[str, Any], path: Path) -> None:
         )
 
 
-def _begun(data: dict[str, Any]) -> dict[str, Any]:
+def _start_values(data: dict[str, Any]) -> dict[str, Any]:
     """Return start values of the variables of [fit] that the table does not give: an
     optimised interference needs neither a value nor a tolerance class there."""
     fit, table = data.get("fit"), data["optimise"]

@@ -122,7 +122,7 @@ def optimisation_as_dict(
         result, message, optimality, history, evaluations, gradients, rejected,
         warnings (of the best design), warnings_before (of the start), inputs (as in
         `Optimisation`: the file can be read as a scene), version; with fits `fit`, as
-        in `fits_as_dict`, of the best design; if converged also variables, objective,
+        in `fits_json`, of the best design; if converged also variables, objective,
         constraints and peak_pressure, and rating_life (before, after) if it is
         maximised; of a system of shafts bearings in place of peak_pressure: the numbers
         of `bearing_facts` by the names of the bearings.
@@ -172,7 +172,7 @@ def _numbers(found, best):
     ]
 
     def sides(k):
-        pairs = {"before": _measured(before)[k], "after": _measured(after)[k]}
+        pairs = {"before": _measure(before)[k], "after": _measure(after)[k]}
         return {side: {"smooth": x, "exact": y} for side, (x, y) in pairs.items()}
 
     constraints = [
@@ -187,7 +187,7 @@ def _numbers(found, best):
     return {
         "variables": variables,
         "objective": {"measure": label_of(found.objective), **sides(0)},
-        **_shown(found),
+        **_displayed_objective(found),
         "constraints": constraints,
         **_bearings(found, best),
     }
@@ -209,9 +209,9 @@ def _bearings(found, best):
     }
 
 
-def _shown(found):
+def _displayed_objective(found):
     """Return the displayed form of the objective by its name, if it differs."""
-    pair = [_measured(side)[0] for side in (found.before, found.after)]
+    pair = [_measure(side)[0] for side in (found.before, found.after)]
     measure, ((_, before), (_, after)) = _as_reported(found.objective, pair)
     if measure is found.objective:
         return {}
@@ -219,7 +219,7 @@ def _shown(found):
     return {name: {"before": before, "after": after}}
 
 
-def _measured(outcome: Outcome):
+def _measure(outcome: Outcome):
     """Return (smooth, exact) of the objective and of every constrained measure."""
     return [
         (outcome.objective, outcome.exact),
@@ -259,13 +259,13 @@ def _variables(found):
 def _measures(found):
     measures = [found.objective, *(c.measure for c in found.constraints)]
     rows = []
-    pairs = zip(_measured(found.before), _measured(found.after), strict=True)
+    pairs = zip(_measure(found.before), _measure(found.after), strict=True)
     for k, (measure, values) in enumerate(zip(measures, pairs, strict=True)):
         shown, (first, last) = _as_reported(measure, values)
         scale, unit = _unit(shown)
         largest = isinstance(measure, AbstractMeasure) and measure.maximised
         made = "maximised" if largest else "minimised"
-        kept = made if k == 0 else _kept(found, k - 1, scale)
+        kept = made if k == 0 else _keep(found, k - 1, scale)
         exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
         rows.append((label_of(shown), *exact, unit, kept))
         if first[0] != first[1]:
@@ -286,7 +286,7 @@ def _as_reported(measure, values):
     return measure.reported_as, shown
 
 
-def _kept(found, k, scale):
+def _keep(found, k, scale):
     constraint = found.constraints[k]
     words = []
     for word, bound in (("at least", constraint.lower), ("at most", constraint.upper)):

@@ -54,10 +54,14 @@ def run_optimisation(
         )
     except ValueError as error:
         raise SceneError(f"{name}: {error}") from error
-    return found if isinstance(task, ShaftOptimisation) else _judged(task, found)
+    return (
+        found
+        if isinstance(task, ShaftOptimisation)
+        else _with_life_warnings(task, found)
+    )
 
 
-def _judged(task: Optimisation, found: Optimised) -> Optimised:
+def _with_life_warnings(task: Optimisation, found: Optimised) -> Optimised:
     """Add the warnings about rating lives that `solve` gives for the same designs,
     with [life], whatever the measures."""
     scene = task.scene

@@ -16,7 +16,7 @@ from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
 from ...statics.installed import Installed
 from ..bearing.catalogue_keys import FromCatalogue
-from ..bearing.fits import Fits, fit_warnings, fits_at_speed, installed
+from ..bearing.fits import Fits, fit_warnings, fits_at_speed, install
 from ..bearing.placed_bearing import check_seat, echoed, read_machine_bearing
 from ..bearing.read_scene import Scene, scene_of
 from .scene import Mount
@@ -208,7 +208,7 @@ def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bear
 def _in_rotor(scene: Scene, speed: float) -> _Bearing:
     """Return the bearing of a scene with its fits at the speed of the rotor."""
     fits, taken = fits_at_speed(scene.fits, speed), scene.catalogue
-    running = installed(scene.element, scene.preload_force, fits, taken)
+    running = install(scene.element, scene.preload_force, fits, taken)
     return _Bearing(scene.name, running, fits, taken, scene)
 
 

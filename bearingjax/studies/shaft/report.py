@@ -160,7 +160,7 @@ def _bearings(run: ShaftRun) -> Section:
     ]
     columns = [
         Column("bearing", [seat.name for seat in system.seats]),
-        Column("", [_called(b) for b in run.bearings]),
+        Column("", [_name(b) for b in run.bearings]),
         Column("shaft", [seat.shaft for seat in system.seats]),
         Column("radial", radial, "N", ".1f", NEWTONS),
         Column("axial", axial, "N", ".1f", NEWTONS),
@@ -213,7 +213,7 @@ def _temperatures(run: ShaftRun) -> Section:
     return parts
 
 
-def _called(bearing: Any) -> str:
+def _name(bearing: Any) -> str:
     scene = bearing.scene
     if scene is None:
         return "springs"

@@ -36,7 +36,7 @@ from ...shafts.heat import with_temperatures
 from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving
 from ...statics.solution import Solution
-from ...statics.warning import counted
+from ...statics.warning import sentences_of_cases
 from ..bearing.fits import fits_at_speed
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
@@ -395,7 +395,7 @@ def _warnings(run: ShaftRun) -> Iterator[str]:
         texts = (
             solved_warnings(bearing.scene, bearing.solution, bearing.life)
             if run.duty is None
-            else [*bearing.scene.warnings, *counted(run.duty.warned[k], ALL)]
+            else [*bearing.scene.warnings, *sentences_of_cases(run.duty.warned[k], ALL)]
         )
         for text in texts:
             yield f"{bearing.name}: {text}"

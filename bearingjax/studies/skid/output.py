@@ -108,11 +108,11 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
         columns = {header: v[reached] for header, v in columns.items()}
         balls = {name: values[reached] for name, values in balls.items()}
     for name, values in balls.items():
-        columns |= _spread(name, values, run.task.steady)
+        columns |= _columns_of(name, values, run.task.steady)
     return columns
 
 
-def _spread(name, values, steady):
+def _columns_of(name, values, steady):
     """Return the columns of values (row, …) with their headers."""
     axes: list[Any] = [] if steady else [range(values.shape[1])]
     if name == "spin":

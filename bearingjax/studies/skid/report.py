@@ -10,11 +10,11 @@ from ...report.report_model import (
     Column,
     Grid,
     Report,
-    labelled,
+    labelled_facts,
     load_text,
     rpm,
 )
-from ..bearing.read_lubricant import TRACTIONS, described
+from ..bearing.read_lubricant import TRACTIONS, describe_oil
 from ..solve.report import ball_row, by_ring, roller_row
 from .output import at_balls, each_ball, rolling_cage_speed
 from .run import SkidRun
@@ -50,7 +50,7 @@ def _bearing(run):
             *row(model.bearing, task.name),
             f"load on the {task.scene.moving_ring} ring: {load or 'none'}{varies};"
             f" inner ring {rpm(speed.inner)}, outer ring {rpm(speed.outer)}",
-            f"{task.oil} at {described(model.lubricant, float(model.temperature))};"
+            f"{task.oil} at {describe_oil(model.lubricant, float(model.temperature))};"
             f" traction: {named[type(model.traction)]}",
         ]
     )
@@ -102,7 +102,7 @@ def _end(run):
         play = float(run.task.model.cage.pocket_clearance)
         words = f"{1e6 * float(found.wander):.4g} µm about even motion;"
         rows.append(("balls wander", f"{words} pocket clearance {1e6 * play:.4g} µm"))
-    return [labelled(rows)]
+    return [labelled_facts(rows)]
 
 
 def _motion(run):
@@ -137,7 +137,7 @@ def _motion(run):
             " the time",
         ),
     ]
-    return [f"after {float(found.time[-1]):.4g} s:", labelled(rows)]
+    return [f"after {float(found.time[-1]):.4g} s:", labelled_facts(rows)]
 
 
 def _balls(run):

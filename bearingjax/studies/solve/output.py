@@ -103,7 +103,7 @@ def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
         found: From `solve_scene`, of a scene with [life].
 
     Returns:
-        Contents of `life_as_dict`, `fits_as_dict` and `solved_as_dict`; the last one
+        Contents of `life_as_dict`, `fits_json` and `solved_json`; the last one
         only if the solve did not converge.
     """
     fits = fits_json(found.scene) if found.converged else {}
@@ -157,7 +157,7 @@ def _of_elements(solution):
 
 
 def write_json(path: str | Path, found: SolvedScene) -> None:
-    """Write `as_dict` to a file.
+    """Write `solution_json` to a file.
 
     Raises:
         OSError: If the file cannot be written.

@@ -290,7 +290,7 @@ def _elements(solution):
     return [*([grid] if touching.any() else []), *([away] if open_ else [])]
 
 
-def _numbered(kind, solution, shown):
+def _number_columns(kind, solution, shown):
     """Return the columns of number and azimuth of the rolling elements shown."""
     azimuth = np.asarray(solution.azimuth)[shown] % (2.0 * np.pi)
     return [
@@ -321,7 +321,7 @@ def _rollers(solution):
     pressure = np.asarray(solution.roller_pressure)[shown]
     edge = np.any(np.asarray(ends_over(solution)), axis=(1, 2))[shown]
     columns = [
-        *_numbered("roller", solution, shown),
+        *_number_columns("roller", solution, shown),
         *by_ring("load", load[shown], "N", ".4f"),
         *by_ring("pmax", pressure, "Pa", ".1f"),
     ]
@@ -350,7 +350,7 @@ def _balls(solution):
     angle = np.where(bears, larger(solution.contact_angle), np.nan)
     raceway, count = np.asarray(solution.roller_load), np.asarray(solution.n_contacts)
     columns = [
-        *_numbered("ball", solution, shown),
+        *_number_columns("ball", solution, shown),
         *by_ring("load", raceway[shown], "N", ".5g", NEWTONS),
         *by_ring("angle", angle, "rad", ".2f", DEGREES),
         *by_ring("pmax", larger(solution.contact_pressure), "Pa", ".0f"),

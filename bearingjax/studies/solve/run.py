@@ -28,7 +28,7 @@ def run_scene(scene: Scene) -> Solution:
     """
     of_class("run_scene", "scene", scene, Scene, "a Scene, as of read_scene")
     return call_stored(
-        _solved,
+        _solve,
         scene.running(),
         as_array(scene.load, float),
         {name: as_array(value, float) for name, value in scene.prescribed.items()},
@@ -72,7 +72,7 @@ def with_set_preload(scene: Scene) -> Scene:
     return dataclasses.replace(scene, preload_of_set=found, warnings=warned)
 
 
-def _solved(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
+def _solve(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
     return solve_load(
         element,
         load,

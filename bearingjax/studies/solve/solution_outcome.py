@@ -8,7 +8,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
 
     Args:
         scene: From `read_scene`.
-        numbers: Returns the JSON of the solved scene; default: `as_dict`.
+        numbers: Returns the JSON of the solved scene; default: `solution_json`.
         brief: Sections of the report shown on the terminal; default: all.
     """
     from .output import solution_json
