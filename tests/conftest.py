@@ -55,6 +55,12 @@ for name, examples, same in (
 hypothesis.settings.load_profile("fast")
 
 
+def pytest_addoption(parser):
+    parser.addoption(
+        "--write-golden", action="store_true", help="write golden files anew"
+    )
+
+
 LONGEST = (
     "test_readme.py",
     "test_identities.py",

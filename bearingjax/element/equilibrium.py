@@ -93,7 +93,7 @@ def solve_element(
 
     Args:
         element: The rolling element.
-        rings: Motions of the rings in its axes, see `energy.ring_motions` (r,) [m, rad].
+        rings: Motions of the rings in its axes, see `ring_motions` (r,) [m, rad].
         magnitude: Size of the displacements from which `rings` was computed, for
             the round-off floor of the residual [m].
         minimiser: Local solver.

@@ -39,8 +39,8 @@ class Mounting(eqx.Module):
         housing_interference: Outside diameter of the bearing less the housing's bore,
             as measured [m].
         inner_raceway: Diameter of the inner raceway where it is smallest, F [m];
-            `None`: that of the bearing (`with_bearing_dimensions`). A larger one stands for shoulders,
-            which stiffen the ring.
+            `None`: that of the bearing (`with_bearing_dimensions`). A larger one stands
+            for shoulders, which stiffen the ring.
         outer_raceway: Diameter of the outer raceway where it is largest, E [m];
             `None`: that of the bearing.
         radial_clearance: Radial internal clearance before mounting [m]; `None`: that

@@ -67,8 +67,8 @@ class NoiseModel(eqx.Module):
         cage: Of a single row of balls; `None`: the rolling elements go round evenly,
             each in its place.
         half_width: Of the contacts of each row along the rolling direction, over which
-            waves are averaged (row,) [m], from `with_bridged_waves`; `None`: waves are met as they
-            are, however short.
+            waves are averaged (row,) [m], from `with_bridged_waves`; `None`: waves are
+            met as they are, however short.
 
     Traced: all numbers.
     """

@@ -233,7 +233,7 @@ def unrestrained_directions(solution: Solution) -> Any:
 
 
 def loose_names(solution: Solution) -> str:
-    """Directions that `unrestrained_directions` counts, each by the freedom that moves most in it."""
+    """Directions without stiffness, each by the freedom that moves most in it."""
     k, nothing = _free_stiffness(solution)
     values, vectors = np.linalg.eigh(k)
     names = {

@@ -10,6 +10,7 @@ from html import unescape
 from typing import NamedTuple
 
 import pytest
+from golden import differences, digest, read, write
 from pages import missing_on_page
 from studies import Study, Written, place, words
 
@@ -75,6 +76,20 @@ def written(request, tmp_path_factory) -> Callable[[str], Written]:
         done = Run(status, out.getvalue(), err.getvalue())
         assert status == 0, done.err
         return Written(done, json.loads(paths["--json"].read_text("utf-8")), paths)
+
+    return call
+
+
+@pytest.fixture
+def golden(request) -> Callable[[str, dict], None]:
+    """Compare the JSON of a run with its golden file, or write that anew."""
+
+    def call(name, numbers):
+        name, entries = name.replace(" ", "_"), digest(numbers)
+        if request.config.getoption("--write-golden"):
+            write(name, entries)
+        told = differences(entries, read(name))
+        assert not told, "\n".join(told)
 
     return call
 

@@ -34,25 +34,6 @@ PAPER = (
     "numerics.half_width=0.1764 mm",
     "operating.load=3 kN",
 )
-SHARED = {"position", "cell_length", "end_cell_length", "warnings", "inputs", "version"}
-STATUS = {"result", "message", "residual", "iterations"}
-NUMBERS = {
-    "load",
-    "approach",
-    "moment",
-    "tilt",
-    "peak_pressure",
-    "peak_position",
-    "peak_cell_length",
-    "centre_pressure",
-    "line_load",
-    "half_width",
-    "cell_width",
-    "grid_half_width",
-    "truncated",
-    "slices",
-    "edge_factor",
-}
 CYLINDER = """
 [roller]
 length = "15 mm"
@@ -148,7 +129,6 @@ def test_raceway_of_the_rollers_material(cylinder):
 def test_published_numbers(paper):
     """AF004-5 and the table of five loads."""
     _, _, numbers = paper
-    assert set(numbers) == SHARED | STATUS | NUMBERS
     assert numbers["result"] == "converged" and numbers["version"] == bj.__version__
     assert numbers["approach"] == pytest.approx(6.35510e-6, rel=1e-5)
     pressure = np.array(numbers["centre_pressure"])
@@ -261,7 +241,6 @@ def test_half_width_is_hertz_in_the_middle(cylinder):
 def test_loads_of_a_list(three):
     """Each as if it were alone; position stands once."""
     scene, cases, numbers = three
-    assert set(numbers) == SHARED | STATUS | NUMBERS
     assert np.shape(numbers["position"]) == (12,)
     assert np.shape(numbers["centre_pressure"]) == (3, 12)
     assert numbers["load"] == pytest.approx([500.0, 1000.0, 2000.0], rel=ROUNDING)
@@ -356,7 +335,6 @@ ONE = (*TAPER, "--set", "operating.load=3 kN")
 STUDIES = {
     "five loads": Study(
         TAPER,
-        SHARED | STATUS | NUMBERS,
         WORDS | SEARCH,
         {"--json": "a.json", "--plot": "a.png"},
         ["converged"] * 5,

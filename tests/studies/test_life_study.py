@@ -37,7 +37,6 @@ PICTURE = {"--json": "a.json", "--plot": "a.png"}
 STUDIES = {
     "one load": Study(
         ("life", ONE, *SETTINGS),
-        None,
         WORDS | SEARCH,
         files=PICTURE,
         pictures=2,
@@ -52,7 +51,6 @@ STUDIES = {
     ),
     "spectrum": Study(
         ("life", SCENE, *SETTINGS, "--quiet"),
-        None,
         files={**PICTURE, "--table": "a.csv", "--report": "a.html"},
         result=None,
         again=("--quiet",),

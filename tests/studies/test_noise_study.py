@@ -295,15 +295,10 @@ part = "inner raceway"
 order = 8
 amplitude = "0.2 um"
 """
-PARTS = {
-    *("natural_frequency", "ring_share", "direction", "time", "acceleration"),
-    *("displacement", "level", "bands", "lines", "contact_states", "reference"),
-}
 STANDING = "standing under the load: "
 STUDIES = {
     "one turn": Study(
         ("noise", SCENE),
-        PARTS,
         files={f"--{n}": f"a.{n}" for n in ("json", "table", "wav", "plot")}
         | {"--table": "a.csv", "--plot": "a.png"},
         unsolved={
@@ -367,7 +362,6 @@ def test_every_file_holds_the_same_record(written):
     assert states["contacts"] == [0, 1, 2] and states["samples"] == [0, 0, 7 * 64]
     assert states["switches_per_turn"] == 0.0
     for line in found["lines"]:
-        assert set(line) == {"order", "frequency", "amplitude", "name", "causes"}
         assert line["frequency"] == pytest.approx(50.0 * line["order"])
     rows = written("one turn").rows
     assert rows[0][:3] == ["time [s]", "acceleration_x [m/s²]", "acceleration_y [m/s²]"]

@@ -59,7 +59,6 @@ PULLED = "operating.free=['uy', 'uz']"
 STUDIES = {
     "clearance": Study(
         ("optimise", CLEARANCE.read_text(encoding="utf-8")),
-        None,
         files={"--json": "a.json", "--plot": "a.png"},
         pictures=2,
         unsolved={
@@ -74,7 +73,6 @@ STUDIES = {
     ),
     "seats": Study(
         ("optimise", SEATS.read_text(encoding="utf-8")),
-        None,
         files={"--json": "a.json", "--plot": "a.png", "--report": "a.html"},
         again=None,
     ),

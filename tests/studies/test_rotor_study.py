@@ -276,17 +276,6 @@ LINEAR = {
     "rotor.response": "{from='500 Hz', to='505 Hz', method='linear', points=4,"
     " speed='6000 rpm'}"
 }
-PARTS = {
-    "frequency",
-    "damping_ratio",
-    "whirl",
-    "critical_speed",
-    "critical_whirl",
-    "critical_damping_ratio",
-    "static",
-    "campbell",
-    "response",
-}
 
 
 def _without(*names):
@@ -318,7 +307,6 @@ LOOSE = {
 STUDIES = {
     "published": Study(
         command(FEW),
-        PARTS,
         again=None,
         unsolved={
             "loose": (
@@ -331,7 +319,6 @@ STUDIES = {
     ),
     "without campbell and response": Study(
         command(ON_SPRINGS, scene=_without("campbell", "response")),
-        PARTS - {"campbell", "response"},
         files={"--json": "a.json", "--plot": "a.png"},
     ),
 }

@@ -39,11 +39,9 @@ hours = "10 h"
 drive.power = "1 kW"
 hours = "0 h"
 """
-OF_BEARINGS = {"bearings", "gear", "belt", "shaft", "power", "system_life_hours"}
 STUDIES = {
     "gears": Study(
         ("shaft", SCENE),
-        OF_BEARINGS,
         WORDS | SEARCH,
         unsolved={
             "loose": (
@@ -55,9 +53,7 @@ STUDIES = {
         },
         slow=(True, True),
     ),
-    "cases": Study(
-        ("shaft", SCENE + CASES), OF_BEARINGS | {"cases"}, WORDS | SEARCH, again=None
-    ),
+    "cases": Study(("shaft", SCENE + CASES), WORDS | SEARCH, again=None),
 }
 
 
@@ -76,23 +72,10 @@ def test_gears(written):
     assert "2 shafts on 4 bearings" in done.out and "12 kW" in done.out
     assert found["message"] == ""
     assert [*found["bearings"]] == ["A", "B", "C", "D"]
-    for name in ("A", "C"):
-        one = found["bearings"][name]
-        wanted = (
-            "load displacement tilt contact_load roller_load peak_pressure"
-            " static_safety basic_rating_life reference_rating_life"
-            " modified_rating_life life_hours friction_torque temperature clearance"
-        )
-        assert not {*wanted.split()} - {*one}
-        assert len(one["load"]) == len(one["displacement"]) == 6
-        assert len(one["tilt"]) == 2
     gears = found["gear"]
     np.testing.assert_allclose(
         gears["wheel"]["force"], -np.array(gears["pinion"]["force"]), rtol=1e-9
     )
-    assert {"force", "misalignment"} <= {*gears["wheel"]}
-    lines = found["shaft"]["in"]
-    assert {"position", "deflection", "shear", "moment"} <= {*lines}
     hours = of_seats(found, "life_hours")
     assert found["system_life_hours"] < hours.min()
     # By the survival of all, of balls alone: (Σ L^-e)^(-1/e).

@@ -25,30 +25,16 @@ from bearingjax.studies.solve.run import run_scene
 POINTS = 21
 TAPER = f"output.points={POINTS}"
 
-NUMBERS = (
-    "displacement",
-    "force",
-    "stiffness",
-    "roller_load",
-    "rib_load",
-    "roller_motion",
-    "azimuth",
-    "position",
-    "line_load",
-    "contact_pressure",
-)
 FILES = {"--json": "a.json", "--plot": "a.png"}
 STUDIES = {
     "rig": Study(
         ("solve", "cylindrical_rig"),
-        {*NUMBERS},
         WORDS | SEARCH,
         files=FILES,
         again=None,
     ),
     "taper": Study(
         ("solve", "tapered", "--set", TAPER),
-        {*NUMBERS},
         WORDS | SEARCH,
         files=FILES,
         again=None,
@@ -130,29 +116,8 @@ def test_solve_command_writes_and_prints_the_solution(request, written, name):
     assert paths["--plot"].stat().st_size > 50_000
 
 
-@pytest.mark.slow
-def test_fields_and_shapes(solved):
-    assert {*solved.numbers} == WORDS | SEARCH | {*NUMBERS}
-    assert tuple(solved.numbers)[: len(NUMBERS)] == NUMBERS
-    n, points = solved.scene.element.bearing.n_rollers, solved.scene.points
-    shapes = {name: solved[name].shape for name in NUMBERS}
-    assert shapes == {
-        "displacement": (12,),
-        "force": (12,),
-        "stiffness": (12, 12),
-        "roller_load": (n, 2),
-        "rib_load": (n, 4),
-        "roller_motion": (n, 3),
-        "azimuth": (n,),
-        "position": (points,),
-        "line_load": (n, 2, points),
-        "contact_pressure": (n, 2, points),
-    }
-    assert all(np.all(np.isfinite(solved[name])) for name in NUMBERS)
-    assert solved.numbers["result"] == solved.numbers["message"] == "converged"
-    assert solved.numbers["residual"] < SOLVER
-    assert solved.numbers["iterations"] > 0
-    assert solved.numbers["version"] == bj.__version__
+def test_residual_is_that_of_the_solver(solved):
+    assert solved.numbers["residual"] < SOLVER and solved.numbers["iterations"] > 0
 
 
 def test_stiffness_is_symmetric_without_rows_of_the_set(solved):
@@ -294,7 +259,6 @@ def test_report_and_dict_run_no_jax_operations(solved):
 def test_spherical_roller_bearing_of_a_fan():
     """Rollers of row 0, then of row 1; no moment about the centre of the sphere."""
     fan = solve("spherical_roller", TAPER, "operating.inner_speed=0 rpm")
-    assert {*fan.numbers} == WORDS | SEARCH | {*NUMBERS}
     assert fan["roller_load"].shape == (36, 2)
     assert fan["position"].shape == (36, POINTS)
     angle = np.deg2rad(9.5)
