@@ -152,7 +152,7 @@ class GeometryEstimate(eqx.Module):
             logarithmic profile, barrel rollers 97 % of the radius of their raceways:
             none of these shows in the ratings.
         dynamic_error: C of the design by ISO 281 over that taken, less one [1].
-        static_error: The same for C0 by ISO 76, over that given [1].
+        static_error: Error of C0 by ISO 76, over that given [1].
         raised: C given over C taken: above 1 where it is that of an improved class,
             which a maker rates above ISO 281 [1].
         misfit: Sum of the squared differences from ratings and usual proportions, each

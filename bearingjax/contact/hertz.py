@@ -73,7 +73,8 @@ def ellipse(
 
     Args:
         rolling: Sum of both bodies' curvatures in the rolling direction [1/m].
-        transverse: The same across; hollow surfaces count negative [1/m].
+        transverse: Sum of both bodies' curvatures across; hollow surfaces count
+            negative [1/m].
         modulus: Contact modulus E* [Pa].
 
     Returns:

@@ -108,8 +108,8 @@ def relative_radius(
 
     Args:
         roller_radius: Radius of the roller normal to the contact line [m].
-        raceway_radius: The same of the raceway, positive where the raceway is
-            convex (inner ring), negative where it is concave (outer ring) [m].
+        raceway_radius: Radius of the raceway, positive where the raceway is convex
+            (inner ring), negative where it is concave (outer ring) [m].
 
     Returns:
         Relative radius [m].

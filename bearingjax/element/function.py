@@ -137,7 +137,7 @@ def check_damping(owner: str, damping: Any, shapes: tuple[tuple[int, ...], ...])
     Args:
         owner: Who was given it.
         damping: A number or matrices [N s/m].
-        shapes: Those allowed.
+        shapes: Shapes that are allowed.
 
     Raises:
         TypeError: If it is no number.

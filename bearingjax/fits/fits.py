@@ -51,7 +51,7 @@ class Mounting(eqx.Module):
         shaft_bore: Bore of a hollow shaft; 0 of a solid one [m].
         shaft_smoothing: Interference that the smoothed surfaces take away, on the shaft
             (`smoothing`) [m].
-        housing_smoothing: The same in the housing [m].
+        housing_smoothing: Smoothing of the seat in the housing [m].
         ring_width: Width of a ring, B, or T of a tapered roller bearing [m]. A set
             needs it: between its rows the rings grow along the axis over this length,
             beyond it shaft and housing (or spacers as warm as these); `None` elsewhere.
@@ -262,7 +262,7 @@ class FitState(NamedTuple):
     Attributes:
         shaft_interference: Interference left between shaft and inner ring, less the
             smoothing; negative is loose [m].
-        housing_interference: The same between outer ring and housing [m].
+        housing_interference: Interference between outer ring and housing [m].
         shaft_pressure: Pressure between shaft and inner ring, 0 where loose [Pa].
         housing_pressure: Pressure between outer ring and housing, 0 where loose [Pa].
         inner_raceway_growth: Growth of the inner raceway's diameter [m].

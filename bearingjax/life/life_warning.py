@@ -68,8 +68,8 @@ def life_warnings(
     Args:
         bearing: The design, concrete.
         ratings: Load ratings, concrete.
-        numbers: Of a `Life` by name, such as `vars(life)`, concrete. Those are judged
-            that there are.
+        numbers: Numbers of a `Life` by name, such as `vars(life)`, concrete. Those are
+            judged that there are.
 
     Source: ISO 281:2007, which doubts its lives of loads above C0 or C/2, and has no
         a_ISO below κ = 0.1; its diagrams of a_ISO and e_C end at κ = 4.

@@ -145,9 +145,10 @@ class Leakage(NamedTuple):
     """Power of lines that a window leaks over edges between bands.
 
     Attributes:
-        up: Of lines below each edge, above it (edge, ...) [unit of the record,
-            squared].
-        down: Of lines above each edge, below it (edge, ...).
+        up: Power that lines below each edge leak above it (edge, ...) [unit of the
+            record, squared].
+        down: Power that lines above each edge leak below it (edge, ...) [unit of the
+            record, squared].
         need: Distance from each edge to the line that spreads most over it (edge, ...)
             [Hz].
     """

@@ -80,8 +80,9 @@ def name_lines(
         sidebands: Most sidebands to either side.
         tolerance: Largest distance from a line to its name [Hz]; `None`: half of the
             distance of two lines.
-        factor: Of a line over the median of its neighbours [1]. One in 2^(factor²)
-            lines of noise passes: of 4 one in 65 thousand, of 5 one in 30 million.
+        factor: Least ratio of a line over the median of its neighbours [1]. One in
+            2^(factor²) lines of noise passes: of 4 one in 65 thousand, of 5 one in 30
+            million.
         neighbours: Number of neighbours to either side.
         least: Smallest amplitude over that of the largest line [1].
         floor: Amplitude up to which a line is round-off [unit of the record].

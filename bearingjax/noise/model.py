@@ -64,11 +64,11 @@ class NoiseModel(eqx.Module):
         tilts: Whether the moving ring tilts, as one on a rig does; a shaft in further
             bearings may not. That of a self-aligning bearing never does. Levels may
             depend on it by tens of dB. Static.
-        cage: Of a single row of balls; `None`: the rolling elements go round evenly,
-            each in its place.
-        half_width: Of the contacts of each row along the rolling direction, over which
-            waves are averaged (row,) [m], from `with_bridged_waves`; `None`: waves are
-            met as they are, however short.
+        cage: Cage of a single row of balls; `None`: the rolling elements go round
+            evenly, each in its place.
+        half_width: Half width of the contacts of each row along the rolling direction,
+            over which waves are averaged (row,) [m], from `with_bridged_waves`; `None`:
+            waves are met as they are, however short.
 
     Traced: all numbers.
     """

@@ -37,8 +37,8 @@ class MonteCarlo(eqx.Module):
 
     Attributes:
         level: Level of all frequencies, along x, y, z (bearing, 3) [dB].
-        bands: Of each band (bearing, band, 3) [dB]; NaN too for bands that the record
-            does not hold.
+        bands: Level of each band (bearing, band, 3) [dB]; NaN too for bands that the
+            record does not hold.
         centre: Nominal centres of the bands (band,) [Hz].
         result: `Result` codes (bearing,).
         keys: Keys with which `sampled_model` reproduces each bearing (bearing,).

@@ -28,12 +28,13 @@ class KinematicFrequencies(NamedTuple):
     """Frequencies of a rolling bearing, without their signs [Hz].
 
     Attributes:
-        inner, outer: Of the rings.
-        cage: Of the cage and the set of rolling elements, FTF.
-        outer_passage: Of rolling elements over one place on the outer raceway, BPFO.
+        inner, outer: Frequencies of the rings.
+        cage: Frequency of the cage and the set of rolling elements, FTF.
+        outer_passage: Passages of rolling elements over one place on the outer raceway,
+            BPFO.
         inner_passage: Over one place on the inner raceway, BPFI.
-        rotation: Of a rolling element about its axis, seen from the cage, BSF. A
-            defect on it meets a raceway at `twice_rotation`.
+        rotation: Rotation of a rolling element about its axis, seen from the cage, BSF.
+            A defect on it meets a raceway at `twice_rotation`.
     """
 
     inner: Scalar
@@ -63,9 +64,9 @@ class WavinessForce(NamedTuple):
     """Frequencies of the ring forces caused by a wave [Hz].
 
     Attributes:
-        axial: Of axial forces (line,).
-        radial: Of radial forces of constant size that turn, from +x towards +y where
-            positive (line,).
+        axial: Orders excited by axial forces (line,).
+        radial: Orders excited by radial forces of constant size that turn, from +x
+            towards +y where positive (line,).
     """
 
     axial: Float[Array, " line"]
@@ -80,8 +81,8 @@ def kinematic_frequencies(
     Args:
         bearing: Design of a single row.
         speed: Ring speeds.
-        contact_angle: Of the balls in operation [rad]; `None`: the free one. Rollers
-            have none: theirs is the angle of their axis.
+        contact_angle: Contact angle of the balls in operation [rad]; `None`: the free
+            one. Rollers have none: theirs is the angle of their axis.
 
     Returns:
         KinematicFrequencies [Hz], differentiable with respect to the design, speeds

@@ -40,8 +40,8 @@ class Excitation(eqx.Module):
         time: (sample,) [s].
         force: Force of the contacts on the moving ring, less the reaction to its load
             (sample, 6) [N, N m]. Of a free ring it is zero in its freedoms.
-        displacement: Of the moving ring from its position without form errors
-            (sample, 6) [m, rad]. Of a held ring it is zero.
+        displacement: Displacement of the moving ring from its position without form
+            errors (sample, 6) [m, rad]. Of a held ring it is zero.
         azimuth: Azimuth of every rolling element (sample, element) [rad].
         shaft_frequency: Frequency of the ring that turns faster [Hz].
         result: `Result` code of each instant (sample,).

@@ -85,7 +85,7 @@ class RandomWaves(eqx.Module):
         """Create waves of a given root mean square over circumference and bearings.
 
         Args:
-            height: That root mean square [m]: its square is Σ a_k²/2.
+            height: Root mean square height [m]: its square is Σ a_k²/2.
             low, high, slope, varies: See the class.
         """
         one = cls(1.0, low, high, slope, varies)
@@ -100,7 +100,7 @@ class RandomWaves(eqx.Module):
 
         Args:
             key: Key of `jax.random`.
-            shape: Of the surfaces that are drawn.
+            shape: Shape of the array of surfaces that are drawn.
         """
         sized, turned = jax.random.split(key)
         every = *shape, self.high - self.low + 1
@@ -121,8 +121,10 @@ class SampledErrors(NamedTuple):
     """Deviations of one bearing from its design.
 
     Attributes:
-        diameter: Of each rolling element (element,) [m]; `None`: none.
-        azimuth: Of each rolling element (element,) [rad]; `None`: none.
+        diameter: Deviation of the diameter of each rolling element (element,) [m];
+            `None`: none.
+        azimuth: Deviation of the azimuth of each rolling element (element,) [rad];
+            `None`: none.
         errors: Form errors.
     """
 
@@ -137,14 +139,15 @@ class Tolerances(eqx.Module):
     Attributes:
         diameter: Range of the diameters of the rolling elements of one bearing [m];
             they are distributed uniformly about the nominal one.
-        spacing: Likewise of the azimuth of a rolling element in its pocket [rad].
+        spacing: Range of the azimuth of a rolling element in its pocket [rad].
         outer_eccentricity: Root mean square over bearings of the eccentricity of the
             outer raceway; its cosine and sine are distributed normally [m].
-        inner_eccentricity: Likewise of the inner raceway [m].
+        inner_eccentricity: Root mean square over bearings of the eccentricity of the
+            inner raceway [m].
         outer_axial: Waves of the outer raceway along the axis.
         outer_outwards: Waves of the outer raceway away from the axis.
-        inner_axial: Of the inner raceway.
-        inner_outwards: Of the inner raceway.
+        inner_axial: Waves of the inner raceway along the axis.
+        inner_outwards: Waves of the inner raceway away from the axis.
         elements: Waves of every rolling element around its circle of rolling.
 
     Traced: all real numbers.
@@ -203,10 +206,12 @@ class Tolerances(eqx.Module):
         Args:
             grade: "G10" of balls or "II" of rollers; see `ball_grade`, `roller_grade`.
             bearing: The bearing; of a set the first row counts.
-            runout: Of the rings, from `running_accuracy`; `None`: no eccentricity.
+            runout: Radial runout of the rings, from `running_accuracy`; `None`: no
+                eccentricity.
             waviness: Root mean square of the heights of both raceways outwards,
                 orders 2 to `highest` [m]; `None`: none.
-            axial_waviness: Likewise along the axis [m]; `None`: none.
+            axial_waviness: Root mean square of the heights of both raceways along the
+                axis [m]; `None`: none.
             spacing: See the class [rad].
             highest: Last order of the raceways.
             highest_of_elements: Last order of the rolling elements.

@@ -58,10 +58,10 @@ class Vibration(eqx.Module):
 
     Attributes:
         time: (time,) [s].
-        displacement: Of the moving ring from equilibrium without form errors, its
-            freedoms (time, k) [m, rad].
-        acceleration: Likewise, of frequencies up to `bandwidth` (time, k)
-            [m/s², rad/s²].
+        displacement: Displacement of the moving ring from equilibrium without form
+            errors, its freedoms (time, k) [m, rad].
+        acceleration: Acceleration of the moving ring, with frequencies up to
+            `bandwidth` (time, k) [m/s², rad/s²].
         contact_load: Load of every contact (time, element, contact) [N].
         azimuth: Azimuth of every rolling element (time, element) [rad].
         shaft_frequency: Frequency of the ring that turns faster [Hz].
@@ -139,9 +139,10 @@ def vibration(
         turns: Recorded turns. Static.
         settle: Turns before them; with 0, form errors are present at once. Static.
         samples: Per turn. Static.
-        steps: Of the integration, per sample; `None`: `needed_steps`, and up to eight
-            times as many where form errors or impacts press contacts so much harder
-            than the load that these are too few. Static; under `jit` it must be given.
+        steps: Steps of the integration per sample; `None`: `needed_steps`, and up to
+            eight times as many where form errors or impacts press contacts so much
+            harder than the load that these are too few. Static; under `jit` it must be
+            given.
         throw: Raise if the record is not finite, or the bearing finds no place under
             its load; otherwise read `result`. Static.
 

@@ -35,7 +35,7 @@ class Integrated(NamedTuple):
     Attributes:
         state: Pytree of states.
         steps: Steps in time, rejected ones included.
-        rejected: Those.
+        rejected: Number of rejected steps.
         result: `Result` code.
     """
 

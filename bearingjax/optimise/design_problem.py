@@ -44,7 +44,7 @@ class Outcome(NamedTuple):
         objective: The objective, smooth.
         exact: The objective with the true maximum in place of the smooth one.
         constraints: The measures that are bounded, smooth (constraint,).
-        exact_constraints: The same with true maxima and minima (constraint,).
+        exact_constraints: Constraints with true maxima and minima (constraint,).
         solution: Solution of all cases, leading axis case.
         doubts: Gives the warnings of the rating life among the measures, if one is,
             and of a system.
@@ -204,7 +204,7 @@ class Run(NamedTuple):
 
     Attributes:
         measures: Objective and constrained measures, smooth (measure,).
-        exact: The same with true maxima and minima (measure,).
+        exact: Measures with true maxima and minima (measure,).
         solution: Solution of all cases, leading axis case.
         jacobian: d(measures)/d(unit) (measure, variable), if asked for.
     """

@@ -74,7 +74,7 @@ class Optimised:
         result: "converged" (`optimality` is within the tolerance and the constraints
             are kept), "step_limit", "stalled" (the method could not go on), or
             "infeasible" (no design was found that keeps the constraints).
-        message: The same in words.
+        message: Result in words.
         cases: The operating cases.
     """
 

@@ -237,7 +237,8 @@ def level_distribution(
     """Plot the cumulative distribution of levels over bearings [%].
 
     Args:
-        level: Of each bearing (bearing, direction) [dB]; NaN of those that failed.
+        level: Level of each bearing (bearing, direction) [dB]; NaN of those that
+            failed.
         reference: Acceleration of 0 dB [m/s²].
     """
     marks = []

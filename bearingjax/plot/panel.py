@@ -208,7 +208,7 @@ def curves(x: Any, columns: Any, names: Sequence[str] = (), **look: Any) -> list
     Args:
         x: (point,) [SI].
         columns: (point, curve) [SI].
-        names: Of the curves; those beyond have none.
+        names: Names of the curves; those beyond have none.
         look: As in `Curve`.
     """
     columns = np.asarray(columns, float)

@@ -31,7 +31,7 @@ class AbstractDamping(eqx.Module):
 
         Args:
             shaft: Mass and stiffness matrix of the shaft alone.
-            rotor: Those of the whole rotor on its supports.
+            rotor: Matrices of the whole rotor on its supports.
         """
 
 

@@ -180,7 +180,7 @@ class Housing(eqx.Module):
     Attributes:
         mass: Mass [kg].
         stiffness: Against ground, in x, y and z (3, 3), or its diagonal (3,) [N/m].
-        damping: Likewise (3, 3), or its diagonal (3,) [N s/m].
+        damping: Damping in the same directions (3, 3), or its diagonal (3,) [N s/m].
 
     Traced: all fields.
     """
@@ -273,7 +273,7 @@ class LinearSupport(AbstractSupport):
         station: Number of the supported station.
         stiffness: d(Fx, Fy, Fz, Mx, My)/d(ux, uy, uz, gx, gy) (5, 5), or its diagonal
             (5,) [N/m, N, N m].
-        damping: Likewise, over the rates [N s/m, N s, N m s].
+        damping: Damping force over the rates of the motion [N s/m, N s, N m s].
         housing: Its housing; `None`: ground.
 
     Traced: stiffness, damping, housing.

@@ -98,9 +98,9 @@ class Unsupported(NamedTuple):
     """Matrices on all motions (motion, motion) of a rotor without its supports.
 
     Attributes:
-        mass, damping, gyroscopic, stiffness: Of shaft, discs and housings, as in
-            `RotorMatrices`.
-        shaft_mass, shaft_stiffness: Of the shaft alone.
+        mass, damping, gyroscopic, stiffness: Matrices of shaft, discs and housings, as
+            in `RotorMatrices`.
+        shaft_mass, shaft_stiffness: Matrices of the shaft alone.
     """
 
     mass: Matrix
@@ -216,8 +216,8 @@ class Rotor(eqx.Module):
 
         Args:
             speed: Speed of the rotor, positive from x towards y [rad/s].
-            motion: Of nodes and housings, about which supports are linearised [m,
-                rad]; zero unless given.
+            motion: Motion of nodes and housings, about which supports are linearised
+                [m, rad]; zero unless given.
 
         Returns:
             RotorMatrices, differentiable with respect to every number.

@@ -40,7 +40,8 @@ class Shaft(eqx.Module):
 
     Attributes:
         stations: Axial positions, rising (station,) [m].
-        outer_diameter: Of each segment (segment,) [m]; one number serves all.
+        outer_diameter: Outer diameter of each segment (segment,) [m]; one number serves
+            all.
         bore: Diameter of the hole of each segment (segment,) [m]; zero: solid.
         material: Material of all segments, or a tuple with one for each.
         divisions: Elements of each segment (segment,); one number serves all.

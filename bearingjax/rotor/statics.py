@@ -45,7 +45,7 @@ class StaticEquilibrium(eqx.Module):
         housing: (ux uy uz) of every housing (housing, 3) [m].
         support_load: Load of the shaft on every support (support, 5) [N, N m].
         stiffness: Stiffness of every support there (support, 5, 5) [N/m, N, N m].
-        damping: Likewise (support, 5, 5) [N s/m, N s, N m s].
+        damping: Damping of each support (support, 5, 5) [N s/m, N s, N m s].
         rotor: The rotor on springs and dampers of that stiffness and damping, for all
             linear analyses about this place.
         motion: Displacements of all nodes and housings (motion,) [m, rad].

@@ -21,7 +21,7 @@ class BearingOil(eqx.Module):
         temperature: Its temperature [K]; `None`: that of the rings (`ThermalPaths`).
         supply: As in `friction_torque`.
         skf: Whether friction is that of SKF's model, else of Palmgren's.
-        series: Of SKF's model, as in `skf_friction_torque`.
+        series: Series of SKF's model, as in `skf_friction_torque`.
         diameters: Bore and outside diameter for SKF's model (2,) [m].
 
     Traced: all numbers. Static: supply, skf, series.
@@ -42,8 +42,8 @@ class BearingOil(eqx.Module):
         """Return the power lost in a bearing [W].
 
         Args:
-            solution: Of the bearing, turning.
-            temperature: Of the oil, in place of its own [K].
+            solution: Solution of the bearing, turning.
+            temperature: Temperature of the oil, in place of its own [K].
 
         Raises:
             ValueError: For bearings without known constants of friction.

@@ -253,7 +253,7 @@ def bearing_results(
     Args:
         solution: From `in_place`.
         speed: Its ring speeds.
-        conditions: Of its life.
+        conditions: Life conditions of the bearing.
     """
     life = life_of(solution.element, solution, conditions, speed=speed)
     lives = {name: getattr(life, name) for name in LIVES}

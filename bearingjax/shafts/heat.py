@@ -3,8 +3,8 @@
 Each bearing has two temperatures, of its inner ring with the shaft below it and of its
 outer ring with the seat around it; the housing with the oil sump may have one more.
 Friction heats both rings alike, losses of meshes heat the housing. Heat flows from the
-inner ring along the shaft to the ambience, from ring to ring, from the outer ring to
-the housing, or without one to the ambience, and from the housing to the ambience.
+inner ring along the shaft to the surroundings, from ring to ring, from the outer ring
+to the housing, or without one to the surroundings, and from the housing to these.
 Friction depends on temperature through viscosity, and through the clearance and the
 preload of warm rings, shafts and housings.
 """
@@ -46,16 +46,17 @@ class ThermalPaths(eqx.Module):
     """Paths of the heat of a bearing.
 
     Attributes:
-        inner: From the inner ring along the shaft to the ambience [W/K].
-        outer: From the outer ring to the housing, or without one to the ambience [W/K].
+        inner: From the inner ring along the shaft to the surroundings [W/K].
+        outer: From the outer ring to the housing, or without one to the surroundings
+            [W/K].
         through: From ring to ring, by rolling elements and oil [W/K].
         shaft_share: Rise of the shaft below the bearing over that of the inner ring,
-            above the ambience [1].
+            above the surroundings [1].
         housing_share: Rise of the seat over that of the outer ring [1].
         inner_capacity: Heat capacity of the inner ring with the shaft below it, which
             counts in time only [J/K].
         outer_capacity: Heat capacity of the outer ring with its seat, likewise [J/K].
-        oil: Of the bearing, as warm as the mean of both rings.
+        oil: Oil of the bearing, as warm as the mean of both rings.
 
     Traced: all numbers.
     """
@@ -86,10 +87,10 @@ class HeatNetwork(eqx.Module):
     """Paths of all heat of a system.
 
     Attributes:
-        ambient: Temperature of the ambience [K].
-        paths: Of each bearing; `None` of springs.
-        housing: From the housing to the ambience [W/K]; `None`: the housing is as cold
-            as the ambience, and takes the losses of the meshes.
+        ambient: Temperature of the surroundings [K].
+        paths: Heat paths of each bearing; `None` of springs.
+        housing: From the housing to the surroundings [W/K]; `None`: the housing is as
+            cold as the surroundings, and takes the losses of the meshes.
         housing_capacity: Heat capacity of housing and oil [J/K].
     """
 
@@ -161,7 +162,8 @@ class ThermalState(eqx.Module):
     Attributes:
         inner_ring: Temperature of each inner ring (bearing,) [K].
         outer_ring: Temperature of each outer ring (bearing,) [K].
-        housing: Of housing and oil [K]; the ambience without a node of its own.
+        housing: Temperature of housing and oil [K]; the surroundings without a node of
+            its own.
         friction: Power lost in each bearing (bearing,) [W].
         system: The system with these temperatures.
         solution: Its equilibrium.
@@ -190,7 +192,7 @@ def solve_heat(
 ) -> ThermalState:
     """Find the temperatures of a system, and its equilibrium at them.
 
-    A system at rest is as cold as the ambience.
+    A system at rest is as cold as the surroundings.
 
     Args:
         system: The system; clearances, preloads and the distance of its bearings change
@@ -260,7 +262,7 @@ def failure_message(state: ThermalState) -> str:
         return f"solve_heat: the shafts have no equilibrium when warm: {label}."
     return (
         "solve_heat: no thermal equilibrium within"
-        f" {HOTTEST:g} K above the ambience: friction grows faster with temperature"
+        f" {HOTTEST:g} K above the surroundings: friction grows faster with temperature"
         " than cooling. Give less preload or speed, more clearance, or larger"
         " conductances."
     )
@@ -305,7 +307,7 @@ def runaway_speed(
     Args:
         system, network: As in `solve_heat`; the sign of the drive's speed is kept.
         highest: Speed up to which it is sought, above 0 [rad/s].
-        tolerance: Of the speed, relative [1].
+        tolerance: Relative error allowed of the speed [1].
 
     Returns:
         Speed, infinite if they do not run away up to the highest.
@@ -399,7 +401,7 @@ def with_temperatures(
     Args:
         system: The system.
         network: Paths of the heat.
-        rises: Of its nodes above the ambience (node,) [K].
+        rises: Rise of its nodes above the surroundings (node,) [K].
     """
     seats = []
     for k, (seat, path) in enumerate(zip(system.seats, network.paths, strict=True)):
@@ -438,7 +440,7 @@ def heat_made(
     """Return the heat made at every node [W].
 
     Args:
-        rises: Of the nodes above the ambience (node,) [K].
+        rises: Rise of the nodes above the surroundings (node,) [K].
         args: The system, from `with_preload_offsets`, and its network.
     """
     return heat_and_state(rises, *args)[0]
@@ -450,7 +452,7 @@ def heat_and_state(
     """Return the heat made at every node [W], and the equilibrium there.
 
     Args:
-        rises: Of the nodes above the ambience (node,) [K].
+        rises: Rise of the nodes above the surroundings (node,) [K].
         system: The system, from `with_preload_offsets`.
         network: Paths of its heat.
     """

@@ -18,7 +18,7 @@ from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import eigvals, solve_any
 
 HOTTEST = 300.0
-"""Rise above the ambience from which there is no thermal equilibrium [K]."""
+"""Rise above the surroundings from which there is no thermal equilibrium [K]."""
 _STEPS = 100
 _TOLERANCE = 1e-10
 """Heat out of balance over the heat that is made [1]."""
@@ -40,11 +40,11 @@ def steady_rises(
     Args:
         heat: Function (rises, args) -> heat made at each node (node,) [W].
         args: Pytree with all that the heat depends on.
-        conductance: Of the network (node, node) [W/K].
-        capacity: Of the nodes (node,) [J/K].
+        conductance: Conductances of the network (node, node) [W/K].
+        capacity: Heat capacity of the nodes (node,) [J/K].
 
     Returns:
-        Rises above the ambience (node,) [K], differentiable with respect to args,
+        Rises above the surroundings (node,) [K], differentiable with respect to args,
         conductance and capacity; rate of the slowest disturbance [1/s]; residual [1];
         steps; whether it was found. Rises are those of the last step if it was not.
     """
@@ -179,7 +179,7 @@ def rises_over_time(
         n: Steps between two times. Static.
 
     Returns:
-        Rises above the ambience (time, node) [K]; NaN from where they run away.
+        Rises above the surroundings (time, node) [K]; NaN from where they run away.
 
     Source: Verwer's ROS2, linearly implicit, of second order and L-stable.
     """

@@ -31,7 +31,7 @@ class Plan(NamedTuple):
     """Order of the stations of a shaft; static.
 
     Attributes:
-        stations: Of each station, the name of the part there, or the number of the end
+        stations: For each station, the name of the part there, or the number of the end
             of a segment.
         segments: Number of the segment between each station and the next.
         divisions: Beam elements there.

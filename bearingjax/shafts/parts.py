@@ -89,7 +89,7 @@ class AbstractWheel(AbstractPlaced):
             one of the two may name the other. `None`: none of the system.
         torque: By which a mate outside the system acts on the shaft, about its local z
             [N m]; `None`: from the balance of torques, of one wheel at most.
-        power: The same as power into the shaft, negative out of it [W].
+        power: Power into the shaft in place of `torque`, negative out of it [W].
         efficiency: Power out over power in [1]; a pair has the product of both. Each
             mate bears the force of that which gives the power.
     """
@@ -266,7 +266,7 @@ class Coupling(eqx.Module):
         name: Name, unique in the system.
         shaft: Name of the shaft.
         torque: On the shaft about its local z [N m]; `None`: from the balance.
-        power: The same as power into the shaft, negative out of it [W].
+        power: Power into the shaft in place of `torque`, negative out of it [W].
     """
 
     name: str = eqx.field(static=True)
@@ -359,8 +359,8 @@ class Seat(AbstractPlaced):
             by a half turn about local x.
         floating: Whether its outer ring slides along the housing, so that it carries no
             axial force.
-        stiffness: Of springs in place of the bearing, in local ux uy uz gx gy (5,)
-            [N/m, N m]; `None`: the bearing.
+        stiffness: Stiffness of springs in place of the bearing, in local ux uy uz gx gy
+            (5,) [N/m, N m]; `None`: the bearing.
 
     Traced: all numbers. Static: names, floating, turned.
     """

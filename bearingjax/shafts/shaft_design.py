@@ -305,7 +305,7 @@ class Worst(AbstractSmooth):
     """A number of the bearing, or mesh, and the case in which it is worst.
 
     Attributes:
-        kind: Of bearings "rating_life" [h], of all cases together, or "static_safety",
+        kind: For bearings "rating_life" [h], of all cases together, or "static_safety",
             the least; "peak_pressure" [Pa] or "tilt" [rad] of inner against outer ring,
             the largest; of gears "misalignment" [rad], the largest. As an objective the
             first two are made largest, and of the last one the square least.

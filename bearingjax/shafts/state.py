@@ -49,8 +49,8 @@ class SystemSolution(eqx.Module):
         shafts: State of each shaft.
         load: Force and moment of the shaft on the inner ring of each bearing, in global
             axes (bearing, 6) [N, N m]. The moment about the shaft is zero.
-        displacement: Of each inner ring against its outer ring, in global axes, without
-            what preload and heat displace (bearing, 6) [m, rad].
+        displacement: Displacement of each inner ring against its outer ring, in global
+            axes, without what preload and heat displace (bearing, 6) [m, rad].
         housing: Motion of each seat of the housing in global axes (seat, 3 or 6)
             [m, rad].
         motion: Inner ring in each bearing, in the axes of the bearing (bearing, 5)
@@ -154,7 +154,7 @@ def _lines(z, acting, weight, moved):
     """Return position, displacement, shear and moment at both ends of all elements.
 
     Args:
-        z: Of the nodes (node,) [m].
+        z: Axial positions of the nodes (node,) [m].
         acting: Forces and moments on them (node, 5) [N, N m].
         weight: Weight of each element (element, 3) [N].
         moved: Displacements of the nodes (node, 5) [m, rad].

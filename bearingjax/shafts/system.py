@@ -48,7 +48,7 @@ def feel_speed(known: Iterable[bool | None]) -> bool | None:
     """Return `ShaftSystem.inertia` of systems that share it: what one of them needs.
 
     Args:
-        known: That of each.
+        known: `inertia` of each system.
     """
     known = [one for one in known if one is not None]
     return any(known) if known else None

@@ -32,7 +32,8 @@ class BalancedLoads(eqx.Module):
     Attributes:
         skid: The bearing and its oil.
         prepared: The bearing at ring speeds that do not change, or `None`.
-        ellipses: Of its contacts, or `None` where they change with their angles.
+        ellipses: Ellipses of its contacts, or `None` where they change with their
+            angles.
         balance: Balance of the ring, with its free freedoms.
         load: Function of time [s] that returns the load on the ring (6,) [N, N m];
             a pytree.

@@ -29,8 +29,8 @@ class Conditions(NamedTuple):
         outside_fluid_range: Whether the oil is a glass at the peak pressure.
         shear: Size of the shear stress, summed up over the contact, over the load: no
             more than a traction coefficient can be; 0 without load [1].
-        semi_axes: Of the ellipse of a ball, in rolling direction and across (…, 2) [m];
-            of rollers `None`.
+        semi_axes: Semi-axes of the ellipse of a ball, in rolling direction and across
+            (…, 2) [m]; of rollers `None`.
     """
 
     peak_pressure: Float[Array, "..."]
@@ -114,7 +114,7 @@ def by_raceway(values: ArrayLike, load: ArrayLike) -> np.ndarray:
     """Values of contacts (…, contact) by raceway (…, 2), of the busier of two arcs.
 
     Args:
-        values: Of each contact, concrete.
+        values: Value at each contact, concrete.
         load: Loads of the contacts, of the same shape.
     """
     load, values = np.asarray(load), np.asarray(values)

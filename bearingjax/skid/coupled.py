@@ -37,8 +37,8 @@ class Masses(NamedTuple):
     """Masses: 1, or 0 for an unknown in equilibrium at every time.
 
     Attributes:
-        own: Of the unknowns of a body (k,).
-        shared: Of the shared ones (m,).
+        own: Masses of the unknowns of a body (k,).
+        shared: Masses of the shared unknowns (m,).
     """
 
     own: Float[Array, " k"]
@@ -125,11 +125,11 @@ class Slopes(NamedTuple):
     """Derivatives of rates.
 
     Attributes:
-        own: Of bodies' rates by their own unknowns (body, k, k).
-        across: Of bodies' rates by the shared unknowns (body, k, m).
-        down: Of shared rates and sums by own unknowns (body, m + w, k).
-        shared: Of shared rates and sums by the shared unknowns (m + w, m).
-        time: Of all by time.
+        own: Derivative of the bodies' rates by their own unknowns (body, k, k).
+        across: Derivative of the bodies' rates by the shared unknowns (body, k, m).
+        down: Derivative of shared rates and sums by own unknowns (body, m + w, k).
+        shared: Derivative of shared rates and sums by the shared unknowns (m + w, m).
+        time: Derivative of all rates by time.
     """
 
     own: Float[Array, "body k k"]
@@ -142,7 +142,7 @@ class Slopes(NamedTuple):
         """Function that solves (M scale - J) x = right for x.
 
         Args:
-            masses: Of the unknowns.
+            masses: Masses of the unknowns.
             scale: Factor of the masses [1/s].
         """
         m = masses.shared.shape[0]

@@ -39,10 +39,10 @@ class LoadTable(eqx.Module):
     """Loaded balls or rollers over the azimuth; from `load_table`.
 
     Attributes:
-        rows: Of every place: coefficients of the spline, of one place what is there;
-            then its number [1] (place, n). The number stands here because a compiler
-            may work out the place of an angle twice, and round it to two neighbouring
-            places: number and coefficients are then of one.
+        rows: For every place the coefficients of the spline, of one place what is
+            there; then its number [1] (place, n). The number stands here because a
+            compiler may work out the place of an angle twice, and round it to two
+            neighbouring places: number and coefficients are then of one.
         like: One of them, for what does not depend on its place.
 
     Largest errors against an evaluation at the azimuth itself, five balls under 250 N

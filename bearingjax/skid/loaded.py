@@ -50,7 +50,8 @@ def orbiting(
     Args:
         element: The bearing, of one row of like balls or rollers.
         speed: Ring speeds.
-        excess: Of their orbital speeds, each one's (body,) or that of all () [rad/s].
+        excess: Excess of their orbital speeds over pure rolling, each one's (body,) or
+            that of all () [rad/s].
     """
 
     def one(excess):

@@ -53,8 +53,8 @@ class SkidState(NamedTuple):
     """Motion of all balls and the cage, and position of the ring.
 
     Attributes:
-        spin: Of each ball relative to its orbiting frame, tangential, radial, axial
-            (ball, 3); of a roller about its axis (roller, 1) [rad/s].
+        spin: Spin of each ball relative to its orbiting frame, tangential, radial,
+            axial (ball, 3); of a roller about its axis (roller, 1) [rad/s].
         orbit: Orbital speeds (ball,) [rad/s].
         lead: Angle by which each ball is ahead of the middle of its pocket (ball,)
             [rad].

@@ -82,7 +82,7 @@ def rising_and_finite(self, time: Float[Array, " knot"], names) -> None:
     Args:
         self: The table.
         time: Its times [s].
-        names: Of its fields that must be finite.
+        names: Names of its fields that must be finite.
 
     Raises:
         ValueError: For times that do not rise, or numbers that are not finite.

@@ -46,7 +46,7 @@ class Drag(eqx.Module):
             orbit: Orbital speed [rad/s].
             area: Frontal area [m²].
             pitch_radius: Radius of the orbit [m].
-            density: Of the oil [kg/m³].
+            density: Density of the oil [kg/m³].
         """
         speed = 2.0 * pitch_radius * orbit
         mixture = self.fill * density * self.coefficient
@@ -64,7 +64,7 @@ class Cage(eqx.Module):
     Attributes:
         pocket_clearance: Play of a ball or roller in its pocket along the orbit, from
             front to rear [m].
-        stiffness: Of a pocket against what is in it [N/m].
+        stiffness: Stiffness of a pocket against the rolling element [N/m].
         inertia: Moment of inertia about the bearing axis [kg m²].
 
     Traced: all fields.

@@ -35,7 +35,7 @@ class Kind(NamedTuple):
         text: The sentence with `{size}`, `{limit}` and `{where}`.
         where: Concrete solution -> the rows, elements or numbers concerned, in words.
         many: Size -> the words in place of those of `where` for many cases.
-        factor: Of size and limit in the text.
+        factor: Factor of size and limit in the text.
         of_all: Whether it is reported only if it applies to all cases.
     """
 

@@ -229,7 +229,7 @@ def test_balance_of_heat():
 
 @pytest.mark.slow
 def test_solve_heat_at_rest():
-    """Nothing warms a system at rest: it is as cold as the ambience."""
+    """Nothing warms a system at rest: it is as cold as the surroundings."""
     found = solve_heat(spindle(speed=0.0), network())
     rings = [found.inner_ring, found.outer_ring]
     np.testing.assert_array_equal(rings, np.full((2, 2), 293.15))

@@ -35,10 +35,10 @@ class GuidedCage(eqx.Module):
         mass: [kg].
         inertia: Moment of inertia about the bearing's axis [kg m²].
         contact: Force law of pockets and land.
-        pocket_clearance: Of a ball in its pocket along the pitch circle, from bar to
-            bar [m].
-        land_clearance: Of the land on the guiding ring, in diameter [m].
-        friction: Of balls on raceways that they slide on [1].
+        pocket_clearance: Clearance of a ball in its pocket along the pitch circle, from
+            bar to bar [m].
+        land_clearance: Clearance of the land on the guiding ring, in diameter [m].
+        friction: Friction coefficient of balls on raceways that they slide on [1].
         sliding_speed: v of friction · tanh(sliding/v), by which it sets in [m/s].
         load: On the cage along x and y, such as its weight (2,) [N].
         guiding_ring: "outer" or "inner". Static.
@@ -101,8 +101,8 @@ def cage_loads(
         place: Its x, y and turn beyond the even orbit (3,) [m, rad].
         arcs: Lead of every rolling element over uniform orbit (element,) [m].
         ring: x and y of the guiding ring [m].
-        pitch_radius: Of the circle of the rolling elements [m].
-        azimuth: Of the rolling elements [rad].
+        pitch_radius: Radius of the circle of the rolling elements [m].
+        azimuth: Azimuth of the rolling elements [rad].
     """
     ahead = arcs - _along(azimuth, pitch_radius) @ place
     half = 0.5 * cage.pocket_clearance
@@ -158,7 +158,7 @@ def fastest_of_cage(
         push: Largest force of a contact [N].
         count: Number of balls, evenly spaced.
         ball_mass, ring_mass: [kg].
-        pitch_radius: Of the circle of the balls [m].
+        pitch_radius: Radius of the circle of the balls [m].
 
     Source: ω² of the pockets is k (1/m + z max(R²/I, 1/2M)), since turn, x and y of the
         cage are orthogonal over even pockets; that of the land k (1/M + 1/m_ring); of

@@ -56,7 +56,7 @@ class CageContact(eqx.Module):
         Finite, with three derivatives, for every approach that is.
 
         Args:
-            approach: Of the surfaces, positive where they meet (...) [m].
+            approach: Approach of the surfaces, positive where they meet (...) [m].
         """
         # Nearer to zero the third power of an approach has no inverse.
         apart = approach <= jnp.finfo(approach.dtype).tiny ** 0.25

@@ -123,7 +123,7 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
     Args:
         values: With an axis element.
         bearing: A single row or a set.
-        axis: That axis. Static.
+        axis: Axis of the elements in `values`. Static.
     """
     counts = [row.bearing.n_elements for row in rows_of(bearing)]
     cut = jnp if isinstance(values, jax.Array) else np

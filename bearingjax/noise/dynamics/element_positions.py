@@ -35,7 +35,7 @@ class ElementPositions(NamedTuple):
 
     Attributes:
         azimuth: Azimuths of the elements (element,) [rad].
-        cosine, sine: Of the azimuth (element,) [1].
+        cosine, sine: Cosine and sine of the azimuth (element,) [1].
         axial: Axial deviation of outer and inner raceway there, (2, element) [m];
             `None`: none.
         outwards: Radial deviation, away from the axis, (2, element) [m]; `None`: none.

@@ -271,7 +271,7 @@ class NoiseSystem(eqx.Module):
 
         Args:
             motion: Coordinates (n,) [m, rad].
-            positions: Those of the rolling elements.
+            positions: Positions of the rolling elements.
         """
         return self._assembled(motion, positions, self._pressed(motion, positions))
 
@@ -331,7 +331,7 @@ class NoiseSystem(eqx.Module):
         Args:
             cage: Cage of the bearing.
             motion, velocity: [m, rad], [m/s, rad/s].
-            positions: Those of the rolling elements.
+            positions: Positions of the rolling elements.
         """
         outer, inner, even, _ = self.speeds
         radius = self.row.pitch_radius
@@ -387,8 +387,9 @@ class _Pressed(NamedTuple):
     """Forces of the damped contacts, reversed.
 
     Attributes:
-        on_ring: Of the moving ring's raceway, in the elements' axial sections [N, N m].
-        on_places: Of the elements (element, m) [N, N m].
+        on_ring: Forces on the moving ring's raceway, in the elements' axial sections
+            [N, N m].
+        on_places: Forces on the elements (element, m) [N, N m].
         pockets, land: As `cage_loads` [N]; `None` without a cage.
     """
 

@@ -25,7 +25,7 @@ def orbits(
 
     Args:
         motion: x and y over the time (time, station, 2) [m].
-        names: Of the stations.
+        names: Names of the stations.
         points: Poincaré points, once a period of the excitation (point, station, 2)
             [m].
         closed: Whether the last place leads back to the first: periodic orbits.
@@ -66,9 +66,9 @@ def waveforms(
 
     Args:
         motion: (sample, curve) [m, rad].
-        time: Of the samples (sample,) [s]; `None`: they are at even phases of a period
-            from 0 on.
-        names: Of the curves.
+        time: Time of the samples (sample,) [s]; `None`: they are at even phases of a
+            period from 0 on.
+        names: Names of the curves.
         unit: Unit of the displacements: "um", or "mrad" for tilts.
     """
     motion, over = np.asarray(motion, dtype=float), Axis("time", "s")

@@ -68,7 +68,7 @@ def draw_bearing(ax: Any, support: BearingSupport, z: float) -> float:
     Args:
         ax: Axes.
         support: The bearing on the shaft.
-        z: Of its station [mm].
+        z: Axial position of its station [mm].
 
     Returns:
         Radius of its outside [mm].
@@ -135,7 +135,7 @@ def draw_law(
     Args:
         ax: Axes.
         support: With a `law` and `turned`.
-        z: Of its station [mm].
+        z: Axial position of its station [mm].
         shaft_radius: There [mm].
         size: Size of the symbol [mm].
 
@@ -197,7 +197,7 @@ def draw_below(
     Args:
         ax: Axes.
         support: The support.
-        z: Of its station [mm].
+        z: Axial position of its station [mm].
         outside: Radius at which it ends [mm].
         size: Size of the symbols [mm].
 

@@ -51,8 +51,8 @@ def response_curve(
 
     Args:
         branch: From `follow`.
-        amplitude: Of its points, such as a column of `branch.amplitude` (point,) [m,
-            rad].
+        amplitude: Amplitude of its points, such as a column of `branch.amplitude`
+            (point,) [m, rad].
         unit: Unit of the amplitude: "um", or "mrad" for a tilt.
         linear: Frequencies [rad/s] and amplitudes [m, rad] of the linear response.
     """
@@ -123,7 +123,7 @@ def speed_curve(
         speed: (point,) [rad/s].
         amplitude: (point,) or (point, curve) [m, rad].
         unit: Unit of the amplitude: "um", or "mrad" for tilts.
-        names: Of the curves.
+        names: Names of the curves.
         title: Title of the axes.
     """
     values = np.asarray(amplitude, dtype=float)

@@ -51,7 +51,7 @@ class UnbalanceResponse(eqx.Module):
         speed: Ω (speed,) [rad/s].
         motion: Complex amplitudes of (ux uy uz gx gy) of every node
             (speed, node, 5) [m, rad].
-        housing: Of (ux uy uz) of every housing (speed, housing, 3) [m].
+        housing: Amplitude of (ux uy uz) of every housing (speed, housing, 3) [m].
     """
 
     speed: Float[Array, " speed"]

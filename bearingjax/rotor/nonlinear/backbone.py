@@ -54,7 +54,7 @@ class Backbone(eqx.Module):
         damping_ratio: ζ; that of a linear oscillator that loses as much (point,) [1].
         displacement: At even phases from the peak of the given freedom on
             (point, sample, n) [m, rad].
-        velocity: Likewise (point, sample, n) [m/s, rad/s].
+        velocity: Velocity at the samples (point, sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak (point, n) [m, rad].
         residual: Residual of the method's equations, largest (point,) [1].
         steps: Newton steps (point,).

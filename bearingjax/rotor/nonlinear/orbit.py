@@ -36,7 +36,7 @@ class PeriodicOrbit(eqx.Module):
     Attributes:
         frequency: Frequency of the excitation [rad/s].
         displacement: At even phases from 0 on (sample, n) [m, rad].
-        velocity: Likewise (sample, n) [m/s, rad/s].
+        velocity: Velocity at the samples (sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak over the period (n,) [m, rad].
         multipliers: Floquet multipliers (2n,) [1].
         stable: Whether all multipliers lie within the unit circle.

@@ -37,7 +37,7 @@ def peak(
     It is sought on the curve between the points of the branch.
 
     Args:
-        system: That of the branch, or one so near that the points of the branch are
+        system: System of the branch, or one so near that the points of the branch are
             good guesses, as in differences.
         branch: From `follow`, by the same method.
         freedom: Whose amplitude. Static.

@@ -112,7 +112,7 @@ class Natural(NamedTuple):
     """Natural frequencies of the rotor at rest.
 
     Attributes:
-        radial: Of either plane (2,) [rad/s].
+        radial: Natural frequencies of either plane (2,) [rad/s].
         axial: [rad/s].
     """
 

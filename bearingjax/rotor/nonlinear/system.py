@@ -137,9 +137,9 @@ class HarmonicLoad(eqx.Module):
     Attributes:
         constant: Such as weight (n,) [N, N m].
         cosine, sine: Amplitudes of cos φ and sin φ (n,) [N, N m].
-        unbalance_cosine, unbalance_sine: Likewise, over ω²; they turn with the phase,
-            and where the frequency changes their tangential inertia acts too (n,)
-            [kg m, kg m²].
+        unbalance_cosine, unbalance_sine: Amplitudes of cos φ and sin φ over ω²; they
+            turn with the phase, and where the frequency changes their tangential
+            inertia acts too (n,) [kg m, kg m²].
 
     Traced: all fields.
     """

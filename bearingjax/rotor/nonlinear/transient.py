@@ -93,9 +93,9 @@ def simulate(
         times: When to report, rising, from 0 to `duration` (time,) [s]. Default:
             `n_times` of them, evenly spaced.
         n_times: Number of times, at least 2. Static.
-        tolerance: Of displacements over `scale`, of velocities over `scale` times the
-            reference frequency, and of larger ones relative to themselves. The error
-            of a step is held below a fiftieth of it.
+        tolerance: Error allowed of displacements over `scale`, of velocities over
+            `scale` times the reference frequency, and of larger ones relative to
+            themselves. The error of a step is held below a fiftieth of it.
         max_steps: Step limit. Static.
         derivatives: "reverse" or "forward": the mode in which the result can be
             differentiated. Static.

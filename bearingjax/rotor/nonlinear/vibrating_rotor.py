@@ -37,7 +37,8 @@ class VibratingRotor(AbstractVibratingSystem):
         rows: How each of them moves (support, 5, n).
         motions: How all nodes and housings move (motion, n).
         load: (phase, frequency, acceleration) -> forces (n,) [N, N m].
-        speed: Of the rotor [rad/s]; `None`: `rotation` times that of the excitation.
+        speed: Speed of the rotor [rad/s]; `None`: `rotation` times that of the
+            excitation.
         rotation: Turns of the rotor in one period of the excitation [1].
 
     Traced: all numbers.

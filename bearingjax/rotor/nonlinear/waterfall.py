@@ -108,7 +108,8 @@ class Spectra(NamedTuple):
 
     Attributes:
         speed: (line,) [rad/s].
-        frequency: Of the bins, of all spectra (bin,) or of each (line, bin) [Hz].
+        frequency: Frequency of the bins, of all spectra (bin,) or of each (line, bin)
+            [Hz].
         amplitude: (line, bin) [m, rad].
     """
 

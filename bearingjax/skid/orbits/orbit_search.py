@@ -57,7 +57,7 @@ class AbstractOrbit(eqx.Module):
         pressed: 1 where something is pressed between the rings, 0 where not: balls or
             rollers then come to rest, and without the centrifugal force of their orbit
             nothing would hold the ring in its place [1].
-        balance: Of the ring.
+        balance: Balance of the ring.
         azimuth: The places, spread evenly (place,) [rad].
         density: Density of the oil [kg/m³].
         along: Matrix of derivatives along the orbit (place, place) [1].

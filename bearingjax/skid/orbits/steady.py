@@ -188,8 +188,8 @@ def end_state(
 
     Args:
         model: The bearing, its oil and its surroundings.
-        solution: Of its load, for balls or rollers in pure rolling.
-        case: That load, with the speeds of the solution.
+        solution: Solution under its load, for balls or rollers in pure rolling.
+        case: Load case that the solution solves.
         options: Settings of its solve.
         speed: Ring speeds.
         count: Number of places along the orbit. Static.

@@ -60,7 +60,7 @@ class SteadyMotion(eqx.Module):
         displacement: Ring freedoms, outer ring first (12,) [m, rad].
         contact_load: Loads (place, contact) [N].
         orbit_speed: Orbital speed (place,) [rad/s].
-        rolling_orbit_speed: That of pure rolling (place,) [rad/s].
+        rolling_orbit_speed: Orbital speed in pure rolling (place,) [rad/s].
         film: Central films (place, contact) [m].
         heat: Heat of each contact (place, contact) [W].
         cage_speed: Mean orbital speed [rad/s].
@@ -179,11 +179,11 @@ class SteadyRollerSkid(SteadyMotion):
     Attributes are those of `SteadyMotion`, and
         solution: The bearing under its load, in pure rolling.
         spin: About the roller axis, relative to the orbiting frame (place,) [rad/s].
-        rolling_spin: That of pure rolling (place,) [rad/s].
+        rolling_spin: Spin in pure rolling (place,) [rad/s].
         sliding: Slip along the rolling direction (place, contact) [m/s].
-        cage_force: Of the cage on a roller, in the sense in which angles are counted:
-            where it is positive the rear of a pocket pushes, else the front holds back
-            (place,) [N].
+        cage_force: Force of the cage on a roller, in the sense in which angles are
+            counted: where it is positive the rear of a pocket pushes, else the front
+            holds back (place,) [N].
         conditions: In the contacts (place, contact).
     """
 

@@ -35,7 +35,7 @@ def tabulate_loads(
 
     Args:
         model: The bearing and its oil.
-        solution: Of its load.
+        solution: Solution under its load.
         speed: Ring speeds of that solution.
         places: Number of places. Static.
     """
@@ -65,7 +65,7 @@ def surroundings(
 
     Args:
         model: The bearing and its oil.
-        solution: Of its load.
+        solution: Solution under its load.
         load_speed: Ring speeds of that solution.
         speed: Ring speeds over time.
         gravity: Against y [m/s²].

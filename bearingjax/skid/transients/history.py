@@ -25,12 +25,12 @@ class SkidMotion(eqx.Module):
         state: The motion, leading axis time; `SkidState`.
         azimuth: Azimuth of the balls (time, ball) [rad].
         contact_load: Loads (time, ball, contact) [N].
-        rolling_orbit_speed: That of pure rolling (time, ball) [rad/s].
+        rolling_orbit_speed: Orbital speed in pure rolling (time, ball) [rad/s].
         displacement: Ring freedoms, outer ring first (time, 12) [m, rad].
         film: Central films (time, ball, contact) [m].
         heat: Heat of each contact (time, ball, contact) [W].
-        cage_force: Of the cage on the balls, in the sense in which angles are counted
-            (time, ball) [N].
+        cage_force: Force of the cage on the balls, in the sense in which angles are
+            counted (time, ball) [N].
         friction_torque: On the ring that drives, the one that turns faster, of the
             losses in `SkidModel` (time,) [N m].
         ring_torque: On outer and inner ring (time, 2) [N m].
@@ -39,7 +39,7 @@ class SkidMotion(eqx.Module):
         kinetic_energy: Kinetic energy of balls and cage (time,) [J].
         potential_energy: Potential energy of pockets and weights (time,) [J].
         steps: Steps in time, rejected ones included.
-        rejected: Those.
+        rejected: Number of rejected steps.
         result: `Result` code.
     """
 

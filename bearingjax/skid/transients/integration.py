@@ -30,7 +30,7 @@ class Integrated(NamedTuple):
         state: The motion.
         work: Work done since the beginning.
         steps: Steps in time, rejected ones included.
-        rejected: Those.
+        rejected: Number of rejected steps.
         result: `Result` code.
     """
 

@@ -106,10 +106,10 @@ def simulate(
             Default: if the load is a function of time.
         places: Places of the table, 1 where all loads are equal, or at least 6; static.
             Default: 1 if they are, else 96 (also if the load is traced).
-        tolerance: Of speeds relative to the fastest ring, of angles in rad, of work
-            relative to the kinetic energy of rolling balls. The error of a step is held
-            below a fiftieth of it. In smooth motion the error stays below it; where
-            balls strike the cage, 6 to 70 times larger ones were seen.
+        tolerance: Error allowed of speeds relative to the fastest ring, of angles in
+            rad, of work relative to the kinetic energy of rolling balls. The error of a
+            step is held below a fiftieth of it. In smooth motion the error stays below
+            it; where balls strike the cage, 6 to 70 times larger ones were seen.
         max_steps: Step limit. Static.
         derivatives: "reverse" or "forward": the mode in which the result can be
             differentiated. Where balls meet or leave the cage on the way derivatives

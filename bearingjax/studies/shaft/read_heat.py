@@ -28,7 +28,7 @@ class HeatKeys(Keys):
     numbers = {"": HeatNetwork}
 
     ambient: float = scene_key(
-        "temperature of the ambience",
+        "temperature of the surroundings",
         "temperature",
         default=None,
         least=-60,
@@ -45,8 +45,8 @@ class HeatKeys(Keys):
     )
 
     pauses: str = scene_key(
-        "temperature of bearings in cases at rest: that of the ambience, or the mean of"
-        " all cases over their hours",
+        "temperature of bearings in cases at rest: that of the surroundings, or the"
+        " mean of all cases over their hours",
         choices=("ambient", "mean"),
         default="ambient",
     )
@@ -126,7 +126,7 @@ def bearing_oil(scene: Scene, oil: Oil, temperature: Any = None) -> BearingOil:
     Args:
         scene: The bearing.
         oil: Its oil.
-        temperature: Of the oil [K]; `None`: it follows from the heat.
+        temperature: Temperature of the oil [K]; `None`: it follows from the heat.
     """
     known, series, diameters = skf_series(scene.element.bearing), None, None
     if scene.catalogue is not None:

@@ -351,7 +351,7 @@ def _in_place(
     Args:
         task: The scene, warm.
         found: Its equilibrium.
-        speeds: Of the shafts in all cases (case, shaft) [rad/s].
+        speeds: Speeds of the shafts in all cases (case, shaft) [rad/s].
     """
     system = task.system
     solutions = bearing_solutions(system, found)
