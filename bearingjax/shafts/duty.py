@@ -317,7 +317,7 @@ def system_life(system: ShaftSystem, hours: Any) -> Scalar:
         hours: Life of each bearing (bearing,), infinite of springs [h].
 
     Returns:
-        Life; infinite if no bearing is tired. Differentiable.
+        Life; infinite if no bearing accumulates damage. Differentiable.
     """
     kinds = [
         BALLS
