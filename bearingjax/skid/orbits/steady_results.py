@@ -182,7 +182,7 @@ class SteadyRollerSkid(SteadyMotion):
         rolling_spin: Spin in pure rolling (place,) [rad/s].
         sliding: Slip along the rolling direction (place, contact) [m/s].
         cage_force: Force of the cage on a roller, in the sense in which angles are
-            counted: where it is positive the rear of a pocket pushes, else the front
+            counted; where it is positive the rear of a pocket pushes, else the front
             holds back (place,) [N].
         conditions: In the contacts (place, contact).
     """
