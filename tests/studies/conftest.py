@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pytest
 from golden import differences, digest, read, write
 from pages import missing_on_page
-from studies import Study, Written, place, words
+from runs import Study, Written, place, words
 
 from bearingjax import cli
 from bearingjax.studies import jax_settings
@@ -34,7 +34,7 @@ class Named(NamedTuple):
 
 
 def pytest_generate_tests(metafunc):
-    """Each shared test of `studies` runs for the `STUDIES` of the file."""
+    """Each shared test of `runs` runs for the `STUDIES` of the file."""
     studies = getattr(metafunc.module, "STUDIES", {})
     slow = pytest.mark.slow
     if "study" in metafunc.fixturenames:

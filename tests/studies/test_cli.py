@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 from pages import missing_on_page
-from studies import SEARCH, WORDS
+from runs import SEARCH, WORDS
 from tolerances import SOLVER
 
 import bearingjax as bj

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from studies import SEARCH, WORDS, Runs, Study
+from runs import SEARCH, WORDS, Runs, Study
 from tolerances import SOLVER
 
 import bearingjax as bj

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from studies import WORDS, Runs, Study
+from runs import WORDS, Runs, Study
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from studies import Runs, Study
+from runs import Runs, Study
 from tolerances import SOLVER
 
 import bearingjax as bj

@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from studies import Runs, Study
+from runs import Runs, Study
 from tolerances import PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj

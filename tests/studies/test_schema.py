@@ -10,12 +10,17 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from bearingjax import SceneError, studies
+from bearingjax import SceneError, read_scene, studies
 from bearingjax.files import shipped_scenes
 from bearingjax.files.quantity import KINDS
 from bearingjax.files.schema import Keys, fields_of, read_keys
 from bearingjax.files.table import Table
+from bearingjax.studies.contact.read import read_contact
+from bearingjax.studies.noise.read import read_noise
+from bearingjax.studies.rotor.read import read_rotor
 from bearingjax.studies.scene_schema import key_guide, scene_schema
+from bearingjax.studies.shaft.read import read_shafts
+from bearingjax.studies.skid.read import read_skid
 
 
 def classes(kind=Keys):
@@ -47,17 +52,17 @@ def test_schema_holds_for_shipped_scenes_and_their_echo(name, validator):
     data = tomllib.loads(path.read_text("utf-8"))
     assert not faults(validator, data)
     if "rotor" in data:
-        found = studies.read_rotor(name)
+        found = read_rotor(name)
     elif "shaft" in data:
-        found = studies.read_shafts(name)
+        found = read_shafts(name)
     elif "roller" in data:
-        found = studies.read_contact(name)
+        found = read_contact(name)
     elif "vibration" in data:
-        found = studies.read_noise(name)
+        found = read_noise(name)
     elif "dynamics" in data:
-        found = studies.read_skid(name, steady=True)
+        found = read_skid(name, steady=True)
     else:
-        found = studies.read_scene(name)
+        found = read_scene(name)
     assert not faults(validator, found.inputs)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from studies import SEARCH, WORDS, Runs, Study
+from runs import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
 from bearingjax.files import SceneError

@@ -11,8 +11,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from han_chu import MODEL, SPEED
+from runs import SEARCH, WORDS, Runs, Study
 from scipy.integrate import simpson
-from studies import SEARCH, WORDS, Runs, Study
 from tolerances import ROUNDING
 
 import bearingjax as bj

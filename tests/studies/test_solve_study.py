@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from studies import SEARCH, WORDS, Runs, Study
+from runs import SEARCH, WORDS, Runs, Study
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
