@@ -82,7 +82,7 @@ class Harmonics(AbstractShape):
     Order 1 on a raceway is eccentricity (or an axial runout), 2 an oval ring, 3 and
     more the lobes of a chuck or a seat. Waves that are shorter than a contact is long
     are met as they are, where a real contact bridges them, unless the surface has a
-    `half_width` (`noise.bridged`).
+    `half_width` (`noise.with_bridged_waves`).
 
     Attributes:
         order: Waves per turn (n,), whole numbers from 1.

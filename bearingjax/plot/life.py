@@ -30,7 +30,7 @@ def life_overview(run: Any, title: str = "") -> Figure:
     Of many cases those that use most of the life.
 
     Args:
-        run: From `studies.run_life`, with all cases solved.
+        run: From `run_life`, with all cases solved.
         title: Head of the page; "Rating life" if empty.
 
     Returns:
