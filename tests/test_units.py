@@ -8,7 +8,7 @@ import pkgutil
 import re
 import sys
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -21,7 +21,14 @@ from bearingjax.cases.sweep_table import _label
 from bearingjax.files.quantity import KINDS, kind_of
 from bearingjax.numerics import units
 from bearingjax.numerics.types import as_real
-from bearingjax.numerics.units import shown_count, stated_units, unit, unit_of
+from bearingjax.numerics.units import (
+    docstring,
+    field_metadata,
+    mixed,
+    shown_count,
+    unit,
+    unit_of,
+)
 from bearingjax.statics.solution import BallSolution, RollerSolution
 
 MEASURES = [
@@ -47,6 +54,19 @@ def with_units():
                     yield kind
 
 
+def stated_units(kind, name):
+    """Units in the last brackets of the entry of an attribute in the docstrings of a
+    class and its parents, else in their first lines."""
+    entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
+    for base in kind.__mro__:
+        text = docstring(base)
+        if found := re.search(entry, text, re.M | re.S):
+            for part in (found[1], text.partition("\n")[0]):
+                if units := re.findall(r"\[([^]]*)\]", part):
+                    return {" ".join(u.split()) for u in units[-1].split(",")}
+    raise KeyError(f"{kind.__name__}: the docstring does not state {name}")
+
+
 def numbers(kind):
     """Names of the fields of a class that are, or become, real numbers."""
     if dataclasses.is_dataclass(kind):
@@ -60,9 +80,8 @@ def numbers(kind):
 def test_units_of_fields_are_those_of_the_docstring(kind):
     fields = {field.name: field for field in dataclasses.fields(kind)}
     for name in numbers(kind):
-        assert set(np.ravel(fields[name].metadata["unit"])) == set(
-            stated_units(kind, name)
-        ), name
+        units = {*np.ravel(fields[name].metadata["unit"])}
+        assert units == stated_units(kind, name), name
 
 
 def test_docstrings_are_read_from_the_source_without_them(monkeypatch):
@@ -117,7 +136,7 @@ def test_columns_of_a_sweep_have_the_unit_of_the_docstring(kind):
             _label(name, index, shape)[1]
             for index in itertools.product(*(range(n) for n in shape))
         }
-        assert units == set(stated_units(kind, name)), name
+        assert units == stated_units(kind, name), name
 
 
 def results():
@@ -143,30 +162,43 @@ def _tuples(module):
 @pytest.mark.parametrize("kind, names", list(results()))
 def test_results_state_their_units(kind, names):
     for name in names:
-        assert stated_units(kind, name), name
+        assert {"unit", "units"} & field_metadata(kind, name).keys(), name
+
+
+def tuples():
+    """Named tuples of the package with units."""
+    for module in pkgutil.walk_packages(bj.__path__, "bearingjax."):
+        if not module.name.startswith("bearingjax.__main__"):
+            for kind in vars(importlib.import_module(module.name)).values():
+                own = isinstance(kind, type) and kind.__module__ == module.name
+                names = getattr(kind, "_fields", ()) if own else ()
+                if any(field_metadata(kind, name) for name in names):
+                    yield kind
+
+
+@pytest.mark.parametrize("kind", list(tuples()), ids=lambda kind: kind.__name__)
+def test_units_of_named_tuples_are_those_of_the_docstring(kind):
+    for name in kind._fields:
+        found = field_metadata(kind, name)
+        units = {*found.get("units", ()), *np.ravel(found.get("unit", ()))}
+        assert not units or units == stated_units(kind, name), name
 
 
 def test_unit_of_a_named_tuple():
     class Example(NamedTuple):
-        """Results of an example.
+        force: Annotated[float, mixed("N", "N m")]
+        moments: Annotated[list, unit(("N", "N m"))]
+        life: Annotated[float | None, unit("rev")]
+        ratio: Annotated[float, unit("1")]
+        count: int
 
-        Attributes:
-            force, moment: Loads (case,) [N, N m].
-            life: Until the first spall
-                appears [rev].
-            ratio: Of the two [1].
-        """
-
-        force: float
-        moment: float
-        life: float
-        ratio: float
-
-    found = Example(1.0, 2.0, 3.0, 4.0)
-    assert [unit_of(found, name) for name in ("life", "ratio")] == ["rev", ""]
-    assert unit_of(Example, "force", (1,)) == "N m" and unit_of(Example, "force") == ""
-    with pytest.raises(KeyError, match="does not state count"):
-        unit_of(Example, "count")
+    found = Example(1.0, [2.0, 2.0], 3.0, 4.0, 5)
+    names = "life", "ratio", "count", "force"
+    assert [unit_of(found, name) for name in names] == ["rev", "", "", ""]
+    assert unit_of(Example, "moments.1") == unit_of(Example, "moments", (1,)) == "N m"
+    assert unit_of(Example, "moments") == ""
+    with pytest.raises(KeyError, match="none"):
+        unit_of(Example, "none")
 
 
 @pytest.mark.parametrize("measure", MEASURES, ids=lambda measure: measure.label)

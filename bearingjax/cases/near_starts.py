@@ -6,7 +6,7 @@ the stiffness found there. Loads and answers are turned by whole pitches of the 
 elements until the load is next to +x: turned so, a bearing looks the same.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -18,6 +18,7 @@ from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
+from ..numerics.units import mixed, unit
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import restrained_freedoms
@@ -50,7 +51,7 @@ class Likeness(NamedTuple):
     """
 
     free: tuple[bool, ...]
-    pitch: float
+    pitch: Annotated[float, unit("rad")]
     axial_play: bool
 
 
@@ -66,9 +67,9 @@ class SolvedCases(NamedTuple):
         count: Number of solved cases.
     """
 
-    load: Float[Array, "known 6"]
+    load: Annotated[Float[Array, "known 6"], mixed("N", "N m")]
     other: Float[Array, "known k"]
-    displacement: Float[Array, "known 6"]
+    displacement: Annotated[Float[Array, "known 6"], mixed("m", "rad")]
     stiffness: Float[Array, "known 6 6"]
     usable: Bool[Array, " known"]
     count: Int[Array, " 1"]

@@ -15,7 +15,7 @@ from decimal import Decimal
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from ..design.bearing_set import rows_of
 from ..design.keywords import bearing_of
@@ -30,6 +30,7 @@ from ..fits.fit_limits import (
     toroidal_roller_clearance,
 )
 from ..fits.iso286 import Limits
+from ..numerics.units import unit
 from .designation import Suffixes, compact, split_designation
 
 CLEARANCES = {
@@ -140,8 +141,8 @@ class OtherRating(NamedTuple):
         source: Publisher.
     """
 
-    dynamic_capacity: float
-    static_capacity: float | None
+    dynamic_capacity: Annotated[float, unit("N")]
+    static_capacity: Annotated[float | None, unit("N")]
     source: str
 
 

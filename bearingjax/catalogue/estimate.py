@@ -7,7 +7,7 @@ least squares, and the number with the best agreement is taken.
 """
 
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -42,6 +42,7 @@ from ..life.rating import nominal_contact_angle
 from ..life.row_rating import BallKind, BallRow, RollerRow, Rows
 from ..numerics.compiled.programs import program
 from ..numerics.types import as_real
+from ..numerics.units import unit
 from .typical import PROPORTIONS, Proportions, Typical
 
 _RATINGS = (0.015, 0.01)
@@ -96,9 +97,9 @@ class _Rated(NamedTuple):
     balls: BallKind | None
     is_thrust: bool = False
     rows: int = 1
-    raised: float = 1.0
-    quality: float = 1.1
-    angle: float | None = None
+    raised: Annotated[float, unit("1")] = 1.0
+    quality: Annotated[float, unit("1")] = 1.1
+    angle: Annotated[float | None, unit("rad")] = None
     on_circle: int = 1
 
     @property
@@ -346,7 +347,7 @@ class _Fit(NamedTuple):
     count: int
     sizes: np.ndarray
     misfit: float
-    errors: tuple[float, float]
+    errors: Annotated[tuple[float, float], unit("1")]
 
 
 def _start(known):

@@ -6,7 +6,9 @@ deviation) over makers' catalogues and the literature.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from ..numerics.units import unit
 
 _DEG = math.pi / 180
 
@@ -33,11 +35,11 @@ class Proportions(NamedTuple):
         by_arc: Whether `filling` is the arc.
     """
 
-    element: Typical
-    pitch: Typical
-    filling: Typical
-    length: Typical | None
-    angle: Typical
+    element: Annotated[Typical, unit("1")]
+    pitch: Annotated[Typical, unit("1")]
+    filling: Annotated[Typical, unit("1")]
+    length: Annotated[Typical | None, unit("1")]
+    angle: Annotated[Typical, unit("rad")]
     by_arc: bool = False
 
 

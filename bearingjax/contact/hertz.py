@@ -8,7 +8,7 @@ Source: H. Hertz (1882); K. L. Johnson, Contact Mechanics (1985), chapters 3 and
 integrals are written with D = (K - E)/m and B = K - D (see `numerics.elliptic`).
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -18,6 +18,7 @@ from jaxtyping import Array, Float
 from ..numerics.elliptic import carlson_rd, complete
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.power import positive_power
+from ..numerics.units import unit
 
 EXPONENT = (3, 2)
 """Load ∝ approach^(3/2), as a fraction."""
@@ -38,10 +39,10 @@ class Ellipse(NamedTuple):
         transverse: Semi-axis across over Q^(1/3) [m/N^(1/3)].
     """
 
-    ratio: Float[Array, "..."]
-    constant: Float[Array, "..."]
-    rolling: Float[Array, "..."]
-    transverse: Float[Array, "..."]
+    ratio: Annotated[Float[Array, "..."], unit("1")]
+    constant: Annotated[Float[Array, "..."], unit("N/m^(3/2)")]
+    rolling: Annotated[Float[Array, "..."], unit("m/N^(1/3)")]
+    transverse: Annotated[Float[Array, "..."], unit("m/N^(1/3)")]
 
     def semi_axes(
         self, load: Float[Array, "..."]
@@ -166,10 +167,10 @@ class Shear(NamedTuple):
         orthogonal_depth: Its depth over the semi-axis in rolling direction [1].
     """
 
-    greatest: Float[Array, "..."]
-    depth: Float[Array, "..."]
-    orthogonal: Float[Array, "..."]
-    orthogonal_depth: Float[Array, "..."]
+    greatest: Annotated[Float[Array, "..."], unit("1")]
+    depth: Annotated[Float[Array, "..."], unit("1")]
+    orthogonal: Annotated[Float[Array, "..."], unit("1")]
+    orthogonal_depth: Annotated[Float[Array, "..."], unit("1")]
 
 
 def shear_below(ratio: Float[Array, "..."], poisson: Float[Array, "..."]) -> Shear:

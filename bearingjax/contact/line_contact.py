@@ -13,7 +13,7 @@ the derivative rule leads from one order to the next.
 import abc
 import dataclasses
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -28,6 +28,7 @@ from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from .line import EXPONENT, AbstractLineLaw, Palmgren
 
 # φ = C/(n+1) x₊^(n+1), φ' = C x₊^n, φ'' = n C x₊^(n-1), n = 10/9: the powers differ by
@@ -53,9 +54,9 @@ class Response(NamedTuple):
         stiffness: Second derivatives (aa, ab, bb) (3,) [N/m].
     """
 
-    energy: Scalar
-    load: Float[Array, "2"]
-    stiffness: Float[Array, "3"]
+    energy: Annotated[Scalar, unit("J")]
+    load: Annotated[Float[Array, "2"], unit("N")]
+    stiffness: Annotated[Float[Array, "3"], unit("N/m")]
 
 
 class AbstractLineContact(eqx.Module):
@@ -389,11 +390,11 @@ class _Arc(NamedTuple):
         first: a + κ a²/2 [m].
     """
 
-    curvature: Scalar
-    grown: Scalar
-    sine: Scalar
-    cosine: Scalar
-    first: Scalar
+    curvature: Annotated[Scalar, unit("1/m")]
+    grown: Annotated[Scalar, unit("1")]
+    sine: Annotated[Scalar, unit("1")]
+    cosine: Annotated[Scalar, unit("1")]
+    first: Annotated[Scalar, unit("m")]
 
     @classmethod
     def of(cls, line: LineContact, a: Scalar, b: Scalar) -> "_Arc":

@@ -6,7 +6,7 @@ angle is meant is a choice by class.
 """
 
 import abc
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -34,9 +34,9 @@ class Balls(NamedTuple):
         modulus: Contact modulus E* [Pa].
     """
 
-    diameter: Scalar
-    pitch_diameter: Scalar
-    modulus: Scalar
+    diameter: Annotated[Scalar, unit("m")]
+    pitch_diameter: Annotated[Scalar, unit("m")]
+    modulus: Annotated[Scalar, unit("Pa")]
 
 
 def ball_ellipses(

@@ -9,7 +9,7 @@ positive contact angle α carries an inner-ring load along +z.
 
 import abc
 import math
-from typing import ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -45,11 +45,11 @@ class Groove(NamedTuple):
     """
 
     on_outer: bool
-    axial: Scalar
-    radial: Scalar
-    radius: Scalar
+    axial: Annotated[Scalar, unit("m")]
+    radial: Annotated[Scalar, unit("m")]
+    radius: Annotated[Scalar, unit("m")]
     open_side: bool
-    deepest: Scalar
+    deepest: Annotated[Scalar, unit("1")]
 
 
 class AbstractBallBearing(AbstractBearing):

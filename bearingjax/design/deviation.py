@@ -1,12 +1,12 @@
 """Deviations of the rolling elements and raceways of a row, element by element."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.units import unit_of
+from ..numerics.units import unit, unit_of
 from .checks import check, concrete, finite, is_real, is_traced, of_shape
 
 
@@ -24,9 +24,9 @@ class Deviation(NamedTuple):
             contact along its normal, by material on the raceway or on the element.
     """
 
-    diameter: Float[Array, "..."] | None = None
-    azimuth: Float[Array, "..."] | None = None
-    raceway: Float[Array, "..."] | None = None
+    diameter: Annotated[Float[Array, "..."] | None, unit("m")] = None
+    azimuth: Annotated[Float[Array, "..."] | None, unit("rad")] = None
+    raceway: Annotated[Float[Array, "..."] | None, unit("m")] = None
 
     @property
     def makes_unlike(self) -> bool:

@@ -6,7 +6,7 @@ surface towards the rolling element. Every error turns with the part that it is 
 """
 
 import abc
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -36,9 +36,9 @@ class Surface(NamedTuple):
             direction: 1 of an ellipse, 1/2 of a line [1].
     """
 
-    radius: Scalar
-    relative: Scalar
-    half_width: Scalar | None = None
+    radius: Annotated[Scalar, unit("m")]
+    relative: Annotated[Scalar, unit("m")]
+    half_width: Annotated[Scalar | None, unit("m")] = None
     pressure: Scalar | None = None
 
     def bridged(self, order: Float[Array, " n"]) -> Float[Array, " n"]:

@@ -4,8 +4,9 @@ They bound what a maker may deliver; parts are often much better. Limits of wavi
 order, are not in these standards: makers agree them with their customers.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
+from ..numerics.units import unit
 from .checks import one_of, positive
 
 _MICRON = 1e-6
@@ -23,10 +24,10 @@ class BallGrade(NamedTuple):
             V_DwL [m].
     """
 
-    diameter_variation: float
-    form: float
-    roughness: float
-    lot_variation: float
+    diameter_variation: Annotated[float, unit("m")]
+    form: Annotated[float, unit("m")]
+    roughness: Annotated[float, unit("m")]
+    lot_variation: Annotated[float, unit("m")]
 
 
 # V_Dws, t_Dw, Ra, V_DwL in µm.
@@ -78,11 +79,11 @@ class RollerGrade(NamedTuple):
         taper: Difference of the mean diameters at both ends of a roller, V_Dwmp [m].
     """
 
-    diameter_variation: float
-    form: float
-    roughness: float
-    lot_variation: float
-    taper: float
+    diameter_variation: Annotated[float, unit("m")]
+    form: Annotated[float, unit("m")]
+    roughness: Annotated[float, unit("m")]
+    lot_variation: Annotated[float, unit("m")]
+    taper: Annotated[float, unit("m")]
 
 
 # V_Dwsp, Δ_Rw, Ra, V_DwL, V_Dwmp in µm, of rollers up to 18 mm.
@@ -139,8 +140,8 @@ class RunningAccuracy(NamedTuple):
         outer: Radial runout of the outer ring, K_ea [m].
     """
 
-    inner: float
-    outer: float
+    inner: Annotated[float, unit("m")]
+    outer: Annotated[float, unit("m")]
 
 
 # Largest diameter of each range in mm, itself included, and runout in µm up to there.

@@ -11,7 +11,7 @@ potential the same rules give the balance of all forces and its exact Jacobian.
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -22,6 +22,7 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst
 from ..numerics.types import Ring, RingStiffness, Scalar
+from ..numerics.units import mixed, unit
 from .constants import TETHER
 from .equilibrium import ElementStart, accept_small
 from .rolling_element import split_rings
@@ -116,13 +117,13 @@ class Evaluated(NamedTuple):
         near: State from which the next solve near by may start.
     """
 
-    energy: Scalar
-    force: Ring
+    energy: Annotated[Scalar, unit("J")]
+    force: Annotated[Ring, mixed("N", "N m")]
     stiffness: RingStiffness
     result: Int[Array, ""]
     steps: Int[Array, ""]
-    residual: Scalar
-    magnitude: Scalar
+    residual: Annotated[Scalar, unit("1")]
+    magnitude: Annotated[Scalar, unit("N")]
     near: tuple[ElementStart, ...]
 
 

@@ -14,7 +14,7 @@ Source: Sorokin, Zhang, Ivannikov (2018) for rollers; the textbook equations of 
     the derivatives of `ball_energy`.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -24,6 +24,7 @@ from ..numerics.expansion import Expansion
 from ..numerics.implicit import stop_gradient
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
+from ..numerics.units import mixed, unit
 from .rolling_element import (
     AbstractRollingElement,
     RingMotion,
@@ -94,9 +95,9 @@ class Derivatives(NamedTuple):
         hessian: Derivatives of `gradient` [N/m, N, N m]; empty if not asked for.
     """
 
-    energy: Scalar
-    gradient: Float[Array, " m"]
-    hessian: Float[Array, "..."]
+    energy: Annotated[Scalar, unit("J")]
+    gradient: Annotated[Float[Array, " m"], mixed("N", "N m")]
+    hessian: Annotated[Float[Array, "..."], mixed("N/m", "N", "N m")]
 
 
 def derivatives(

@@ -6,7 +6,7 @@ them, it is an energy of the ring motions alone.
 """
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -24,6 +24,7 @@ from ..numerics.minimise import (
 )
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from ..numerics.units import mixed, unit
 from .energy import derivatives, response, ring_motions
 from .rolling_element import AbstractRollingElement, Unknowns
 
@@ -46,9 +47,9 @@ class LocalState(NamedTuple):
         contact_response: Contact response there, `AbstractRollingElement.respond`.
     """
 
-    x: Unknowns
-    residual: Scalar
-    unbalanced: Scalar
+    x: Annotated[Unknowns, unit("m")]
+    residual: Annotated[Scalar, unit("1")]
+    unbalanced: Annotated[Scalar, unit("N")]
     steps: Int[Array, ""]
     result: Int[Array, ""]
     contact_response: Expansion
@@ -63,9 +64,9 @@ class ElementStart(NamedTuple):
         rings: Motions of the rings then, see `energy.ring_motions` (r,) [m, rad].
     """
 
-    offset: Unknowns
+    offset: Annotated[Unknowns, unit("m")]
     follow: Float[Array, "n r"]
-    rings: Rings
+    rings: Annotated[Rings, mixed("m", "rad")]
 
 
 class SolvedElement(NamedTuple):
@@ -79,7 +80,7 @@ class SolvedElement(NamedTuple):
 
     element: AbstractRollingElement
     state: LocalState
-    magnitude: Scalar
+    magnitude: Annotated[Scalar, unit("m")]
 
 
 def solve_element(
@@ -207,7 +208,7 @@ class CondensedAux(NamedTuple):
         follow: Derivatives of its unknowns by the ring motions (n, r).
     """
 
-    contact_load: Float[Array, " contact"]
+    contact_load: Annotated[Float[Array, " contact"], unit("N")]
     follow: Float[Array, "n r"]
 
 

@@ -10,7 +10,7 @@ are counted from the mean of both rings, with the tilt times half the length.
 
 import abc
 import dataclasses
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -19,6 +19,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion
 from ..numerics.linear import dot
+from ..numerics.units import unit
 from .constants import ContactConstants
 from .rolling_element import RingMotion, Unknowns
 
@@ -31,8 +32,8 @@ class Approaches(NamedTuple):
         rib: Approach at each rib (rib, 1) [m], or `None` without ribs.
     """
 
-    raceway: Float[Array, "2 2"]
-    rib: Float[Array, "rib 1"] | None
+    raceway: Annotated[Float[Array, "2 2"], unit("m")]
+    rib: Annotated[Float[Array, "rib 1"] | None, unit("m")]
 
 
 class AbstractRollerGeometry(eqx.Module):

@@ -8,7 +8,7 @@ The start of the search for its equilibrium, and the correction of the steps, ar
 """
 
 import abc
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -17,6 +17,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion, expand
 from ..numerics.types import Scalar
+from ..numerics.units import mixed
 from .search_hints import SearchHints
 
 Unknowns = Float[Array, " n"]
@@ -30,8 +31,8 @@ class RingMotion(NamedTuple):
         inner: Motion of the inner ring (h,).
     """
 
-    outer: Float[Array, " h"]
-    inner: Float[Array, " h"]
+    outer: Annotated[Float[Array, " h"], mixed("m", "rad")]
+    inner: Annotated[Float[Array, " h"], mixed("m", "rad")]
 
     @property
     def mean(self) -> Float[Array, " h"]:

@@ -1,7 +1,7 @@
 """Rows of rolling elements: placed, solved, and their common energy."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -13,6 +13,7 @@ from ..numerics.expansion import Expansion, expand
 from ..numerics.implicit import attach, recall, stop_gradient
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
 from ..numerics.types import Ring, Scalar
+from ..numerics.units import unit
 from .azimuth import Azimuth, turn
 from .energy import response
 from .equilibrium import (
@@ -40,9 +41,9 @@ class RowPlacement(NamedTuple):
             row's own axes [m].
     """
 
-    position: Float[Array, "..."]
-    sign: Float[Array, "..."]
-    offset: Float[Array, "..."]
+    position: Annotated[Float[Array, "..."], unit("m")]
+    sign: Annotated[Float[Array, "..."], unit("1")]
+    offset: Annotated[Float[Array, "..."], unit("m")]
 
 
 class Row(eqx.Module):

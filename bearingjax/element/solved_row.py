@@ -1,7 +1,7 @@
 """Rows whose rolling elements are in equilibrium, and their results."""
 
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion
 from ..numerics.types import Scalar
+from ..numerics.units import mixed, unit
 from .azimuth import Azimuth
 from .energy import ring_motions
 from .equilibrium import ElementStart, LocalState, SolvedElement, element_start
@@ -29,10 +30,10 @@ class SolvedRow(NamedTuple):
     """
 
     rings: Float[Array, "element r"]
-    magnitude: Float[Array, " element"]
+    magnitude: Annotated[Float[Array, " element"], unit("m")]
     state: LocalState
     energies: Expansion
-    travel: Any = ()
+    travel: Annotated[Any, unit("m")] = ()
     balance: Any = ()
 
     def each(self, row: Any, function: Callable, rings: Array) -> Any:
@@ -73,12 +74,12 @@ class RowResults(NamedTuple):
     """
 
     row: Any
-    local: RingMotion
-    azimuth: Azimuth
-    rings: Float[Array, "element r"]
-    x: Float[Array, "element n"]
-    contact_load: Float[Array, "element contact"]
-    travel: Scalar | None
+    local: Annotated[RingMotion, mixed("m", "rad")]
+    azimuth: Annotated[Azimuth, unit("rad")]
+    rings: Annotated[Float[Array, "element r"], mixed("m", "rad")]
+    x: Annotated[Float[Array, "element n"], unit("m")]
+    contact_load: Annotated[Float[Array, "element contact"], unit("N")]
+    travel: Annotated[Scalar | None, unit("m")]
 
     @property
     def element(self) -> Any:

@@ -3,11 +3,12 @@
 Compiles nothing for a mounting of NumPy numbers, as from `jax.device_get`.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
 from ..design.checks import concrete, in_range, one_of
+from ..numerics.units import unit
 from .fits import FitConditions, Mounting, fit_state, positive_part
 from .iso286 import Limits
 
@@ -27,9 +28,9 @@ class ClearanceRange(NamedTuple):
             it is cut off at `worst` [m].
     """
 
-    middle: Any
-    worst: Limits
-    probable: Limits
+    middle: Annotated[Any, unit("m")]
+    worst: Annotated[Limits, unit("m")]
+    probable: Annotated[Limits, unit("m")]
 
 
 def clearance_range(

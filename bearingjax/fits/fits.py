@@ -9,7 +9,7 @@ fit has no pressure.
 """
 
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
@@ -276,16 +276,16 @@ class FitState(NamedTuple):
             each part, from warmth, speed and, of the rings, their fits [1].
     """
 
-    shaft_interference: Any
-    housing_interference: Any
-    shaft_pressure: Any
-    housing_pressure: Any
-    inner_raceway_growth: Any
-    outer_raceway_growth: Any
-    radial_clearance: Any
-    ring_stress: Any
-    element_strain: Any
-    strains: AxialStrains
+    shaft_interference: Annotated[Any, unit("m")]
+    housing_interference: Annotated[Any, unit("m")]
+    shaft_pressure: Annotated[Any, unit("Pa")]
+    housing_pressure: Annotated[Any, unit("Pa")]
+    inner_raceway_growth: Annotated[Any, unit("m")]
+    outer_raceway_growth: Annotated[Any, unit("m")]
+    radial_clearance: Annotated[Any, unit("m")]
+    ring_stress: Annotated[Any, unit("Pa")]
+    element_strain: Annotated[Any, unit("1")]
+    strains: Annotated[AxialStrains, unit("1")]
 
 
 def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> FitState:

@@ -1,9 +1,10 @@
 """Limits of shaft and housing diameters: tolerance classes of ISO 286 by name."""
 
 import re
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from ..design.checks import positive
+from ..numerics.units import unit
 
 _MICRON = 1e-6
 _SAME = 1e-6
@@ -19,8 +20,8 @@ class Limits(NamedTuple):
         upper: Largest value [m].
     """
 
-    lower: Any
-    upper: Any
+    lower: Annotated[Any, unit("m")]
+    upper: Annotated[Any, unit("m")]
 
 
 # Largest nominal size of each range in mm, itself included.

@@ -19,7 +19,7 @@ nowhere but in the standard.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -38,6 +38,7 @@ from ..design import (
 )
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .rating import nominal_contact_angle, published_factors, rated_axially
 
 # Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
@@ -81,8 +82,8 @@ class Factors(NamedTuple):
         static: Rows (X0, Y0) of ISO 76 (pair, 2) [1].
     """
 
-    dynamic: Float[Array, "pair 2"]
-    static: Float[Array, "pair 2"]
+    dynamic: Annotated[Float[Array, "pair 2"], unit("1")]
+    static: Annotated[Float[Array, "pair 2"], unit("1")]
 
 
 class EquivalentLoad(NamedTuple):
@@ -93,8 +94,8 @@ class EquivalentLoad(NamedTuple):
         static: P0 of ISO 76 [N].
     """
 
-    dynamic: Scalar
-    static: Scalar
+    dynamic: Annotated[Scalar, unit("N")]
+    static: Annotated[Scalar, unit("N")]
 
 
 def equivalent_load(
@@ -148,9 +149,9 @@ class LeftOut(NamedTuple):
             and axis, along the tilts that are free; none of crossed rollers [N m].
     """
 
-    radial: Scalar
-    axial: Scalar
-    moment: Scalar
+    radial: Annotated[Scalar, unit("N")]
+    axial: Annotated[Scalar, unit("N")]
+    moment: Annotated[Scalar, unit("N m")]
 
 
 def left_out(

@@ -7,7 +7,7 @@ steel; they take the numbers of a design. `ratings` alone takes what a catalogue
 for it (`design.published`).
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -324,8 +324,8 @@ class _Part(NamedTuple):
     rows: Rows
     is_thrust: bool
     alike: Array
-    alone: Float[Array, "2"] | None
-    published: Float[Array, "3"] | None
+    alone: Annotated[Float[Array, "2"] | None, unit("1")]
+    published: Annotated[Float[Array, "3"] | None, unit("N")]
     holds: Array | None
 
 

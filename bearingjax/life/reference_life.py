@@ -25,7 +25,7 @@ Sources: ISO/TS 16281:2008, and ISO 16281:2025, formulas 29 to 33, as a public p
     (1947, 1952); ISO/TR 1281-1.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -34,6 +34,7 @@ from jaxtyping import Array, Float
 from ..design import AbstractBallBearing, AbstractBearing
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from .rating import is_axial
 
 LEAST_LAMINAE = 30
@@ -85,8 +86,8 @@ class RowFatigue(NamedTuple):
         fatigue: Its exponents. Static.
     """
 
-    share: Float[Array, "2 track"]
-    load: Float[Array, " part"]
+    share: Annotated[Float[Array, "2 track"], unit("1")]
+    load: Annotated[Float[Array, " part"], unit("N")]
     fatigue: Fatigue
 
 

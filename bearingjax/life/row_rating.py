@@ -10,13 +10,14 @@ Source: dynamic: ISO 281:2007, with f_c by the formulas of ISO/TR 1281-1 (Lundbe
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
 
 from ..contact.hertz import ellipse
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 
 _PER_MM = 1e3
 """Millimetres in a metre: the factors of the standards are made for mm and N."""
@@ -46,10 +47,10 @@ class BallKind(NamedTuple):
         stress: Peak pressure under the static rating [Pa].
     """
 
-    reduction: Scalar | float
-    counted: tuple[Scalar | float | None, Scalar | float]
-    open: tuple[Scalar | float | None, Scalar | float]
-    stress: Scalar | float
+    reduction: Annotated[Scalar | float, unit("1")]
+    counted: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
+    open: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
+    stress: Annotated[Scalar | float, unit("Pa")]
 
 
 ANGULAR_CONTACT = BallKind(0.95, (0.52, 0.52), (0.53, 0.52), 4200e6)
@@ -71,10 +72,10 @@ class BallRow(NamedTuple):
     """
 
     count: Scalar | int
-    diameter: Scalar
-    pitch_diameter: Scalar
-    contact_angle: Scalar
-    osculation: tuple[Scalar | float | None, Scalar | float]
+    diameter: Annotated[Scalar, unit("m")]
+    pitch_diameter: Annotated[Scalar, unit("m")]
+    contact_angle: Annotated[Scalar, unit("rad")]
+    osculation: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
 
 
 class RollerRow(NamedTuple):
@@ -90,11 +91,11 @@ class RollerRow(NamedTuple):
     """
 
     count: Scalar | int
-    diameter: Scalar
-    length: Scalar
-    pitch_diameter: Scalar
-    contact_angle: Scalar
-    quality: Scalar | float = 1.1
+    diameter: Annotated[Scalar, unit("m")]
+    length: Annotated[Scalar, unit("m")]
+    pitch_diameter: Annotated[Scalar, unit("m")]
+    contact_angle: Annotated[Scalar, unit("rad")]
+    quality: Annotated[Scalar | float, unit("1")] = 1.1
 
 
 class Rows(NamedTuple):

@@ -6,7 +6,7 @@ pole, the point without slip, where the stress of an oil that yields turns aroun
 """
 
 import abc
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -47,11 +47,11 @@ class Nodes(NamedTuple):
         viscosity: Viscosity at that pressure (*node,) [Pa s].
     """
 
-    x: Float[Array, "*node"]
-    y: Float[Array, "*node"]
-    area: Float[Array, "*node"]
-    pressure: Float[Array, "*node"]
-    viscosity: Float[Array, "*node"]
+    x: Annotated[Float[Array, "*node"], unit("m")]
+    y: Annotated[Float[Array, "*node"], unit("m")]
+    area: Annotated[Float[Array, "*node"], unit("m²")]
+    pressure: Annotated[Float[Array, "*node"], unit("Pa")]
+    viscosity: Annotated[Float[Array, "*node"], unit("Pa s")]
 
 
 class AbstractPatch(eqx.Module):

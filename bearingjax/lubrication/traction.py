@@ -7,7 +7,7 @@ never does work on the slip, and it is smooth where there is none.
 """
 
 import abc
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -33,9 +33,9 @@ class Resultants(NamedTuple):
         heat: Power turned to heat, -∫τ·u dA = spin·moment - force·slip [W].
     """
 
-    force: Float[Array, "2"]
-    moment: Scalar
-    heat: Scalar
+    force: Annotated[Float[Array, "2"], unit("N")]
+    moment: Annotated[Scalar, unit("N m")]
+    heat: Annotated[Scalar, unit("W")]
 
 
 class AbstractTraction(eqx.Module):

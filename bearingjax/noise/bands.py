@@ -1,6 +1,6 @@
 """Octave and third-octave bands of a spectrum."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -10,6 +10,7 @@ from ..design.checks import positive
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.types import as_real
+from ..numerics.units import unit
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
 
@@ -41,10 +42,10 @@ class Bands(NamedTuple):
         upper: Upper edges, which belong to the next one (band,) [Hz].
     """
 
-    centre: np.ndarray
-    middle: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
+    centre: Annotated[np.ndarray, unit("Hz")]
+    middle: Annotated[np.ndarray, unit("Hz")]
+    lower: Annotated[np.ndarray, unit("Hz")]
+    upper: Annotated[np.ndarray, unit("Hz")]
 
 
 def octave_bands(lowest: float = 4.0, highest: float = 8000.0) -> Bands:
@@ -155,7 +156,7 @@ class Leakage(NamedTuple):
 
     up: Float[Array, "edge ..."]
     down: Float[Array, "edge ..."]
-    need: Float[Array, "edge ..."]
+    need: Annotated[Float[Array, "edge ..."], unit("Hz")]
 
 
 @program(quick=True)

@@ -1,12 +1,13 @@
 """Form errors as causes of the lines of a spectrum."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
+from ..numerics.units import unit
 from .lines import Line
 from .model import NoiseModel
 from .orders import KinematicFrequencies, kinematic_frequencies, waviness_force
@@ -27,8 +28,8 @@ class _Cause(NamedTuple):
         row: Number of the row in a set.
     """
 
-    size: float
-    frequency: float
+    size: Annotated[float, unit("m")]
+    frequency: Annotated[float, unit("Hz")]
     words: str
     order: int = 0
     row: int = 0

@@ -13,7 +13,7 @@ with them: the answer then holds for frequencies far above that of their passage
 where many of them carry alike.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -24,6 +24,7 @@ from ..design.checks import check, of_class, real_numbers
 from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import mixed, unit
 from .model import NoiseModel
 from .natural import contact_stiffness
 from .static_start import static_start
@@ -44,11 +45,11 @@ class LinearModel(NamedTuple):
         result: `Result` code of the place at which it is.
     """
 
-    mass: Float[Array, " n"]
-    stiffness: Float[Array, "n n"]
-    damping: Float[Array, "n n"]
-    push: Float[Array, "n element 2 3"]
-    retardation: Scalar
+    mass: Annotated[Float[Array, " n"], mixed("kg", "kg m²")]
+    stiffness: Annotated[Float[Array, "n n"], mixed("N/m", "N", "N m")]
+    damping: Annotated[Float[Array, "n n"], mixed("N s/m", "N s", "N m s")]
+    push: Annotated[Float[Array, "n element 2 3"], mixed("N/m", "N")]
+    retardation: Annotated[Scalar, unit("s")]
     result: Int[Array, ""]
 
 
@@ -64,9 +65,9 @@ class Transfer(NamedTuple):
         result: `Result` code of the equilibrium of the bearing.
     """
 
-    frequency: Float[Array, " line"]
-    by_force: Complex[Array, "line k k"]
-    by_errors: Complex[Array, "line k element 2 3"]
+    frequency: Annotated[Float[Array, " line"], unit("Hz")]
+    by_force: Annotated[Complex[Array, "line k k"], mixed("m/N", "rad/N", "rad/(N m)")]
+    by_errors: Annotated[Complex[Array, "line k element 2 3"], mixed("1", "rad/m")]
     result: Int[Array, ""]
 
     @property

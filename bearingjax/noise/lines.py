@@ -1,13 +1,14 @@
 """Prominent lines of a spectrum and their names."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ..design import AbstractBearing, BearingSet, bearings_of
 from ..design.checks import count, non_negative, positive
 from ..element.inertia import Speed
+from ..numerics.units import unit
 from .orders import KinematicFrequencies, kinematic_frequencies
 from .spectrum import Spectrum
 
@@ -30,8 +31,8 @@ class Line(NamedTuple):
         name: Its cause, such as "2 BPFI + shaft".
     """
 
-    order: float
-    frequency: float
+    order: Annotated[float, unit("1")]
+    frequency: Annotated[float, unit("Hz")]
     amplitude: float
     name: str
 

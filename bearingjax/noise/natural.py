@@ -10,7 +10,7 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011), there wit
 """
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -22,6 +22,7 @@ from ..design import rows_of
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.lapack import eigh
+from ..numerics.units import mixed, unit
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
 from .static_start import static_start
@@ -45,10 +46,10 @@ class NaturalModes(NamedTuple):
         result: `Result` code of the place at which the modes are.
     """
 
-    frequency: Float[Array, " mode"]
-    ring: Float[Array, "mode k"]
-    places: Float[Array, "mode element m"]
-    ring_share: Float[Array, " mode"]
+    frequency: Annotated[Float[Array, " mode"], unit("Hz")]
+    ring: Annotated[Float[Array, "mode k"], mixed("m", "rad")]
+    places: Annotated[Float[Array, "mode element m"], mixed("m", "rad")]
+    ring_share: Annotated[Float[Array, " mode"], unit("1")]
     result: Int[Array, ""]
 
 

@@ -4,7 +4,7 @@ All rolling elements roll without slip, at one contact angle on both raceways. A
 of order n on a part has n periods around it.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -19,6 +19,7 @@ from ..element.azimuth import orbit_ratio
 from ..element.frame import orbit, roll_ratio, rotation
 from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 
 PARTS = ("outer", "inner", "element")
 """Parts that have waves: the raceways, and one rolling element."""
@@ -37,12 +38,12 @@ class KinematicFrequencies(NamedTuple):
             A defect on it meets a raceway at `twice_rotation`.
     """
 
-    inner: Scalar
-    outer: Scalar
-    cage: Scalar
-    outer_passage: Scalar
-    inner_passage: Scalar
-    rotation: Scalar
+    inner: Annotated[Scalar, unit("Hz")]
+    outer: Annotated[Scalar, unit("Hz")]
+    cage: Annotated[Scalar, unit("Hz")]
+    outer_passage: Annotated[Scalar, unit("Hz")]
+    inner_passage: Annotated[Scalar, unit("Hz")]
+    rotation: Annotated[Scalar, unit("Hz")]
 
     @property
     def twice_rotation(self) -> Scalar:
@@ -69,8 +70,8 @@ class WavinessForce(NamedTuple):
             towards +y where positive (line,).
     """
 
-    axial: Float[Array, " line"]
-    radial: Float[Array, " line"]
+    axial: Annotated[Float[Array, " line"], unit("Hz")]
+    radial: Annotated[Float[Array, " line"], unit("Hz")]
 
 
 def kinematic_frequencies(

@@ -8,7 +8,7 @@ on s.
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -128,8 +128,8 @@ class SampledErrors(NamedTuple):
         errors: Form errors.
     """
 
-    diameter: Float[Array, " element"] | None
-    azimuth: Float[Array, " element"] | None
+    diameter: Annotated[Float[Array, " element"] | None, unit("m")]
+    azimuth: Annotated[Float[Array, " element"] | None, unit("rad")]
     errors: FormErrors
 
 

@@ -6,7 +6,7 @@ a cage's contacts add.
 
 import dataclasses
 import math
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -20,6 +20,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from ..statics.options import DEFAULT_TOLERANCE
 from .dynamics.cage import fastest_of_cage
 from .dynamics.stepping import HELD, step_motion
@@ -47,8 +48,8 @@ class CageMotion(NamedTuple):
         acceleration: (time, 3) [m/s²].
     """
 
-    displacement: Float[Array, "time 3"]
-    acceleration: Float[Array, "time 3"]
+    displacement: Annotated[Float[Array, "time 3"], unit("m")]
+    acceleration: Annotated[Float[Array, "time 3"], unit("m/s²")]
 
 
 class Vibration(eqx.Module):

@@ -9,7 +9,7 @@ step takes one evaluation of the function.
 
 import abc
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -19,6 +19,7 @@ from jaxtyping import Array, Bool, Float, Int
 from .compiled.batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
+from .units import unit
 
 
 class Evaluation(NamedTuple):
@@ -35,8 +36,8 @@ class Evaluation(NamedTuple):
         memory: State from which the next evaluation may start, any pytree.
     """
 
-    value: Float[Array, ""]
-    gradient: Float[Array, " n"]
+    value: Annotated[Float[Array, ""], unit("J")]
+    gradient: Annotated[Float[Array, " n"], unit("J/unit of x")]
     hessian: Float[Array, "..."]
     scale: Float[Array, ""]
     noise: Float[Array, ""]
@@ -80,7 +81,7 @@ class Problem(NamedTuple):
     memory: Any = ()
     direction: Float[Array, " n"] | None = None
     limit: Float[Array, ""] | None = None
-    force: Float[Array, " n"] | None = None
+    force: Annotated[Float[Array, " n"] | None, unit("J/unit of x")] = None
     tolerance: Float[Array, ""] | float | None = None
     max_steps: Int[Array, ""] | int | None = None
 
@@ -116,7 +117,7 @@ class State(NamedTuple):
     x: Float[Array, " n"]
     now: Evaluation
     radius: Float[Array, ""]
-    steps: Int[Array, ""]
+    steps: Annotated[Int[Array, ""], unit("1")]
     stalled: Bool[Array, ""]
     own: Any
 
@@ -134,7 +135,7 @@ class Minimum(NamedTuple):
     """
 
     x: Float[Array, " n"]
-    residual: Float[Array, ""]
+    residual: Annotated[Float[Array, ""], unit("1")]
     unbalanced: Float[Array, ""]
     steps: Int[Array, ""]
     result: Int[Array, ""]

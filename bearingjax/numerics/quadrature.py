@@ -13,7 +13,7 @@ moments of an integrand are one product with a constant basis (w, w τ, w τ²).
 import abc
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -24,6 +24,7 @@ from jaxtyping import Array, Float
 
 from .compiled.elementwise import elementwise
 from .implicit import attach_roots, stop_gradient
+from .units import unit
 
 Offset = Callable[[Array], Array]
 
@@ -50,8 +51,8 @@ class Nodes(NamedTuple):
         argument: a + b ξ - h(ξ) at the nodes (panel, point), unit of a.
     """
 
-    middle: Float[Array, " panel"]
-    half: Float[Array, " panel"]
+    middle: Annotated[Float[Array, " panel"], unit("1")]
+    half: Annotated[Float[Array, " panel"], unit("1")]
     argument: Float[Array, "panel point"]
 
 

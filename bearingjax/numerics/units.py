@@ -4,9 +4,9 @@ import ast
 import dataclasses
 import functools
 import inspect
-import re
 import sys
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, get_args
 
 import numpy as np
 
@@ -25,12 +25,21 @@ def unit(name: Units) -> dict[str, Any]:
     return {"unit": name}
 
 
+def mixed(*names: str) -> dict[str, Any]:
+    """Metadata of an array whose entries have several units.
+
+    Args:
+        names: SI units of its entries, in no order.
+    """
+    return {"units": names}
+
+
 def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
     """Unit of a field, as shown after a number.
 
     Args:
-        owner: Class of the field, or an instance: a Module with metadata, or a named
-            tuple, whose docstring states its units.
+        owner: Class of the field, or an instance: a Module, whose fields have units as
+            metadata, or a named tuple, whose fields are `Annotated[..., unit("N")]`.
         path: Name of the field; dotted, "rows.0.position", of a part of an instance;
             a number at the end is the entry of an array.
         index: Which entry of an array.
@@ -48,12 +57,7 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index = (int(path.rpartition(".")[2]),)
     for part in parts:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
-    if dataclasses.is_dataclass(owner):
-        fields = {field.name: field for field in dataclasses.fields(owner)}
-        units = np.asarray(fields[name].metadata.get("unit", "1"))
-    else:
-        stated = stated_units(owner if isinstance(owner, type) else type(owner), name)
-        units = np.asarray(stated[0] if len(stated) == 1 else stated or "1")
+    units = np.asarray(field_metadata(owner, name).get("unit", "1"))
     if len(index) < units.ndim:
         return ""
     last = zip(index[len(index) - units.ndim :], units.shape, strict=True)
@@ -61,35 +65,23 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
     return "" if found == "1" else found
 
 
-def stated_units(kind: type, name: str) -> tuple[str, ...]:
-    """Units that a class or its parents state of an attribute, in their docstrings.
+def field_metadata(owner: Any, name: str) -> Mapping[str, Any]:
+    """Metadata of a field of a dataclass or of a named tuple.
 
     Args:
-        kind: Class whose docstring has an entry "name: what it is [unit]", or
-            "name, other: what they are [N, N m]"; its first line may state the unit of
-            all entries without one.
-        name: Attribute.
-
-    Returns:
-        Those of the last brackets; empty if there are none.
+        owner: Class of the field, or an instance.
+        name: Field.
 
     Raises:
-        KeyError: If the docstring does not state it.
+        KeyError: If there is no such field.
     """
-    entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
-    said = False
-    for base in kind.__mro__:
-        text = docstring(base)
-        found = re.search(entry, text, re.M | re.S)
-        if found:
-            said = True
-            for part in (found[1], text.partition("\n")[0]):
-                units = re.findall(r"\[([^]]*)\]", part)
-                if units:
-                    return tuple(u.strip() for u in units[-1].split(","))
-    if not said:
-        raise KeyError(f"{kind.__name__}: the docstring does not state {name}")
-    return ()
+    if dataclasses.is_dataclass(owner):
+        return {f.name: f.metadata for f in dataclasses.fields(owner)}[name]
+    kind = owner if isinstance(owner, type) else type(owner)
+    found: dict[str, Any] = {}
+    for one in get_args(kind.__annotations__[name])[1:]:
+        found |= one if isinstance(one, dict) else {}
+    return found
 
 
 @functools.cache

@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -12,6 +12,7 @@ import numpy as np
 from ..cases.cases import Cases
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
+from ..numerics.units import unit
 from ..statics.options import SolveOptions
 from ..statics.warning import warnings as warnings_of
 from .constraint import Constraint
@@ -50,7 +51,7 @@ class Outcome(NamedTuple):
             and of a system.
     """
 
-    values: np.ndarray
+    values: Annotated[np.ndarray, unit("SI")]
     objective: float
     exact: float
     constraints: np.ndarray

@@ -7,14 +7,14 @@ gradient costs little more than the solves.
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ..cases.cases import Cases
 from ..design.checks import of_class
 from ..life.rating import check_alike
-from ..numerics.units import shown_number
+from ..numerics.units import shown_number, unit
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.support import check_held
@@ -43,10 +43,10 @@ class History(NamedTuple):
         evaluations: Designs evaluated so far (step,).
     """
 
-    values: np.ndarray
+    values: Annotated[np.ndarray, unit("SI")]
     objective: np.ndarray
     violation: np.ndarray
-    gradient: np.ndarray
+    gradient: Annotated[np.ndarray, unit("1")]
     evaluations: np.ndarray
 
 

@@ -5,7 +5,7 @@ steps that are compiled one by one.
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -16,6 +16,7 @@ from jaxtyping import Array, Float
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import eigvals, solve_any
+from ..numerics.units import unit
 
 HOTTEST = 300.0
 """Rise above the surroundings from which there is no thermal equilibrium [K]."""
@@ -96,11 +97,11 @@ class _Search(NamedTuple):
         going: Whether to go on.
     """
 
-    after: Array
-    rise: Array
-    fastest: Array
-    residual: Array
-    time: Array
+    after: Annotated[Array, unit("K")]
+    rise: Annotated[Array, unit("K")]
+    fastest: Annotated[Array, unit("1/s")]
+    residual: Annotated[Array, unit("1")]
+    time: Annotated[Array, unit("s")]
     steps: Array
     going: Array
 

@@ -5,12 +5,13 @@ touch in the middle of the common part of their faces, a belt pulls along the li
 one pulley to the other.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .parts import APEXES, Gear, Pulley
 
 Pair = tuple[Float[Array, "3"], Float[Array, "3"]]
@@ -30,12 +31,12 @@ class MeshPlace(NamedTuple):
             none [m]; `None` if a face or a place is not known.
     """
 
-    ways: Pair
-    radii: tuple[Scalar, Scalar]
-    points: Pair
-    gap: Float[Array, "3"]
-    size: Scalar
-    overlap: Scalar | None
+    ways: Annotated[Pair, unit("1")]
+    radii: Annotated[tuple[Scalar, Scalar], unit("m")]
+    points: Annotated[Pair, unit("m")]
+    gap: Annotated[Float[Array, "3"], unit("m")]
+    size: Annotated[Scalar, unit("m")]
+    overlap: Annotated[Scalar | None, unit("m")]
 
 
 def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:

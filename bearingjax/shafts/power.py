@@ -1,6 +1,6 @@
 """Speeds and torques of a system of shafts: ratios of wheels, balance of torques."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .line import ShaftLine
 from .mesh_place import mesh_place
 from .parts import Gear, Pulley, torque_of
@@ -27,9 +28,9 @@ class Contact(NamedTuple):
 
     wheel: Gear | Pulley
     mate: Gear | Pulley | None
-    radial: Float[Array, "3"]
-    radius: Scalar
-    point: Float[Array, "3"]
+    radial: Annotated[Float[Array, "3"], unit("1")]
+    radius: Annotated[Scalar, unit("m")]
+    point: Annotated[Float[Array, "3"], unit("m")]
 
 
 class Mesh(eqx.Module):

@@ -14,7 +14,7 @@ Source: Han & Chu, J. Sound Vib. 354 (2015) 219-235, the formulas derived anew, 
     rings that both turn and any number of contacts.
 """
 
-from typing import ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -32,6 +32,7 @@ from ..lubrication import (
     at_least,
 )
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 
 LEAST_LOAD = 1e-9
 """Negligible load, for means of directions without load [N]."""
@@ -44,8 +45,8 @@ class BallState(NamedTuple):
         orbit: Angular velocity of the frame about the bearing axis [rad/s].
     """
 
-    spin: Float[Array, "3"]
-    orbit: Scalar
+    spin: Annotated[Float[Array, "3"], unit("rad/s")]
+    orbit: Annotated[Scalar, unit("rad/s")]
 
 
 class LoadedBall(eqx.Module):
@@ -108,9 +109,9 @@ class Sliding(NamedTuple):
             [m/s].
     """
 
-    slip: Float[Array, "contact 2"]
-    spin: Float[Array, " contact"]
-    entrainment: Float[Array, " contact"]
+    slip: Annotated[Float[Array, "contact 2"], unit("m/s")]
+    spin: Annotated[Float[Array, " contact"], unit("rad/s")]
+    entrainment: Annotated[Float[Array, " contact"], unit("m/s")]
 
 
 class Tractions(NamedTuple):
@@ -123,10 +124,10 @@ class Tractions(NamedTuple):
         ring_torque: On the ring about the bearing axis (contact,) [N m].
     """
 
-    film: Float[Array, " contact"]
+    film: Annotated[Float[Array, " contact"], unit("m")]
     resultants: Resultants
-    moment: Float[Array, "contact 3"]
-    ring_torque: Float[Array, " contact"]
+    moment: Annotated[Float[Array, "contact 3"], unit("N m")]
+    ring_torque: Annotated[Float[Array, " contact"], unit("N m")]
 
     @property
     def heat(self) -> Float[Array, "*n contact"]:

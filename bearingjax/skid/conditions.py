@@ -1,6 +1,6 @@
 """Conditions in the contacts of skidding balls and rollers, and warnings on them."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..contact.point_law import ball_ellipses, balls_of
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
+from ..numerics.units import unit
 from .ball_motion import BallState, sliding, tractions
 from .loaded import loaded_ball
 from .model import SkidModel
@@ -33,12 +34,12 @@ class Conditions(NamedTuple):
             (…, 2) [m]; of rollers `None`.
     """
 
-    peak_pressure: Float[Array, "..."]
-    least_film: Float[Array, "..."]
+    peak_pressure: Annotated[Float[Array, "..."], unit("Pa")]
+    least_film: Annotated[Float[Array, "..."], unit("m")]
     regime: Int[Array, "..."]
     outside_fluid_range: Bool[Array, "..."]
-    shear: Float[Array, "..."]
-    semi_axes: Float[Array, "... 2"] | None = None
+    shear: Annotated[Float[Array, "..."], unit("1")]
+    semi_axes: Annotated[Float[Array, "... 2"] | None, unit("m")] = None
 
 
 def conditions_of(

@@ -1,10 +1,11 @@
 """Slip and heat over the contact ellipse of a skidding ball."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ..numerics.types import as_real
+from ..numerics.units import unit
 from .conditions import Conditions
 from .model import SkidModel
 
@@ -23,10 +24,10 @@ class Ellipse(NamedTuple):
         heat: Heat of the traction [W/m²].
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    slip: np.ndarray
-    heat: np.ndarray
+    x: Annotated[np.ndarray, unit("m")]
+    y: Annotated[np.ndarray, unit("m")]
+    slip: Annotated[np.ndarray, unit("m/s")]
+    heat: Annotated[np.ndarray, unit("W/m²")]
 
 
 def sliding_ellipse(

@@ -1,6 +1,6 @@
 """Model of a skidding bearing: oil, traction, cage, drag."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
@@ -32,9 +32,9 @@ class Oil(NamedTuple):
     """
 
     lubricant: Lubricant
-    temperature: Scalar
-    least_film: Scalar
-    loading: Scalar | None = None
+    temperature: Annotated[Scalar, unit("K")]
+    least_film: Annotated[Scalar, unit("m")]
+    loading: Annotated[Scalar | None, unit("s²/m²")] = None
 
     def inlet(self, modulus: Scalar) -> WarmInlet | None:
         """Return the inlet heating that thins films at speed.

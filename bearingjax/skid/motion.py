@@ -12,7 +12,7 @@ force itself is continuous and has a potential, so that the power balance is exa
 the pocket clearance stays what it is; the step control makes a few short steps there.
 """
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -20,6 +20,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from . import ball_motion, roller_motion
 from .balanced_loads import BalancedLoads
 from .ball_motion import BallState, LoadedBall
@@ -44,9 +45,9 @@ class Work(NamedTuple):
         drag: Lost in the oil between the rings.
     """
 
-    drive: Array
-    contacts: Array
-    drag: Array
+    drive: Annotated[Array, unit("W")]
+    contacts: Annotated[Array, unit("W")]
+    drag: Annotated[Array, unit("W")]
 
 
 class SkidState(NamedTuple):
@@ -66,13 +67,13 @@ class SkidState(NamedTuple):
     Where the loads are tabulated there is nothing in centre (ball, 0) and ring (0,).
     """
 
-    spin: Float[Array, "ball axis"]
-    orbit: Float[Array, " ball"]
-    lead: Float[Array, " ball"]
-    cage_speed: Scalar
-    cage_turn: Scalar
-    centre: Float[Array, "ball z"]
-    ring: Float[Array, " unknown"]
+    spin: Annotated[Float[Array, "ball axis"], unit("rad/s")]
+    orbit: Annotated[Float[Array, " ball"], unit("rad/s")]
+    lead: Annotated[Float[Array, " ball"], unit("rad")]
+    cage_speed: Annotated[Scalar, unit("rad/s")]
+    cage_turn: Annotated[Scalar, unit("rad")]
+    centre: Annotated[Float[Array, "ball z"], unit("m")]
+    ring: Annotated[Float[Array, " unknown"], unit("m")]
 
 
 class Surroundings(eqx.Module):
@@ -112,15 +113,15 @@ class ElementState(NamedTuple):
     """
 
     ball: Any
-    azimuth: Scalar
+    azimuth: Annotated[Scalar, unit("rad")]
     state: Any
     moving: Any
     pulls: Any
-    push: Scalar
-    drag: Scalar
-    weight: Scalar
-    unbalanced: Float[Array, " z"]
-    on_ring: Float[Array, " unknown"]
+    push: Annotated[Scalar, unit("N")]
+    drag: Annotated[Scalar, unit("N")]
+    weight: Annotated[Scalar, unit("N")]
+    unbalanced: Annotated[Float[Array, " z"], unit("N")]
+    on_ring: Annotated[Float[Array, " unknown"], unit("N")]
 
     @property
     def ring_torque(self) -> tuple[Scalar, Scalar]:

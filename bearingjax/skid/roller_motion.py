@@ -10,7 +10,7 @@ Left out: friction on ribs and in cage pockets, the resistance of rolling itself
 the misaligned roller's sliding along its axis.
 """
 
-from typing import ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -20,6 +20,7 @@ from jaxtyping import Array, Float
 from ..element.inertia import Speed
 from ..lubrication import AbstractTraction, Film, LinePatch, WarmInlet, at_least
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 
 
 class RollerState(NamedTuple):
@@ -29,8 +30,8 @@ class RollerState(NamedTuple):
         orbit: Angular velocity of the frame about the bearing axis [rad/s].
     """
 
-    spin: Scalar
-    orbit: Scalar
+    spin: Annotated[Scalar, unit("rad/s")]
+    orbit: Annotated[Scalar, unit("rad/s")]
 
 
 class LoadedRoller(eqx.Module):
@@ -87,8 +88,8 @@ class RollerSliding(NamedTuple):
             [m/s].
     """
 
-    slip: Float[Array, "2"]
-    entrainment: Float[Array, "2"]
+    slip: Annotated[Float[Array, "2"], unit("m/s")]
+    entrainment: Annotated[Float[Array, "2"], unit("m/s")]
 
 
 class RollerTractions(NamedTuple):
@@ -102,11 +103,11 @@ class RollerTractions(NamedTuple):
         ring_torque: On the ring about the bearing axis (contact,) [N m].
     """
 
-    film: Float[Array, "2"]
-    force: Float[Array, "2"]
-    heat: Float[Array, "2"]
-    moment: Float[Array, "2"]
-    ring_torque: Float[Array, "2"]
+    film: Annotated[Float[Array, "2"], unit("m")]
+    force: Annotated[Float[Array, "2"], unit("N")]
+    heat: Annotated[Float[Array, "2"], unit("W")]
+    moment: Annotated[Float[Array, "2"], unit("N m")]
+    ring_torque: Annotated[Float[Array, "2"], unit("N m")]
 
 
 def rolling(roller: LoadedRoller, speed: Speed) -> RollerState:

@@ -7,7 +7,7 @@ converges from anywhere, or runs away where nothing holds the load, and says so.
 
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -28,6 +28,7 @@ from ..numerics.minimise import (
     continuation,
 )
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from .balance import Balance
 from .options import SolveOptions
 
@@ -44,7 +45,7 @@ class SearchMemory(NamedTuple):
     """
 
     solved: Solved
-    stiffness: Float[Array, "6 6"]
+    stiffness: Annotated[Float[Array, "6 6"], unit("N/m")]
 
 
 class SearchStart(NamedTuple):
@@ -60,12 +61,12 @@ class SearchStart(NamedTuple):
         factor: Multiple of the load at the start of the search, at least 1.
     """
 
-    y: Float[Array, "6"]
-    step: Scalar
-    limit: Scalar
-    load: Float[Array, "6"]
-    size: Scalar
-    inertia: Scalar
+    y: Annotated[Float[Array, "6"], unit("m")]
+    step: Annotated[Scalar, unit("m")]
+    limit: Annotated[Scalar, unit("m")]
+    load: Annotated[Float[Array, "6"], unit("N")]
+    size: Annotated[Scalar, unit("N")]
+    inertia: Annotated[Scalar, unit("N")]
     factor: Scalar
 
 

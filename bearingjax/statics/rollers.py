@@ -1,6 +1,6 @@
 """Results of solved rollers: rib loads, line loads, pressures."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -90,11 +90,11 @@ class Distribution(NamedTuple):
         edge_load, edge_pressure: As in `RollerResults`.
     """
 
-    position: Array
+    position: Annotated[Array, unit("m")]
     line_load: Array
     contact_pressure: Array
     contact_half_width: Array
-    roller_pressure: Array
+    roller_pressure: Annotated[Array, unit("Pa")]
     edge_load: Array
     edge_pressure: Array
 

@@ -1,12 +1,13 @@
 """A contact of two half-spaces: gap, and the given load, approach and tilt."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ...numerics.types import Scalar
+from ...numerics.units import unit
 from .grid import Grid
 from .influence import AbstractInfluence
 
@@ -108,9 +109,9 @@ class Pressed(NamedTuple):
         result: `Result` code.
     """
 
-    pressure: Float[Array, "m n"]
+    pressure: Annotated[Float[Array, "m n"], unit("Pa")]
     touching: Bool[Array, "m n"]
-    rigid: Float[Array, " k"]
-    residual: Scalar
+    rigid: Annotated[Float[Array, " k"], unit("m")]
+    residual: Annotated[Scalar, unit("1")]
     steps: Int[Array, ""]
     result: Int[Array, ""]

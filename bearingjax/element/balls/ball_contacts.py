@@ -1,6 +1,6 @@
 """Contacts of one ball in its grooves, from how it has moved against each of them."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from ...numerics.linear import dot
 from ...numerics.types import Scalar
+from ...numerics.units import unit
 from ..rolling_element import Unknowns
 
 
@@ -24,9 +25,9 @@ class Contacts(NamedTuple):
             because the groove has ended there, else 1 (contact, 2).
     """
 
-    approach: Float[Array, " contact"]
-    length: Float[Array, " contact"]
-    inverse: Float[Array, " contact"]
+    approach: Annotated[Float[Array, " contact"], unit("m")]
+    length: Annotated[Float[Array, " contact"], unit("m")]
+    inverse: Annotated[Float[Array, " contact"], unit("1/m")]
     normal: Float[Array, "contact 2"]
     mask: Float[Array, "contact 2"]
 

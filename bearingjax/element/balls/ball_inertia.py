@@ -4,13 +4,14 @@ At the operating contact angles these have no potential and are passed separatel
 the energy. See `ball_speed` for kinematics and raceway control.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.ball import AbstractBallBearing
 from ...numerics.types import Scalar
+from ...numerics.units import mixed, unit
 from ..frame import orbit, roll_ratio
 from ..inertia import Speed
 from .ball_speed import (
@@ -38,12 +39,12 @@ class BallInertia(NamedTuple):
 
     speed: Speed
     control: AbstractRacewayControl
-    ratio: Scalar
-    centrifugal: Scalar
-    mass: Scalar
-    moment: Scalar
-    pitch_radius: Scalar
-    diameter: Scalar
+    ratio: Annotated[Scalar, unit("1")]
+    centrifugal: Annotated[Scalar, unit("N")]
+    mass: Annotated[Scalar, unit("kg")]
+    moment: Annotated[Scalar, unit("kg m²")]
+    pitch_radius: Annotated[Scalar, unit("m")]
+    diameter: Annotated[Scalar, unit("m")]
 
 
 class Carried(NamedTuple):
@@ -60,10 +61,10 @@ class Carried(NamedTuple):
     """
 
     kinematics: BallKinematics
-    centrifugal: Scalar
-    traction: Float[Array, "2"]
-    on_ball: Float[Array, "2"]
-    on_rings: Float[Array, "2 3"]
+    centrifugal: Annotated[Scalar, unit("N")]
+    traction: Annotated[Float[Array, "2"], unit("N")]
+    on_ball: Annotated[Float[Array, "2"], unit("N")]
+    on_rings: Annotated[Float[Array, "2 3"], mixed("N", "N m")]
 
 
 def ball_inertia(

@@ -10,7 +10,7 @@ principle; Jones, J. Basic Eng. 82 (1960).
 """
 
 import abc
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -188,11 +188,11 @@ class BallKinematics(NamedTuple):
         roll: Rolling about the contact tangent, outer and inner ring (2,) [rad/s].
     """
 
-    orbit: Float[Array, "..."]
-    rotation: Float[Array, "..."]
+    orbit: Annotated[Float[Array, "..."], unit("rad/s")]
+    rotation: Annotated[Float[Array, "..."], unit("rad/s")]
     axis: Float[Array, "... 2"]
-    spin: Float[Array, "... 2"]
-    roll: Float[Array, "... 2"]
+    spin: Annotated[Float[Array, "... 2"], unit("rad/s")]
+    roll: Annotated[Float[Array, "... 2"], unit("rad/s")]
 
     @property
     def pitch_angle(self) -> Float[Array | np.ndarray | np.floating, "..."]:

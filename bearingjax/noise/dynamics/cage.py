@@ -10,7 +10,7 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), in outlin
     left out here.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -21,7 +21,7 @@ from ...design.checks import finite, instance, non_negative, of_shape, one_of, p
 from ...element.frame import RINGS
 from ...numerics.linear import lengths
 from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.units import mixed, unit
 from .cage_contact import CageContact
 
 
@@ -81,9 +81,9 @@ class CageForces(NamedTuple):
         ring: To the guiding ring along x and y (2,) [N].
     """
 
-    arcs: Float[Array, " element"]
-    cage: Float[Array, "3"]
-    ring: Float[Array, "2"]
+    arcs: Annotated[Float[Array, " element"], unit("N")]
+    cage: Annotated[Float[Array, "3"], mixed("N", "N m")]
+    ring: Annotated[Float[Array, "2"], unit("N")]
 
 
 def cage_loads(

@@ -7,7 +7,7 @@ ball by ball, with the derivative of the energy taken by `jax.grad`.
 """
 
 from functools import partial
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -18,6 +18,7 @@ from ...contact.hertz import EXPONENT
 from ...element.balls.ball import Ball
 from ...element.balls.ball_contacts import add
 from ...numerics.power import positive_power
+from ...numerics.units import unit
 from .dynamic_element import DynamicElement
 from .element_positions import Section
 
@@ -110,11 +111,11 @@ class _Contact(NamedTuple):
         turn: Load over length, the stiffness across the normal [N/m].
     """
 
-    normal: tuple[Array, Array]
+    normal: Annotated[tuple[Array, Array], unit("1")]
     mask: tuple[Array, Array]
-    load: Array
-    root: Array
-    turn: Array
+    load: Annotated[Array, unit("N")]
+    root: Annotated[Array, unit("N/m")]
+    turn: Annotated[Array, unit("N/m")]
 
 
 def _contact(walls, moved, start, reach, constant) -> _Contact:

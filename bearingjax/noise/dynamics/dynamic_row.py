@@ -5,7 +5,7 @@ long row costs fewer operations than several.
 """
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -19,6 +19,7 @@ from ...element.frame import orbit, rotation
 from ...element.inertia import Speed
 from ...element.kinematics import Linearised
 from ...element.row import Row, RowPlacement
+from ...numerics.units import unit
 from .dynamic_element import dynamic_element
 
 
@@ -59,8 +60,8 @@ class DynamicRow(NamedTuple):
 
     row: Row
     placements: RowPlacement | None
-    carried: Any
-    own: Any
+    carried: Annotated[Any, unit("rad/s")]
+    own: Annotated[Any, unit("rad/s")]
     surfaces: tuple[Surfaces, ...]
 
     @classmethod

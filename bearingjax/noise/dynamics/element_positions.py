@@ -1,11 +1,12 @@
 """Positions of rolling elements at a time, and the form errors there."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...element.row import RowPlacement
+from ...numerics.units import mixed, unit
 
 
 class Section(NamedTuple):
@@ -17,9 +18,9 @@ class Section(NamedTuple):
         tilt: From the axis outwards (element,) [rad, N m]; `None`: none.
     """
 
-    axial: Float[Array, " element"]
-    outwards: Float[Array, " element"]
-    tilt: Float[Array, " element"] | None
+    axial: Annotated[Float[Array, " element"], mixed("m", "N")]
+    outwards: Annotated[Float[Array, " element"], mixed("m", "N")]
+    tilt: Annotated[Float[Array, " element"] | None, mixed("rad", "N m")]
 
     @property
     def stacked(self) -> Float[Array, "element 3"]:
@@ -43,12 +44,12 @@ class ElementPositions(NamedTuple):
             none.
     """
 
-    azimuth: Float[Array, " element"]
-    cosine: Float[Array, " element"]
-    sine: Float[Array, " element"]
-    axial: Float[Array, "2 element"] | None = None
-    outwards: Float[Array, "2 element"] | None = None
-    heights: Float[Array, "2 element"] | None = None
+    azimuth: Annotated[Float[Array, " element"], unit("rad")]
+    cosine: Annotated[Float[Array, " element"], unit("1")]
+    sine: Annotated[Float[Array, " element"], unit("1")]
+    axial: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
+    outwards: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
+    heights: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
 
     @classmethod
     def at(cls, azimuth: Float[Array, " element"]) -> "ElementPositions":

@@ -12,7 +12,7 @@ without it frequencies above half of the sampling rate would be aliased.
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -22,6 +22,7 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from ...numerics.types import Scalar
+from ...numerics.units import mixed
 
 Vector = Float[Array, " n"]
 
@@ -58,7 +59,7 @@ class Stepped(NamedTuple):
         end: Motion and velocity some samples later.
     """
 
-    motion: Float[Array, "sample n"]
+    motion: Annotated[Float[Array, "sample n"], mixed("m", "rad")]
     acceleration: Any
     end: tuple[Vector, Vector]
 

@@ -22,7 +22,7 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin (Vestnik SGAU, 2011) for balls 
     Dynamics of Rotating Machines (2010), p. 182-185: (0.25 to 2.5) 1e-5 s.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -34,6 +34,7 @@ from ...design.form_error import FormErrors, Surfaces
 from ...element.frame import RINGS, orbit, roll_ratio
 from ...element.row import Row, RowPlacement
 from ...numerics.types import Scalar
+from ...numerics.units import mixed, unit
 from ..sensor import Sensor
 from .cage import GuidedCage, cage_forces, cage_loads
 from .dynamic_balls import ball_forces, is_written_out
@@ -393,10 +394,10 @@ class _Pressed(NamedTuple):
         pockets, land: As `cage_loads` [N]; `None` without a cage.
     """
 
-    on_ring: Section
-    on_places: Float[Array, "element m"]
-    pockets: Float[Array, " element"] | None
-    land: Scalar | None
+    on_ring: Annotated[Section, mixed("N", "N m")]
+    on_places: Annotated[Float[Array, "element m"], mixed("N", "N m")]
+    pockets: Annotated[Float[Array, " element"] | None, unit("N")]
+    land: Annotated[Scalar | None, unit("N")]
 
 
 def _smooth_step(share):

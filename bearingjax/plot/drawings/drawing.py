@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
@@ -14,6 +14,7 @@ from ...design import (
     Material,
     Straight,
 )
+from ...numerics.units import unit
 from ..style import Figure, head, pyplot
 from .ball_drawing import ball_clearance_view, dimensioned_balls
 from .dimension import label
@@ -51,10 +52,10 @@ class _View(NamedTuple):
         framed: Whether it has ticks.
     """
 
-    draw: Callable[[Any, tuple[float, float]], None]
-    size: tuple[float, float]
-    left: float = 0.0
-    down: float = 0.0
+    draw: Annotated[Callable[[Any, tuple[float, float]], None], unit("inch")]
+    size: Annotated[tuple[float, float], unit("inch")]
+    left: Annotated[float, unit("inch")] = 0.0
+    down: Annotated[float, unit("inch")] = 0.0
     framed: bool = False
 
 
@@ -68,7 +69,7 @@ class _Strip(NamedTuple):
         bold: How they are written.
     """
 
-    height: float
+    height: Annotated[float, unit("inch")]
     views: Sequence[_View] = ()
     words: str = ""
     bold: bool = False

@@ -1,6 +1,6 @@
 """Outlines of a roller bearing in its axial section."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,6 +12,7 @@ from ...design.profile import drops
 from ...element.constants import contact_constants
 from ...numerics import Midpoint
 from ...numerics.compiled.programs import program
+from ...numerics.units import unit
 from ..style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters
@@ -36,16 +37,16 @@ class Section(NamedTuple):
         length: Roller length [mm].
     """
 
-    roller: np.ndarray
-    rings: tuple[np.ndarray, np.ndarray]
-    raceways: np.ndarray
-    axis: np.ndarray
-    generators: np.ndarray
-    rib_points: np.ndarray
-    rib_normals: np.ndarray
-    centre: np.ndarray
-    diameter: float
-    length: float
+    roller: Annotated[np.ndarray, unit("mm")]
+    rings: Annotated[tuple[np.ndarray, np.ndarray], unit("mm")]
+    raceways: Annotated[np.ndarray, unit("mm")]
+    axis: Annotated[np.ndarray, unit("mm")]
+    generators: Annotated[np.ndarray, unit("mm")]
+    rib_points: Annotated[np.ndarray, unit("mm")]
+    rib_normals: Annotated[np.ndarray, unit("mm")]
+    centre: Annotated[np.ndarray, unit("mm")]
+    diameter: Annotated[float, unit("mm")]
+    length: Annotated[float, unit("mm")]
 
 
 def section(bearing: AbstractRollerBearing) -> Section:

@@ -1,10 +1,11 @@
 """Drawn parts of a rotor: discs, bearings, springs, housings."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ...design import AbstractBallBearing, Material, rows_of
+from ...numerics.units import unit
 from ...rotor import AbstractSupport, BearingSupport, Disc
 from ..drawings.ball_section import STEEP, ball_row, row_position
 from ..drawings.outline import section
@@ -21,9 +22,9 @@ class Cylinder(NamedTuple):
         width: Along the shaft [mm].
     """
 
-    outer: float
-    bore: float
-    width: float
+    outer: Annotated[float, unit("mm")]
+    bore: Annotated[float, unit("mm")]
+    width: Annotated[float, unit("mm")]
 
 
 def disc_size(disc: Disc, shaft_diameter: float, material: Material) -> Cylinder | None:

@@ -1,11 +1,12 @@
 """Onset of instability: the speed at which a mode becomes unstable."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
 from ...numerics.types import as_real
+from ...numerics.units import unit
 from ..rotor import Rotor
 from .modes import Modes, follow_modes, speed_list
 
@@ -27,8 +28,8 @@ class Onset(NamedTuple):
     """
 
     mode: int
-    speed: float
-    frequency: float
+    speed: Annotated[float, unit("rad/s")]
+    frequency: Annotated[float, unit("Hz")]
 
 
 def instability_onsets(rotor: Rotor, speeds: Any, found: Modes) -> tuple[Onset, ...]:

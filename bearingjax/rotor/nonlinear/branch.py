@@ -1,7 +1,7 @@
 """A branch of periodic orbits with its stability and its marked points."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -12,6 +12,7 @@ from ...design.checks import positive
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import mixed, unit
 from .continuation import (
     Arclength,
     BranchEnd,
@@ -47,10 +48,10 @@ class Event(NamedTuple):
     """
 
     kind: str
-    frequency: float
-    amplitude: np.ndarray
-    displacement: np.ndarray
-    multipliers: np.ndarray
+    frequency: Annotated[float, unit("rad/s")]
+    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
+    displacement: Annotated[np.ndarray, mixed("m", "rad")]
+    multipliers: Annotated[np.ndarray, unit("1")]
     after: int
     located: bool
 
@@ -72,13 +73,13 @@ class Branch(NamedTuple):
         ending: Why the branch ends.
     """
 
-    frequency: np.ndarray
-    amplitude: np.ndarray
-    displacement: np.ndarray
-    multipliers: np.ndarray
+    frequency: Annotated[np.ndarray, unit("rad/s")]
+    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
+    displacement: Annotated[np.ndarray, mixed("m", "rad")]
+    multipliers: Annotated[np.ndarray, unit("1")]
     stable: np.ndarray
-    unknowns: np.ndarray
-    residual: np.ndarray
+    unknowns: Annotated[np.ndarray, unit("1")]
+    residual: Annotated[np.ndarray, unit("1")]
     newton: np.ndarray
     events: tuple[Event, ...]
     refused: int

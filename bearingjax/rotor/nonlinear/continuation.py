@@ -13,7 +13,7 @@ until it is short, and what then still changes it is a crossing of branches, mar
 """
 
 import enum
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -123,12 +123,12 @@ class Traced(NamedTuple):
         ending: `BranchEnd` code.
     """
 
-    x: Float[Array, "point x"]
+    x: Annotated[Float[Array, "point x"], unit("1")]
     tangent: Float[Array, "point x"]
-    monodromy: Float[Array, "point state state"]
-    motion: Float[Array, "point sample n"]
-    amplitude: Float[Array, "point n"]
-    residual: Float[Array, " point"]
+    monodromy: Annotated[Float[Array, "point state state"], unit("1")]
+    motion: Annotated[Float[Array, "point sample n"], unit("1")]
+    amplitude: Annotated[Float[Array, "point n"], unit("1")]
+    residual: Annotated[Float[Array, " point"], unit("1")]
     side: Float[Array, " point"]
     newton: Int[Array, " point"]
     count: Int[Array, ""]

@@ -12,7 +12,7 @@ Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5
 """
 
 import functools
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -23,6 +23,7 @@ from jaxtyping import Array, Float
 from ...numerics.implicit import attach_by, recall, stop_gradient
 from ...numerics.lapack import expm, solve_any
 from ...numerics.types import Scalar
+from ...numerics.units import unit
 from .system import AbstractVibratingSystem, inertia, out_of_balance
 
 _STAGES = 5
@@ -55,9 +56,9 @@ class _Stages(NamedTuple):
         once, twice: Integrals over the phase (stage, stage) [rad], [rad²].
     """
 
-    nodes: np.ndarray
-    once: np.ndarray
-    twice: np.ndarray
+    nodes: Annotated[np.ndarray, unit("rad")]
+    once: Annotated[np.ndarray, unit("rad²")]
+    twice: Annotated[np.ndarray, unit("rad²")]
 
 
 def _stages_of(steps: int, dtype) -> _Stages:
@@ -83,10 +84,10 @@ class StepStart(NamedTuple):
     """
 
     system: AbstractVibratingSystem
-    ratio: Scalar
-    phase: Scalar
-    u: Float[Array, " n"]
-    rate: Float[Array, " n"]
+    ratio: Annotated[Scalar, unit("1")]
+    phase: Annotated[Scalar, unit("rad")]
+    u: Annotated[Float[Array, " n"], unit("1")]
+    rate: Annotated[Float[Array, " n"], unit("1")]
 
 
 def _stage_motion(at, begin, second):

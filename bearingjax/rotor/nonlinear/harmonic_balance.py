@@ -9,7 +9,7 @@ Source: Cameron & Griffin, J. Appl. Mech. 56 (1989) 149; Krack & Gross, Harmonic
 """
 
 import functools
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -18,6 +18,7 @@ import numpy as np
 
 from ...numerics.lapack import solve_any
 from ...numerics.types import as_count
+from ...numerics.units import unit
 from .flow import transition, transition_phases
 from .method import AbstractMethod
 from .system import inertia, out_of_balance
@@ -34,7 +35,7 @@ class Basis(NamedTuple):
         turn: Coefficients of the derivative from those of the series.
     """
 
-    phase: Any
+    phase: Annotated[Any, unit("rad")]
     value: Any
     rate: Any
     second: Any

@@ -1,7 +1,7 @@
 """Periodic orbit by Newton's method, with derivatives and stability."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -14,6 +14,7 @@ from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Flag, Scalar, as_real
+from ...numerics.units import unit
 from .method import AbstractMethod, Motion
 from .system import AbstractVibratingSystem, frequency_of
 
@@ -70,9 +71,9 @@ class Corrected(NamedTuple):
         result: `Result` code.
     """
 
-    x: Float[Array, " x"]
-    left: Float[Array, " m"]
-    jacobian: Float[Array, "m x"]
+    x: Annotated[Float[Array, " x"], unit("1")]
+    left: Annotated[Float[Array, " m"], unit("1")]
+    jacobian: Annotated[Float[Array, "m x"], unit("1")]
     slopes: Any
     steps: Int[Array, ""]
     result: Int[Array, ""]

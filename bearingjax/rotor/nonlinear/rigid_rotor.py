@@ -6,7 +6,7 @@ Source: Filipkovskii & Belomyttsev (2014), section 2; see the method's matrices 
     signs, which make a forward whirl stiffer.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import jax
@@ -116,8 +116,8 @@ class Natural(NamedTuple):
         axial: [rad/s].
     """
 
-    radial: Float[Array, "2"]
-    axial: Scalar
+    radial: Annotated[Float[Array, "2"], unit("rad/s")]
+    axial: Annotated[Scalar, unit("rad/s")]
 
 
 def natural_frequencies(

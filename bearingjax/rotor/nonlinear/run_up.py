@@ -1,6 +1,6 @@
 """Frequency and phase of an excitation over time."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -21,9 +21,9 @@ class ExcitationState(NamedTuple):
         acceleration: α [rad/s²].
     """
 
-    phase: Scalar
-    frequency: Scalar
-    acceleration: Scalar
+    phase: Annotated[Scalar, unit("rad")]
+    frequency: Annotated[Scalar, unit("rad/s")]
+    acceleration: Annotated[Scalar, unit("rad/s²")]
 
 
 class FrequencyTable(eqx.Module):

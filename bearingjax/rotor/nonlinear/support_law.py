@@ -8,7 +8,7 @@ Source: Filipkovskii & Belomyttsev (2014), eqs. (1), (2).
 """
 
 import abc
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -68,9 +68,9 @@ class _Preloaded(NamedTuple):
         approach: Approach of a ball, both raceways together [m].
     """
 
-    constant: Scalar
-    angle: Scalar
-    approach: Scalar
+    constant: Annotated[Scalar, unit("N/m^(3/2)")]
+    angle: Annotated[Scalar, unit("rad")]
+    approach: Annotated[Scalar, unit("m")]
 
 
 def _preload(element: BearingElement, offset: Any) -> _Preloaded:

@@ -1,6 +1,6 @@
 """Spectra of steady vibration over the frequency of the excitation."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -12,6 +12,7 @@ from ...design.checks import check, count, real_numbers
 from ...numerics.compiled.programs import program
 from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import mixed, unit
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
 from .transient import Start, beginning, check_settings, simulate_traced
@@ -113,9 +114,9 @@ class Spectra(NamedTuple):
         amplitude: (line, bin) [m, rad].
     """
 
-    speed: np.ndarray
-    frequency: np.ndarray
-    amplitude: np.ndarray
+    speed: Annotated[np.ndarray, unit("rad/s")]
+    frequency: Annotated[np.ndarray, unit("Hz")]
+    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
 
 
 def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Spectra:

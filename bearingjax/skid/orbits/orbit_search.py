@@ -6,7 +6,7 @@ as the motion would, from pure rolling, and ends as Newton's method.
 
 import abc
 import dataclasses
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax
@@ -23,6 +23,7 @@ from ...numerics.lapack import solve_any
 from ...numerics.linear import solve
 from ...numerics.result import Result
 from ...numerics.types import Scalar
+from ...numerics.units import mixed, unit
 from ...statics.balance import Balance
 from ..loaded import orbiting, ring_forces
 from ..model import SkidModel
@@ -288,9 +289,9 @@ class Evaluated(NamedTuple):
         solved: The row in equilibrium there.
     """
 
-    out: Float[Array, " unknown"]
-    sizes: Float[Array, " unknown"]
-    jacobian: Float[Array, "unknown unknown"]
+    out: Annotated[Float[Array, " unknown"], unit("N")]
+    sizes: Annotated[Float[Array, " unknown"], unit("N")]
+    jacobian: Annotated[Float[Array, "unknown unknown"], mixed("N s/rad", "N/m")]
     solved: SolvedRow
 
 
@@ -306,8 +307,8 @@ class OrbitSolution(NamedTuple):
         solved: The row in equilibrium there.
     """
 
-    y: Float[Array, " unknown"]
-    residual: Scalar
+    y: Annotated[Float[Array, " unknown"], mixed("rad/s", "m")]
+    residual: Annotated[Scalar, unit("1")]
     steps: Int[Array, ""]
     result: Int[Array, ""]
     solved: SolvedRow

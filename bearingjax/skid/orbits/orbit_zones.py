@@ -1,9 +1,10 @@
 """Zones of the orbit of balls under axial and radial load."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from ...numerics.units import unit
 from ..conditions import by_raceway
 from .steady_results import SteadyMotion, SteadySkid
 
@@ -18,8 +19,8 @@ class Zone(NamedTuple):
     """
 
     name: str
-    begin: float
-    end: float
+    begin: Annotated[float, unit("rad")]
+    end: Annotated[float, unit("rad")]
     loaded: bool
 
 

@@ -1,6 +1,6 @@
 """Results of the steady motion of skidding balls and rollers."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -45,10 +45,10 @@ class Power(NamedTuple):
         cage: Lost at the cage.
     """
 
-    drive: Scalar
-    contacts: Scalar
-    drag: Scalar
-    cage: Scalar
+    drive: Annotated[Scalar, unit("W")]
+    contacts: Annotated[Scalar, unit("W")]
+    drag: Annotated[Scalar, unit("W")]
+    cage: Annotated[Scalar, unit("W")]
 
 
 class SteadyMotion(eqx.Module):

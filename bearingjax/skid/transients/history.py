@@ -1,6 +1,6 @@
 """Results of skidding in time."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -172,9 +172,9 @@ class SlidingSpectrum(NamedTuple):
         cage: Mean frequency of the cage over the time that was transformed [Hz].
     """
 
-    frequency: np.ndarray
-    amplitude: np.ndarray
-    cage: float
+    frequency: Annotated[np.ndarray, unit("Hz")]
+    amplitude: Annotated[np.ndarray, unit("m/s")]
+    cage: Annotated[float, unit("Hz")]
 
 
 def sliding_spectrum(
