@@ -225,13 +225,13 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     found, count = parts.found, task.n_modes
     settled = found["settled"]
     with parts.part("modes"):
-        found["modes"] = _as_numpy(modes(settled.rotor, task.speed, count=count))
+        found["modes"] = jax.device_get(modes(settled.rotor, task.speed, count=count))
     highest = top_speed(task)
     follows = _following(task, rotor, settled, highest, parts)
     if follows is None:
         return None
     with parts.part("critical speeds"):
-        found["critical"] = _as_numpy(
+        found["critical"] = jax.device_get(
             critical_speeds(follows, count=count, operating_speed=task.speed)
         )
     if follows is not settled.rotor and (found["critical"].speed > highest).any():
@@ -243,7 +243,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     if task.campbell is not None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
-            found["campbell"] = _as_numpy(lines)
+            found["campbell"] = jax.device_get(lines)
             found["onsets"] = instability_onsets(
                 follows, task.campbell, found["campbell"]
             )
@@ -354,10 +354,3 @@ def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> No
                 found["transient"] = motion
             if motion.stopped is not None:
                 parts.failed("transient", *motion.stopped)
-
-
-def _as_numpy(tree: Any) -> Any:
-    """Convert to NumPy: JAX would compile every small operation."""
-    return jax.tree.map(
-        lambda leaf: np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf, tree
-    )

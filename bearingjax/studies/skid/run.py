@@ -79,7 +79,7 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
         raise SceneError(f"{task.name}: {error}") from error
     balls = task.model.bearing.is_ball
     state = conditions(task.model, found, speed) if balls else None
-    held, state = jax.tree.map(_as_numpy, (found, state))
+    held, state = jax.device_get((found, state))
     warned = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
         doubtful = skid_warnings(task.model, held, state)
@@ -140,8 +140,3 @@ def _still(task) -> SkidState:
     zero, each = jnp.zeros(()), jnp.zeros(count)
     nothing = jnp.zeros((count, 0)), jnp.zeros(0)
     return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
-
-
-def _as_numpy(leaf):
-    """Convert to NumPy: JAX would compile every small operation."""
-    return np.asarray(leaf) if isinstance(leaf, jax.Array) else leaf
