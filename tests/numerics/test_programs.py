@@ -232,7 +232,7 @@ import jax
 jax.config.update("jax_enable_x64", True)
 
 import bearingjax as bj
-from bearingjax.numerics import programs
+from bearingjax.numerics.compiled import programs
 
 bj.keep_programs(sys.argv[1])
 programs._libraries = lambda lowered: print("lowered") or {"lapack_dgeev_ffi"}
@@ -274,7 +274,7 @@ jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
 
 import jax.numpy as jnp
 
-from bearingjax.numerics import programs
+from bearingjax.numerics.compiled import programs
 
 def doubled(a, b):
     print("traced")
@@ -286,7 +286,7 @@ programs.doubled = doubled
 for name in ("no folder", "folder", "folder"):
     given = jnp.array([1.0, 2.0]), jnp.array(0.5)
     programs.keep_programs(here / name)
-    print(programs.called(doubled, *given))
+    print(programs.call_stored(doubled, *given))
 """
 
 

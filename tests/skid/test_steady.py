@@ -22,7 +22,9 @@ from bearingjax.skid.orbits import orbit_search
 from bearingjax.skid.orbits.orbit_search import derivatives
 from bearingjax.skid.orbits.steady_results import Power
 
-steady_module = importlib.import_module("bearingjax.skid.steady")  # a function's name
+steady_module = importlib.import_module(
+    "bearingjax.skid.orbits.steady"
+)  # a function's name
 
 # Axial load [N]: slip of the orbit [%], pitch angle of the spin axis [deg], as an
 # independent integration of one ball in time ended, to the digits that are printed.
