@@ -2,15 +2,20 @@
 
 `python -m pytest tests/studies -m "" -k golden --write-golden` writes them anew. A
 number that moves on purpose is written anew in the commit that moves it, which says
-why.
+why. They hold on the kind of machine that wrote them, see `machine`: elsewhere write
+them on the commit before, and compare.
 """
 
+import hashlib
 import json
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
+
+from bearingjax.numerics.compiled.programs import _processor
 
 FOLDER = Path(__file__).with_name("golden_files")
 LEFT_OUT = frozenset({"version", "residual", "iterations", "steps", "seconds"})
@@ -18,6 +23,19 @@ LEFT_OUT = frozenset({"version", "residual", "iterations", "steps", "seconds"})
 SHORT = 6
 """Numbers of a list that stand in the file one by one."""
 TOLERANCE = 1e-9
+
+
+MACHINE = FOLDER / "machine.txt"
+
+
+def machine() -> str:
+    """The release of JAX, and a digest of the processor.
+
+    Another processor, or another release, sums in another order. Motions in time and
+    optimised designs then differ by far more than round-off: with the instructions of
+    SSE4.2 in place of AVX2 the cage force of `skid_axial` moves by some per cent.
+    """
+    return f"{jax.__version__} {hashlib.sha256(_processor().encode()).hexdigest()}\n"
 
 
 def digest(value: Any, path: str = "") -> dict[str, Any]:
@@ -103,3 +121,4 @@ def write(name: str, entries: dict[str, Any]) -> None:
     ]
     text = "{\n" + ",\n".join(lines) + "\n}\n"
     (FOLDER / f"{name}.json").write_text(text, encoding="utf-8")
+    MACHINE.write_text(machine(), encoding="utf-8")
