@@ -200,6 +200,11 @@ def test_unit_of_a_named_tuple():
     with pytest.raises(KeyError, match="none"):
         unit_of(Example, "none")
 
+    class Derived(Example):
+        """A named tuple with methods has the fields of its parent."""
+
+    assert unit_of(Derived, "life") == "rev"
+
 
 @pytest.mark.parametrize("measure", MEASURES, ids=lambda measure: measure.label)
 def test_measures_have_the_unit_of_their_docstring(measure):

@@ -186,7 +186,8 @@ class Life(eqx.Module):
         modified_rating_life: L_nmr [rev], or `None` without a lubricant.
         damage: Part of the modified life, or without a lubricant of the reference life
             times a1, that one revolution uses [1/rev].
-        life_hours: That life in hours [h]; `None` if no speed is known.
+        life_hours: Modified life, or without a lubricant the reference life, in hours
+            [h]; `None` if no speed is known.
         viscosity_ratio: κ [1], or `None`.
         contamination_factor: e_C [1], or `None`.
         a_iso: Modified over reference life without a1 [1], or `None`.

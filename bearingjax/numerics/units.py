@@ -78,8 +78,11 @@ def field_metadata(owner: Any, name: str) -> Mapping[str, Any]:
     if dataclasses.is_dataclass(owner):
         return {f.name: f.metadata for f in dataclasses.fields(owner)}[name]
     kind = owner if isinstance(owner, type) else type(owner)
+    stated: dict[str, Any] = {}
+    for base in reversed(kind.__mro__):
+        stated |= base.__dict__.get("__annotations__", {})
     found: dict[str, Any] = {}
-    for one in get_args(kind.__annotations__[name])[1:]:
+    for one in get_args(stated[name])[1:]:
         found |= one if isinstance(one, dict) else {}
     return found
 

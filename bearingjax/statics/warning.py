@@ -80,10 +80,19 @@ def exceeded_kinds(
 
     Args:
         warned: Name -> size of the warning (case,), NaN where it does not apply.
-        kinds: Kinds of warnings by name, in the order in which they are told.
+        kinds: Kinds of warnings by name, in the order in which they are reported.
+
+    Raises:
+        KeyError: For a name that is not among the kinds: lives have kinds of their own
+            (`life.life_warning.ALL`), and a warning must not be lost.
     """
-    names = sorted(warned, key=[*kinds].index)
-    over = {name: warned[name] > kinds[name].limit for name in names}
+    if unknown := sorted(set(warned) - set(kinds)):
+        raise KeyError(f"no kind of warning is called {', '.join(unknown)}")
+    over = {
+        name: warned[name] > kind.limit
+        for name, kind in kinds.items()
+        if name in warned
+    }
     for name in [name for name in over if kinds[name].of_all]:
         if (~over[name] & np.isfinite(warned[name])).any():
             del over[name]
@@ -96,7 +105,12 @@ def sentences_of_cases(
     """The sentences of many cases: each kind once, with its worst case.
 
     Args:
-        warned, kinds: As in `exceeded_kinds`.
+        warned: Size of each kind of warning by name (case,), NaN where it does not
+            apply.
+        kinds: Kinds of warnings by name, in the order in which they are reported.
+
+    Raises:
+        KeyError: For a name that is not among the kinds.
     """
     out = []
     for name, cases in exceeded_kinds(warned, kinds).items():

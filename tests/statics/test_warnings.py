@@ -15,7 +15,7 @@ import bearingjax as bj
 from bearingjax.cases import sweep_table
 from bearingjax.statics import seat_warnings, speed_warnings
 from bearingjax.statics.rollers import distribution
-from bearingjax.statics.warning import sizes
+from bearingjax.statics.warning import exceeded_kinds, sizes
 from bearingjax.statics.warning_kinds import KINDS
 from bearingjax.statics.warning_sizes import (
     idle_numbers,
@@ -485,3 +485,18 @@ def test_balls_beyond_the_bottom_of_their_groove():
 def test_numbers_in_a_row_are_listed_by_their_ends():
     assert number_ranges(np.array([0, 1, 2, 10, 11, 13])) == "0 to 2, 10, 11, 13"
     assert number_ranges(np.array([4])) == "4"
+
+
+def test_kinds_that_cases_exceed():
+    """One `of_all` is left out where a case is below; failed cases do not count."""
+    kinds = {
+        "every": SimpleNamespace(limit=1.0, of_all=True),
+        "some": SimpleNamespace(limit=4.0, of_all=False),
+    }
+    sizes = {"some": np.array([4.0, 5.0, np.nan]), "every": np.array([2.0, 0.0, 3.0])}
+    (told,) = exceeded_kinds(sizes, kinds).items()
+    assert told[0] == "some" and told[1].tolist() == [False, True, False]
+    sizes["every"] = np.array([2.0, np.nan, 3.0])
+    assert [*exceeded_kinds(sizes, kinds)] == ["every", "some"]
+    with pytest.raises(KeyError, match="no kind of warning is called life"):
+        exceeded_kinds({"life": np.zeros(3)}, kinds)

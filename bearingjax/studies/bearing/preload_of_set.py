@@ -37,7 +37,7 @@ class PreloadOfSet:
         mounted_range: At the loosest and the tightest sizes of shaft, housing and
             rings; `None` where all sizes are exact. NaN: with that fit the balls have
             no contact angle, or no equilibrium was found.
-        operating_range: As `mounted_range`, in operation.
+        operating_range: Preload in operation at the loosest and the tightest sizes.
     """
 
     ground: float
