@@ -32,7 +32,7 @@ element = bj.BearingElement(bearing, bj.contact.CoupledSlices(30))
 solved = bj.sweep(element, loads, outputs=["displacement"], chunk=32)
 assert len(jax.devices()) == 2 and not solved.result.any()
 """
-SCRIPT = Path(__file__).with_name("sweep_in_process.py")
+SCRIPT = Path(__file__).parents[1] / "sweep_in_process.py"
 ELEMENT = small_element()
 NAMES = ["displacement", "stiffness", "largest_load", "iterations"]
 BAD = {5: "non_finite", 7: "no_load_path"}
