@@ -66,12 +66,21 @@ class Table:
         data: The table as parsed.
         file: File name, for messages.
         path: Dotted path of the table in the file; empty at the top.
+        places: Dotted paths of keys that stand elsewhere in the file, by their name
+            here: the `bearing` of a machine is its `bearings.NAME`.
     """
 
-    def __init__(self, data: Mapping[str, Any], file: str, path: str = ""):
+    def __init__(
+        self,
+        data: Mapping[str, Any],
+        file: str,
+        path: str = "",
+        places: Mapping[str, str] | None = None,
+    ):
         self._data = data
         self._file = file
         self._path = path
+        self._places = dict(places or {})
         self._asked: list[str] = []
         # Known keys, read or only looked for.
         self._known: list[str] = []
@@ -93,9 +102,16 @@ class Table:
         """Name keys in messages that are read elsewhere."""
         self._known.extend(keys)
 
+    def path_of(self, key: str) -> str:
+        """Return the dotted path of a key in the file, for messages."""
+        if key in self._places:
+            return self._places[key]
+        shown = key if _BARE.fullmatch(key) else repr(key)
+        return f"{self._path}.{shown}" if self._path else shown
+
     def error(self, key: str, problem: object) -> SceneError:
         """Return an error that names file and key."""
-        return SceneError(f"{self._file}: `{self._full(key)}`: {problem}")
+        return SceneError(f"{self._file}: `{self.path_of(key)}`: {problem}")
 
     def own_error(self, problem: object) -> SceneError:
         """Return an error that names file and table."""
@@ -268,7 +284,7 @@ class Table:
         known = self._read.get(key)
         if isinstance(known, Table):  # asked for before
             return known
-        child = Table(value, self._file, self._full(key))
+        child = Table(value, self._file, self.path_of(key))
         self._children.append(child)
         self._read[key] = child
         return child
@@ -288,7 +304,7 @@ class Table:
 
     def empty(self, key: str) -> "Table":
         """Return an empty sub-table, for a key given by a word."""
-        return Table({}, self._file, self._full(key))
+        return Table({}, self._file, self.path_of(key))
 
     def tables(self, key: str) -> "list[Table]":
         """Read a list of sub-tables, at least one."""
@@ -299,7 +315,7 @@ class Table:
         for k, value in enumerate(values):
             if not isinstance(value, Mapping):
                 raise self.error(key, f"{value!r} is not a table")
-            children.append(Table(value, self._file, f"{self._full(key)}[{k}]"))
+            children.append(Table(value, self._file, f"{self.path_of(key)}[{k}]"))
         self._children += children
         self._read[key] = children
         return children
@@ -386,10 +402,6 @@ class Table:
             hint = f" (`{close[0]}` is there instead)" if close else ""
             raise self.error(key, f"is missing{hint}; it must be {wanted}")
         return default
-
-    def _full(self, key):
-        shown = key if _BARE.fullmatch(key) else repr(key)
-        return f"{self._path}.{shown}" if self._path else shown
 
 
 def format_number(value: float, unit: str) -> str | float:

@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import re
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ...catalogue.entry import catalogue_entry
-from ...files.quantity import SceneError
 from ...files.table import Table, text_of
 from ...rotor import Shaft
 from .catalogue_keys import FromCatalogue
@@ -84,7 +82,12 @@ def read_machine_bearing(
         data["life"].pop("edge_stress", None)
     mark = repr(data)
     if mark not in known:
-        known[mark] = _scene(data, name, path, own, (*inside, *other_keys))
+        head = f"bearings.{name}"
+        places = {"bearing": head, "operating": head}
+        places |= {key: f"{head}.{key}" for key in inside if key not in _COMMON}
+        places |= {key: f"{head}.{key}" for key in _COMMON if key in own}
+        found = scene_of(data, path, (), (*inside, *other_keys), places)
+        known[mark] = dataclasses.replace(found, name=name)
     scene = known[mark]
     for key, value in echoed(scene.inputs).items():
         table.fill(key, value)
@@ -146,27 +149,6 @@ def check_seat(
         f"{name}: {has}; at station {station} the shaft has {sizes} mm",
         stacklevel=2,
     )
-
-
-def _scene(
-    data: dict[str, Any], name: str, path: Path, own: Any, other_keys: tuple[str, ...]
-) -> Scene:
-    # The message names tables of a bearing alone: [bearing], `fit.bore`; not hints.
-    tables = [key for key in (*EXTRA_KEYS, *_COMMON) if key in own]
-    pattern = (
-        rf"(?<!did you mean `)(?<=[`\[])({'|'.join(['bearing', *tables])})(?=[.`\]])"
-    )
-
-    def renamed(match: re.Match) -> str:
-        inside = "" if match[1] == "bearing" else f".{match[1]}"
-        return f"bearings.{name}{inside}"
-
-    try:
-        return dataclasses.replace(
-            scene_of(data, path, other_keys=other_keys), name=name
-        )
-    except SceneError as error:
-        raise SceneError(re.sub(pattern, renamed, str(error))) from error
 
 
 def _is_ball(own: Mapping[str, Any]) -> bool:

@@ -247,7 +247,8 @@ def read_choices(
         else:
             for name in ("quadrature", "points"):
                 if name in numerics:
-                    problem = "is not for coupled slices, which `contact.slices` counts"
+                    slices = f"`{contact.path_of('slices')}`"
+                    problem = f"is not for coupled slices, which {slices} counts"
                     raise numerics.error(name, problem)
                 numerics.fill(name, None)
     if keys.kinematics is not None:

@@ -285,15 +285,16 @@ def read_fits(
         SceneError: For what is missing, unknown or not allowed.
     """
     temperature = parent.table("temperature")
+    fit, warm = (f"[{parent.path_of(key)}]" for key in ("fit", "temperature"))
     if "fit" not in parent:
         if temperature.keys():
-            problem = "goes with a [fit]; without one nothing depends on it"
+            problem = f"goes with a {fit}; without one nothing depends on it"
             raise parent.error("temperature", problem)
         return bearing, None
     row = rows_of(bearing)[0].bearing
     if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
-        raise parent.error("fit", f"{problem} leave [fit] and [temperature] out")
+        raise parent.error("fit", f"{problem} leave {fit} and {warm} out")
     designs = {id(one.bearing) for one in rows_of(bearing)}
     if len(designs) > 1 and not shares_rings(bearing):
         problem = "is for rows of one bearing; those of this set differ"
@@ -312,7 +313,7 @@ def read_fits(
     unknown = _unknown_expansions(table, own)
     for part, key in unknown.items():
         if float(getattr(conditions, part)) != float(conditions.reference):
-            raise no_expansion(table, part, key)
+            raise no_expansion(table, part, own.path_of(key))
     seats: dict[str, Any] = (
         sizes | _seats(keys, own, row) | _width(keys, bearing, catalogue, taper)
     )
@@ -452,7 +453,7 @@ def _clearance(keys: FitKeys, own: Table, bore, catalogue, taper) -> Limits | No
         problem = f"is for bearings with classes of radial clearance, not of {bore};"
         raise table.error("clearance", f"{problem} give its own clearance or angle")
     for key in stated:
-        problem = f"stands beside `bearing.{key}`; one follows from the other"
+        problem = f"stands beside `{own.path_of(key)}`; one follows from the other"
         raise table.error("clearance", problem)
     table.fill("clearance", name)
     own.fill("radial_internal_clearance", None)  # it follows
@@ -479,9 +480,10 @@ def no_expansion(table: Table, part: str, key: str) -> SceneError:
 
     Args:
         table: Table [fit].
-        part, key: As in `Fits.unknown`.
+        part: As in `Fits.unknown`.
+        key: Dotted path of the key of its material.
     """
-    problem = f"is missing: `bearing.{key}` has numbers, and no expansion"
+    problem = f"is missing: `{key}` has numbers, and no expansion"
     return table.error(EXPANSIONS[part], problem)
 
 

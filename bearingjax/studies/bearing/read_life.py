@@ -138,11 +138,13 @@ def _viscosity(top: Table, keys: LifeKeys) -> float:
     """Return the kinematic viscosity of the oil, given or of [lubricant] [m²/s]."""
     if keys.viscosity is not None:
         if "lubricant" in top:
-            problem = "stands beside [lubricant], whose oil has a viscosity; choose one"
+            oil = f"[{top.path_of('lubricant')}]"
+            problem = f"stands beside {oil}, whose oil has a viscosity; choose one"
             raise keys.table.error("viscosity", problem)
         return keys.viscosity
     if "lubricant" not in top:
-        problem = "is missing, and so is [lubricant]; `contamination` needs an oil"
+        oil = f"[{top.path_of('lubricant')}]"
+        problem = f"is missing, and so is {oil}; `contamination` needs an oil"
         raise keys.table.error("viscosity", problem)
     oil, _ = read_oil(top.table("lubricant"))
     return float(oil.lubricant.kinematic_viscosity(oil.temperature))
@@ -178,7 +180,7 @@ def _check_points(
     if bearing.is_ball or (points % 2 and points >= least):
         return
     problem = (
-        f"{points} is not allowed with [life]; odd and at least {least}: every second"
-        " position is the middle of a lamina"
+        f"{points} is not allowed with [{top.path_of('life')}]; odd and at least"
+        f" {least}: every second position is the middle of a lamina"
     )
     raise top.table("output").error("points", problem)

@@ -2,7 +2,7 @@
 
 import dataclasses
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -170,6 +170,7 @@ def scene_of(
     path: Path,
     varied: Iterable[str] = (),
     other_keys: Iterable[str] = (),
+    places: Mapping[str, str] | None = None,
 ) -> Scene:
     """Build the scene of parsed data.
 
@@ -179,11 +180,12 @@ def scene_of(
         varied: Keys varied by its cases: these count as given, even where equal to
             the catalogue.
         other_keys: Keys of the table of the bearing that are read elsewhere.
+        places: As in `Table`, of a bearing that is part of a machine.
 
     Raises:
         SceneError: As `read_scene`.
     """
-    top = Table(data, path.name)
+    top = Table(data, path.name, places=places)
     # Tables of other commands.
     top.skip("cases", "optimise", "cage", "dynamics")
     top.skip("deviations", "vibration")

@@ -360,7 +360,7 @@ def _variables(
     unknown = {} if scene.fits is None else scene.fits.unknown
     for key in table.keys():
         if (warm := WARMTH.get(key)) in unknown:
-            raise no_expansion(fit, warm, unknown[warm])
+            raise no_expansion(fit, warm, f"bearing.{unknown[warm]}")
     return read_variables(table, scene.installed, installed_numbers(scene), begun)
 
 
