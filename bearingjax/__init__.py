@@ -10,6 +10,40 @@ What each part does stands in its own docstring: `help(bearingjax.statics)` (loa
 solves, sweeps, what to do when one fails), `element` (choices of numerics, speed),
 `optimise`, `rotor`, `rotor.nonlinear`, `skid`, `noise`, `contact.halfspace`.
 
+Names
+-----
+
+A name stands at the top level if a calculation of one bearing starts with it: its
+bearing and the parts of the drawing, what it runs under (speed, seats, preload, oil,
+load cases), the function that gives the answer, and what says whether the answer holds.
+Everything else is in the package of its subject, as are the classes of results and the
+choices of laws and numerics: `life.Life`, `contact.ISO16281`, `rotor.Rotor`. Every
+package lists its names in the same way, see `help(bearingjax.rotor)`.
+
+- Packages, from the ground up: `numerics`, `files`, `design`, `fits`, `contact`,
+  `lubrication`, `element`, `statics`, `life`, `cases`, `catalogue`, `friction`,
+  `optimise`, `skid`, `rotor`, `shafts`, `noise`, `report`, `plot`, `studies`.
+- Ball bearings: `DeepGrooveBallBearing`, `AngularContactBallBearing`,
+  `FourPointBallBearing`, `SelfAligningBallRow`, `ThrustBallBearing`.
+- Roller bearings: `CylindricalRollerBearing`, `NeedleRollerBearing`,
+  `TaperedRollerBearing`, `CylindricalThrustRollerBearing`,
+  `TaperedThrustRollerBearing`, `SphericalRollerRow`, `SphericalThrustRollerBearing`,
+  `ToroidalRollerBearing`, `CrossedRollerRow`.
+- Sets of rows: `BearingSet`, `SetRow`, `PreloadSpring`.
+- Parts of a drawing: `Material`, `Rib`, `Ribs`, `Straight`, `CircularCrown`,
+  `CrownedEnds`, `Logarithmic`, `Lundberg`, `JohnsGohar`, `FujiwaraKawase`, `Tabulated`.
+- Catalogue: `catalogue_entry`, `catalogue_entries`.
+- The bearing as an element: `BearingElement`, `Speed`, `FREEDOMS`.
+- Installation: `Installed`, `Mounting`, `FitConditions`, `preload`.
+- Under a load: `solve_load`, `linearise`, `refine`.
+- Under many loads: `sweep`, `Cases`, `stack_designs`, `spectrum_life`.
+- Ratings and life: `ratings`, `dynamic_capacity`, `static_capacity`, `rating_life`,
+  `LifeConditions`.
+- Oil and friction: `Lubricant`, `films`, `friction_torque`.
+- Whether an answer holds: `Result`, `SolveError`, `warnings`.
+- Scene files: `run`, `read_scene`, `load_bearing`, `SceneError`.
+- The program: `keep_programs`, `__version__`.
+
 Conventions
 -----------
 
@@ -60,90 +94,90 @@ Conventions
 import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
-from . import cases as cases
-from . import catalogue as catalogue
-from . import contact as contact
-from . import design as design
-from . import element as element
-from . import fits as fits
-from . import friction as friction
-from . import life as life
-from . import lubrication as lubrication
-from . import numerics as numerics
-from . import statics as statics
-from ._version import __version__ as __version__
-from .cases import Cases as Cases
-from .cases import spectrum_life as spectrum_life
-from .cases import stack_designs as stack_designs
-from .cases import sweep as sweep
-from .catalogue import catalogue_entries as catalogue_entries
-from .catalogue import catalogue_entry as catalogue_entry
-from .design import AngularContactBallBearing as AngularContactBallBearing
-from .design import BearingSet as BearingSet
-from .design import CircularCrown as CircularCrown
-from .design import CrossedRollerRow as CrossedRollerRow
-from .design import CrownedEnds as CrownedEnds
-from .design import CylindricalRollerBearing as CylindricalRollerBearing
-from .design import CylindricalThrustRollerBearing as CylindricalThrustRollerBearing
-from .design import DeepGrooveBallBearing as DeepGrooveBallBearing
-from .design import FourPointBallBearing as FourPointBallBearing
-from .design import FujiwaraKawase as FujiwaraKawase
-from .design import JohnsGohar as JohnsGohar
-from .design import Logarithmic as Logarithmic
-from .design import Lundberg as Lundberg
-from .design import Material as Material
-from .design import NeedleRollerBearing as NeedleRollerBearing
-from .design import PreloadSpring as PreloadSpring
-from .design import Rib as Rib
-from .design import Ribs as Ribs
-from .design import SelfAligningBallRow as SelfAligningBallRow
-from .design import SetRow as SetRow
-from .design import SphericalRollerRow as SphericalRollerRow
-from .design import SphericalThrustRollerBearing as SphericalThrustRollerBearing
-from .design import Straight as Straight
-from .design import Tabulated as Tabulated
-from .design import TaperedRollerBearing as TaperedRollerBearing
-from .design import TaperedThrustRollerBearing as TaperedThrustRollerBearing
-from .design import ThrustBallBearing as ThrustBallBearing
-from .design import ToroidalRollerBearing as ToroidalRollerBearing
-from .element import FREEDOMS as FREEDOMS
-from .element import BearingElement as BearingElement
-from .element import Speed as Speed
-from .fits import FitConditions as FitConditions
-from .fits import Mounting as Mounting
-from .friction import films as films
-from .friction import friction_torque as friction_torque
-from .life import LifeConditions as LifeConditions
-from .life import dynamic_capacity as dynamic_capacity
-from .life import rating_life as rating_life
-from .life import ratings as ratings
-from .life import static_capacity as static_capacity
-from .lubrication import Lubricant as Lubricant
-from .numerics import Result as Result
-from .numerics import SolveError as SolveError
-from .numerics import keep_programs as keep_programs
-from .statics import Installed as Installed
-from .statics import Solution as Solution
-from .statics import linearise as linearise
-from .statics import preload as preload
-from .statics import refine as refine
-from .statics import solve_load as solve_load
-from .statics import warnings as warnings
+from . import (
+    cases,
+    catalogue,
+    contact,
+    design,
+    element,
+    fits,
+    friction,
+    life,
+    lubrication,
+    numerics,
+    statics,
+)
+from ._version import __version__
+from .cases import Cases, spectrum_life, stack_designs, sweep
+from .catalogue import catalogue_entries, catalogue_entry
+from .design import (
+    AngularContactBallBearing,
+    BearingSet,
+    CircularCrown,
+    CrossedRollerRow,
+    CrownedEnds,
+    CylindricalRollerBearing,
+    CylindricalThrustRollerBearing,
+    DeepGrooveBallBearing,
+    FourPointBallBearing,
+    FujiwaraKawase,
+    JohnsGohar,
+    Logarithmic,
+    Lundberg,
+    Material,
+    NeedleRollerBearing,
+    PreloadSpring,
+    Rib,
+    Ribs,
+    SelfAligningBallRow,
+    SetRow,
+    SphericalRollerRow,
+    SphericalThrustRollerBearing,
+    Straight,
+    Tabulated,
+    TaperedRollerBearing,
+    TaperedThrustRollerBearing,
+    ThrustBallBearing,
+    ToroidalRollerBearing,
+)
+from .element import FREEDOMS, BearingElement, Speed
+from .fits import FitConditions, Mounting
+from .friction import films, friction_torque
+from .life import (
+    LifeConditions,
+    dynamic_capacity,
+    rating_life,
+    ratings,
+    static_capacity,
+)
+from .lubrication import Lubricant
+from .numerics import Result, SolveError, keep_programs
+from .statics import Installed, linearise, preload, refine, solve_load, warnings
 
 if _TYPE_CHECKING:
-    from . import files as files
-    from . import noise as noise
-    from . import optimise as optimise
-    from . import plot as plot
-    from . import report as report
-    from . import rotor as rotor
-    from . import shafts as shafts
-    from . import skid as skid
-    from . import studies as studies
-    from .files import SceneError as SceneError
-    from .studies.bearing.read_scene import load_bearing as load_bearing
-    from .studies.bearing.read_scene import read_scene as read_scene
-    from .studies.study import run as run
+    from . import files, noise, optimise, plot, report, rotor, shafts, skid, studies
+    from .files import SceneError
+    from .studies.bearing.read_scene import load_bearing, read_scene
+    from .studies.study import run
+
+__all__ = [
+    "numerics", "files", "design", "fits", "contact", "lubrication", "element",
+    "statics", "life", "cases", "catalogue", "friction", "optimise", "skid", "rotor",
+    "shafts", "noise", "report", "plot", "studies", "DeepGrooveBallBearing",
+    "AngularContactBallBearing", "FourPointBallBearing", "SelfAligningBallRow",
+    "ThrustBallBearing", "CylindricalRollerBearing", "NeedleRollerBearing",
+    "TaperedRollerBearing", "CylindricalThrustRollerBearing",
+    "TaperedThrustRollerBearing", "SphericalRollerRow", "SphericalThrustRollerBearing",
+    "ToroidalRollerBearing", "CrossedRollerRow", "BearingSet", "SetRow",
+    "PreloadSpring", "Material", "Rib", "Ribs", "Straight", "CircularCrown",
+    "CrownedEnds", "Logarithmic", "Lundberg", "JohnsGohar", "FujiwaraKawase",
+    "Tabulated", "catalogue_entry", "catalogue_entries", "BearingElement", "Speed",
+    "FREEDOMS", "Installed", "Mounting", "FitConditions", "preload", "solve_load",
+    "linearise", "refine", "sweep", "Cases", "stack_designs", "spectrum_life",
+    "ratings", "dynamic_capacity", "static_capacity", "rating_life", "LifeConditions",
+    "Lubricant", "films", "friction_torque", "Result", "SolveError", "warnings", "run",
+    "read_scene", "load_bearing", "SceneError", "keep_programs", "__version__",
+]  # fmt: skip
 
 
 # Imported at first use: packages, and names of the top level with their package.

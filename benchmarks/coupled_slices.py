@@ -36,8 +36,9 @@ import numpy as np
 from bench import benchmark, shuffled
 
 import bearingjax as bj
-from bearingjax.contact import LineContact, response
+from bearingjax.contact import LineContact
 from bearingjax.contact.halfspace import RollerContact
+from bearingjax.contact.line_contact import response
 
 STEEL = bj.Material(210e9, 0.3)
 MODULUS = 210e9 / 1.82

@@ -44,7 +44,7 @@ import jax.numpy as jnp
 import numpy as np
 from bench import benchmark, table
 
-from bearingjax.numerics import ninth_root
+from bearingjax.numerics.power import ninth_root
 
 ROOTS = {
     "ninth_root": ninth_root,

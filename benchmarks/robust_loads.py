@@ -24,6 +24,7 @@ import numpy as np
 from bench import benchmark, no_rows_with
 
 import bearingjax as bj
+from bearingjax.design.bearing_set import pitch_radius
 
 DECADES = range(-3, 7)
 CLEARANCES = (0.0, 20e-6, -5e-6)
@@ -111,7 +112,7 @@ def solve(element, loads):
         free = jnp.asarray(
             [n in bj.statics.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
         )
-        radius = bj.design.pitch_radius(element.bearing)
+        radius = pitch_radius(element.bearing)
         scale = jnp.where(jnp.arange(6) < 3, 1.0, 1.0 / radius)
         fresh = element.model().evaluate(s.displacement)
         out = jnp.where(free, scale * (fresh.force[6:] - load), 0.0)

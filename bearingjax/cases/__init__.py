@@ -28,12 +28,19 @@ passes one matrix after the other. In functions of your own that are mapped
 `jax.lax.map` in place of `jax.vmap` avoids it; so does, with one device, `PJRT_NPROC=1`
 in the environment (one thread; `XLA_FLAGS=--xla_cpu_multi_thread_eigen=false` does
 not).
+
+Names
+-----
+
+- Sweeps: `sweep`, `Sweep`, `Cases`, `solve_case`, `stack_designs`.
+- Load spectra: `spectrum_life`, `SpectrumLife`.
 """
 
-from .cases import Cases as Cases
-from .cases import solve_case as solve_case
-from .spectrum import SpectrumLife as SpectrumLife
-from .spectrum import spectrum_life as spectrum_life
-from .sweep import Sweep as Sweep
-from .sweep import stack_designs as stack_designs
-from .sweep import sweep as sweep
+from .cases import Cases, solve_case
+from .spectrum import SpectrumLife, spectrum_life
+from .sweep import Sweep, stack_designs, sweep
+
+__all__ = [
+    "sweep", "Sweep", "Cases", "solve_case", "stack_designs", "spectrum_life",
+    "SpectrumLife",
+]  # fmt: skip

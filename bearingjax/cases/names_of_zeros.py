@@ -1,6 +1,7 @@
 """Names of the numbers of a sweep that are zero in every case."""
 
-from ..design import AbstractRollerBearing, bearings_of
+from ..design import AbstractRollerBearing
+from ..design.bearing_set import bearings_of
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS

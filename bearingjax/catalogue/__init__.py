@@ -6,10 +6,18 @@ keywords of `design.bearing_of`, with published ratings.
 `estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
 bearing of which only the catalogue data are known: the rolling elements that best fit
 the ratings and the usual proportions. It is an estimate; `report()` states its misfit.
+
+Names
+-----
+
+- Entries: `catalogue_entry`, `catalogue_entries`, `CatalogueEntry`.
+- Estimated inside: `estimate_geometry`, `GeometryEstimate`.
 """
 
-from .entry import CatalogueEntry as CatalogueEntry
-from .entry import catalogue_entries as catalogue_entries
-from .entry import catalogue_entry as catalogue_entry
-from .estimate import GeometryEstimate as GeometryEstimate
-from .estimate import estimate_geometry as estimate_geometry
+from .entry import CatalogueEntry, catalogue_entries, catalogue_entry
+from .estimate import GeometryEstimate, estimate_geometry
+
+__all__ = [
+    "catalogue_entry", "catalogue_entries", "CatalogueEntry", "estimate_geometry",
+    "GeometryEstimate",
+]  # fmt: skip

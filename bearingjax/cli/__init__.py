@@ -3,6 +3,15 @@
 A command's module has `add`, which adds its parser and options, and `run`, which runs
 it and returns the exit status or an `Outcome`. They import the rest of the package
 inside functions, so that `bearingjax --help` is fast.
+
+Names
+-----
+
+- The program: `main`.
 """
 
-from .entry import main as main
+from .entry import main
+
+__all__ = [
+    "main",
+]  # fmt: skip

@@ -65,7 +65,7 @@ def execute(command: Any, options: Any) -> int:
 def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
     from ..cases.sweep_table import write_columns
-    from ..report import write_numbers
+    from ..report.json_output import write_numbers
 
     def tabulate(path):
         assert found.columns is not None
@@ -97,7 +97,7 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
     Raises:
         Incomplete: If a picture failed; a line is shown in its place.
     """
-    from ..files import Incomplete
+    from ..files.output_files import Incomplete
     from ..report import report_page
 
     missing: list[str] = []

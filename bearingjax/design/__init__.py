@@ -1,63 +1,88 @@
-"""Design data: materials, profiles, ribs, bearings. Nothing is solved here."""
+"""Design data: materials, profiles, ribs, bearings. Nothing is solved here.
 
-from .abstract import AbstractBearing as AbstractBearing
-from .ball import AbstractBallBearing as AbstractBallBearing
-from .ball import Groove as Groove
-from .ball_types import AngularContactBallBearing as AngularContactBallBearing
-from .ball_types import DeepGrooveBallBearing as DeepGrooveBallBearing
-from .ball_types import FourPointBallBearing as FourPointBallBearing
-from .ball_types import SelfAligningBallRow as SelfAligningBallRow
-from .ball_types import ThrustBallBearing as ThrustBallBearing
-from .barrel import AbstractBarrelBearing as AbstractBarrelBearing
-from .barrel import CrossedRollerRow as CrossedRollerRow
-from .barrel import CylindricalThrustRollerBearing as CylindricalThrustRollerBearing
-from .barrel import SphericalRollerRow as SphericalRollerRow
-from .barrel import SphericalThrustRollerBearing as SphericalThrustRollerBearing
-from .barrel import TaperedThrustRollerBearing as TaperedThrustRollerBearing
-from .barrel import ToroidalRollerBearing as ToroidalRollerBearing
-from .barrel import pitch_on_sphere as pitch_on_sphere
-from .bearing import AbstractRollerBearing as AbstractRollerBearing
-from .bearing import CylindricalRollerBearing as CylindricalRollerBearing
-from .bearing import NeedleRollerBearing as NeedleRollerBearing
-from .bearing import TaperedRollerBearing as TaperedRollerBearing
-from .bearing_set import BearingSet as BearingSet
-from .bearing_set import PreloadSpring as PreloadSpring
-from .bearing_set import SetRow as SetRow
-from .bearing_set import bearings_of as bearings_of
-from .bearing_set import is_self_aligning as is_self_aligning
-from .bearing_set import pitch_radius as pitch_radius
-from .bearing_set import rows_of as rows_of
-from .bearing_set import shares_rings as shares_rings
-from .deviation import Deviation as Deviation
-from .deviation import deviation_of as deviation_of
-from .deviation import with_raceways as with_raceways
-from .form_error import FormErrors as FormErrors
-from .form_error import Harmonics as Harmonics
-from .form_error import RacewayErrors as RacewayErrors
-from .form_error import Spall as Spall
-from .keywords import bearing_of as bearing_of
-from .logarithmic import FujiwaraKawase as FujiwaraKawase
-from .logarithmic import JohnsGohar as JohnsGohar
-from .logarithmic import Logarithmic as Logarithmic
-from .logarithmic import Lundberg as Lundberg
-from .material import MATERIALS as MATERIALS
-from .material import Material as Material
-from .material import contact_modulus as contact_modulus
-from .profile import AbstractProfile as AbstractProfile
-from .profile import CircularCrown as CircularCrown
-from .profile import CrownedEnds as CrownedEnds
-from .profile import Straight as Straight
-from .rib import ARRANGEMENTS as ARRANGEMENTS
-from .rib import RIB_NAMES as RIB_NAMES
-from .rib import Rib as Rib
-from .rib import Ribs as Ribs
-from .tabulated import Tabulated as Tabulated
-from .tolerance import BALL_GRADES as BALL_GRADES
-from .tolerance import ROLLER_GRADES as ROLLER_GRADES
-from .tolerance import TOLERANCE_CLASSES as TOLERANCE_CLASSES
-from .tolerance import BallGrade as BallGrade
-from .tolerance import RollerGrade as RollerGrade
-from .tolerance import RunningAccuracy as RunningAccuracy
-from .tolerance import ball_grade as ball_grade
-from .tolerance import roller_grade as roller_grade
-from .tolerance import running_accuracy as running_accuracy
+Names
+-----
+
+- Ball bearings: `DeepGrooveBallBearing`, `AngularContactBallBearing`,
+  `FourPointBallBearing`, `SelfAligningBallRow`, `ThrustBallBearing`,
+  `AbstractBallBearing`, `Groove`.
+- Roller bearings: `CylindricalRollerBearing`, `NeedleRollerBearing`,
+  `TaperedRollerBearing`, `CylindricalThrustRollerBearing`,
+  `TaperedThrustRollerBearing`, `AbstractRollerBearing`.
+- Barrel and crossed rollers: `SphericalRollerRow`, `SphericalThrustRollerBearing`,
+  `ToroidalRollerBearing`, `CrossedRollerRow`, `AbstractBarrelBearing`,
+  `pitch_on_sphere`.
+- Any bearing: `AbstractBearing`, `bearing_of`.
+- Sets: `BearingSet`, `SetRow`, `PreloadSpring`, `rows_of`.
+- Profiles: `Straight`, `CircularCrown`, `CrownedEnds`, `Logarithmic`, `Lundberg`,
+  `JohnsGohar`, `FujiwaraKawase`, `Tabulated`, `AbstractProfile`.
+- Ribs: `Rib`, `Ribs`, `RIB_NAMES`.
+- Materials: `Material`, `MATERIALS`, `contact_modulus`.
+- Form errors and deviations: `FormErrors`, `RacewayErrors`, `Harmonics`, `Spall`,
+  `Deviation`, `with_raceways`.
+- Tolerances: `ball_grade`, `BallGrade`, `BALL_GRADES`, `roller_grade`, `RollerGrade`,
+  `ROLLER_GRADES`, `running_accuracy`, `RunningAccuracy`, `TOLERANCE_CLASSES`.
+"""
+
+from .abstract import AbstractBearing
+from .ball import AbstractBallBearing, Groove
+from .ball_types import (
+    AngularContactBallBearing,
+    DeepGrooveBallBearing,
+    FourPointBallBearing,
+    SelfAligningBallRow,
+    ThrustBallBearing,
+)
+from .barrel import (
+    AbstractBarrelBearing,
+    CrossedRollerRow,
+    CylindricalThrustRollerBearing,
+    SphericalRollerRow,
+    SphericalThrustRollerBearing,
+    TaperedThrustRollerBearing,
+    ToroidalRollerBearing,
+    pitch_on_sphere,
+)
+from .bearing import (
+    AbstractRollerBearing,
+    CylindricalRollerBearing,
+    NeedleRollerBearing,
+    TaperedRollerBearing,
+)
+from .bearing_set import BearingSet, PreloadSpring, SetRow, rows_of
+from .deviation import Deviation, with_raceways
+from .form_error import FormErrors, Harmonics, RacewayErrors, Spall
+from .keywords import bearing_of
+from .logarithmic import FujiwaraKawase, JohnsGohar, Logarithmic, Lundberg
+from .material import MATERIALS, Material, contact_modulus
+from .profile import AbstractProfile, CircularCrown, CrownedEnds, Straight
+from .rib import RIB_NAMES, Rib, Ribs
+from .tabulated import Tabulated
+from .tolerance import (
+    BALL_GRADES,
+    ROLLER_GRADES,
+    TOLERANCE_CLASSES,
+    BallGrade,
+    RollerGrade,
+    RunningAccuracy,
+    ball_grade,
+    roller_grade,
+    running_accuracy,
+)
+
+__all__ = [
+    "DeepGrooveBallBearing", "AngularContactBallBearing", "FourPointBallBearing",
+    "SelfAligningBallRow", "ThrustBallBearing", "AbstractBallBearing", "Groove",
+    "CylindricalRollerBearing", "NeedleRollerBearing", "TaperedRollerBearing",
+    "CylindricalThrustRollerBearing", "TaperedThrustRollerBearing",
+    "AbstractRollerBearing", "SphericalRollerRow", "SphericalThrustRollerBearing",
+    "ToroidalRollerBearing", "CrossedRollerRow", "AbstractBarrelBearing",
+    "pitch_on_sphere", "AbstractBearing", "bearing_of", "BearingSet", "SetRow",
+    "PreloadSpring", "rows_of", "Straight", "CircularCrown", "CrownedEnds",
+    "Logarithmic", "Lundberg", "JohnsGohar", "FujiwaraKawase", "Tabulated",
+    "AbstractProfile", "Rib", "Ribs", "RIB_NAMES", "Material", "MATERIALS",
+    "contact_modulus", "FormErrors", "RacewayErrors", "Harmonics", "Spall", "Deviation",
+    "with_raceways", "ball_grade", "BallGrade", "BALL_GRADES", "roller_grade",
+    "RollerGrade", "ROLLER_GRADES", "running_accuracy", "RunningAccuracy",
+    "TOLERANCE_CLASSES",
+]  # fmt: skip

@@ -60,44 +60,55 @@ other. Many small calls, one after the other, as in an integrator:
 `jax.config.update("jax_cpu_enable_async_dispatch", False)` before all else saves the
 hand-over between threads, half of the time of a call (benchmarks/single_call.py
 --inline). What a scene lacks (ribs, speed) is not compiled.
+
+Names
+-----
+
+- The bearing: `BearingElement`, `BearingModel`, `Evaluated`, `Speed`.
+- As a function of time: `orbiting_force`, `ring_force`, `FunctionParameters`.
+- Kinematics: `Linearised`, `Finite`, `ConstantAngle`, `AbstractKinematics`.
+- Turning balls: `OuterControl`, `InnerControl`, `EqualShare`, `LoadShare`,
+  `FrictionLimited`, `CentrifugalOnly`, `OperatingCentrifugal`,
+  `AbstractRacewayControl`, `ball_kinematics`, `BallKinematics`, `ball_mass`.
+- Rolling elements of a row: `azimuths`, `roller_speeds`, `inertia_load`, `Row`,
+  `RowResults`.
+- Parents of your own rolling elements: `AbstractRollingElement`, `AbstractChoices`,
+  `choices_for`, `contact_energy`, `RingMotion`.
+- Names along axes: `FREEDOMS`, `LOADS`, `RINGS`.
 """
 
-from .azimuth import azimuths as azimuths
-from .balls.ball_speed import AbstractRacewayControl as AbstractRacewayControl
-from .balls.ball_speed import BallKinematics as BallKinematics
-from .balls.ball_speed import CentrifugalOnly as CentrifugalOnly
-from .balls.ball_speed import EqualShare as EqualShare
-from .balls.ball_speed import FrictionLimited as FrictionLimited
-from .balls.ball_speed import InnerControl as InnerControl
-from .balls.ball_speed import LoadShare as LoadShare
-from .balls.ball_speed import OperatingCentrifugal as OperatingCentrifugal
-from .balls.ball_speed import OuterControl as OuterControl
-from .balls.ball_speed import ball_kinematics as ball_kinematics
-from .balls.ball_speed import ball_mass as ball_mass
-from .bearing_element import BearingElement as BearingElement
-from .bearing_model import BearingModel as BearingModel
-from .bearing_model import Evaluated as Evaluated
-from .choices import AbstractChoices as AbstractChoices
-from .choices import choices_for as choices_for
-from .constants import ContactConstants as ContactConstants
-from .constants import contact_constants as contact_constants
-from .frame import FREEDOMS as FREEDOMS
-from .frame import LOADS as LOADS
-from .frame import RINGS as RINGS
-from .function import FunctionParameters as FunctionParameters
-from .function import orbiting_force as orbiting_force
-from .function import ring_force as ring_force
-from .inertia import Speed as Speed
-from .inertia import inertia_force as inertia_force
-from .inertia import mass_and_inertia as mass_and_inertia
-from .inertia import roller_speeds as roller_speeds
-from .kinematics import AbstractKinematics as AbstractKinematics
-from .kinematics import ConstantAngle as ConstantAngle
-from .kinematics import Finite as Finite
-from .kinematics import Linearised as Linearised
-from .rolling_element import AbstractRollingElement as AbstractRollingElement
-from .rolling_element import RingMotion as RingMotion
-from .rolling_element import contact_energy as contact_energy
-from .row import Row as Row
-from .solved_row import RowResults as RowResults
-from .solved_row import inertia_load as inertia_load
+from .azimuth import azimuths
+from .balls.ball_speed import (
+    AbstractRacewayControl,
+    BallKinematics,
+    CentrifugalOnly,
+    EqualShare,
+    FrictionLimited,
+    InnerControl,
+    LoadShare,
+    OperatingCentrifugal,
+    OuterControl,
+    ball_kinematics,
+    ball_mass,
+)
+from .bearing_element import BearingElement
+from .bearing_model import BearingModel, Evaluated
+from .choices import AbstractChoices, choices_for
+from .frame import FREEDOMS, LOADS, RINGS
+from .function import FunctionParameters, orbiting_force, ring_force
+from .inertia import Speed, roller_speeds
+from .kinematics import AbstractKinematics, ConstantAngle, Finite, Linearised
+from .rolling_element import AbstractRollingElement, RingMotion, contact_energy
+from .row import Row
+from .solved_row import RowResults, inertia_load
+
+__all__ = [
+    "BearingElement", "BearingModel", "Evaluated", "Speed", "orbiting_force",
+    "ring_force", "FunctionParameters", "Linearised", "Finite", "ConstantAngle",
+    "AbstractKinematics", "OuterControl", "InnerControl", "EqualShare", "LoadShare",
+    "FrictionLimited", "CentrifugalOnly", "OperatingCentrifugal",
+    "AbstractRacewayControl", "ball_kinematics", "BallKinematics", "ball_mass",
+    "azimuths", "roller_speeds", "inertia_load", "Row", "RowResults",
+    "AbstractRollingElement", "AbstractChoices", "choices_for", "contact_energy",
+    "RingMotion", "FREEDOMS", "LOADS", "RINGS",
+]  # fmt: skip

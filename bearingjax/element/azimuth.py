@@ -2,7 +2,8 @@
 
 from jaxtyping import Array, Float
 
-from ..design import AbstractBearing, deviation_of
+from ..design import AbstractBearing
+from ..design.deviation import deviation_of
 from ..numerics.types import Ring, Scalar
 from .frame import FREEDOMS, even_azimuths, orbit, roll_ratio
 from .rolling_element import split_rings

@@ -9,15 +9,10 @@ import jax.numpy as jnp
 
 from ..contact.line import AbstractLineLaw
 from ..contact.point_law import AbstractPointLaw
-from ..design import (
-    AbstractBearing,
-    BearingSet,
-    SetRow,
-    bearings_of,
-    deviation_of,
-    rows_of,
-)
+from ..design import AbstractBearing, BearingSet, SetRow, rows_of
+from ..design.bearing_set import bearings_of
 from ..design.checks import is_traced, of_class
+from ..design.deviation import deviation_of
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Ring, Scalar

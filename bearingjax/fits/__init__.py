@@ -1,35 +1,47 @@
-"""Seats of bearings: ISO 286, interference, mounted clearance, temperatures."""
+"""Seats of bearings: ISO 286, interference, mounted clearance, temperatures.
 
-from .fit_limits import CLEARANCE_CLASSES as CLEARANCE_CLASSES
-from .fit_limits import CLEARANCE_PARTS as CLEARANCE_PARTS
-from .fit_limits import MOTOR_CLASS as MOTOR_CLASS
-from .fit_limits import ball_clearance as ball_clearance
-from .fit_limits import bore_limits as bore_limits
-from .fit_limits import outside_limits as outside_limits
-from .fit_limits import roller_clearance as roller_clearance
-from .fit_limits import self_aligning_clearance as self_aligning_clearance
-from .fit_limits import spherical_roller_clearance as spherical_roller_clearance
-from .fit_limits import toroidal_roller_clearance as toroidal_roller_clearance
-from .fit_range import PLACES as PLACES
-from .fit_range import ClearanceRange as ClearanceRange
-from .fit_range import clearance_range as clearance_range
-from .fit_range import mounting_at as mounting_at
-from .fits import FitConditions as FitConditions
-from .fits import FitState as FitState
-from .fits import Mounting as Mounting
-from .fits import fit_state as fit_state
-from .fits import needed_drive_up as needed_drive_up
-from .fits import smoothing as smoothing
-from .iso286 import LIMIT_CLASSES as LIMIT_CLASSES
-from .iso286 import Limits as Limits
-from .iso286 import limit_classes as limit_classes
-from .iso286 import limits as limits
-from .iso286 import standard_tolerance as standard_tolerance
-from .mounted import mounted as mounted
-from .mounted import raceway_diameters as raceway_diameters
-from .mounted import radial_clearance as radial_clearance
-from .mounted import row_shifts as row_shifts
-from .mounted import with_bearing_dimensions as with_bearing_dimensions
-from .mounted import with_radial_clearance as with_radial_clearance
-from .warm_material import WARM_MATERIALS as WARM_MATERIALS
-from .warm_material import WarmMaterial as WarmMaterial
+Names
+-----
+
+- The mounted bearing: `mounted`, `Mounting`, `FitConditions`, `fit_state`, `FitState`,
+  `radial_clearance`, `with_radial_clearance`, `with_bearing_dimensions`,
+  `needed_drive_up`.
+- Scatter of sizes: `clearance_range`, `ClearanceRange`, `mounting_at`, `PLACES`.
+- ISO 286: `limits`, `Limits`, `standard_tolerance`, `LIMIT_CLASSES`.
+- Tolerances of bearings: `bore_limits`, `outside_limits`.
+- Clearance before mounting: `ball_clearance`, `roller_clearance`,
+  `self_aligning_clearance`, `spherical_roller_clearance`, `toroidal_roller_clearance`,
+  `CLEARANCE_CLASSES`.
+- Materials that grow: `WarmMaterial`, `WARM_MATERIALS`.
+"""
+
+from .fit_limits import (
+    CLEARANCE_CLASSES,
+    ball_clearance,
+    bore_limits,
+    outside_limits,
+    roller_clearance,
+    self_aligning_clearance,
+    spherical_roller_clearance,
+    toroidal_roller_clearance,
+)
+from .fit_range import PLACES, ClearanceRange, clearance_range, mounting_at
+from .fits import FitConditions, FitState, Mounting, fit_state, needed_drive_up
+from .iso286 import LIMIT_CLASSES, Limits, limits, standard_tolerance
+from .mounted import (
+    mounted,
+    radial_clearance,
+    with_bearing_dimensions,
+    with_radial_clearance,
+)
+from .warm_material import WARM_MATERIALS, WarmMaterial
+
+__all__ = [
+    "mounted", "Mounting", "FitConditions", "fit_state", "FitState", "radial_clearance",
+    "with_radial_clearance", "with_bearing_dimensions", "needed_drive_up",
+    "clearance_range", "ClearanceRange", "mounting_at", "PLACES", "limits", "Limits",
+    "standard_tolerance", "LIMIT_CLASSES", "bore_limits", "outside_limits",
+    "ball_clearance", "roller_clearance", "self_aligning_clearance",
+    "spherical_roller_clearance", "toroidal_roller_clearance", "CLEARANCE_CLASSES",
+    "WarmMaterial", "WARM_MATERIALS",
+]  # fmt: skip

@@ -27,10 +27,9 @@ from ..design import (
     TaperedRollerBearing,
     TaperedThrustRollerBearing,
     ThrustBallBearing,
-    bearings_of,
-    is_self_aligning,
     rows_of,
 )
+from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.checks import check, of_class, one_of, positive
 from ..life.equivalent_load import equivalent_load
 from ..life.rating import nominal_contact_angle

@@ -14,7 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import bearings_of, pitch_radius, rows_of
+from ..design import rows_of
+from ..design.bearing_set import bearings_of, pitch_radius
 from ..design.checks import check, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, pitch_radius
+from ..design import AbstractBearing, BearingSet
+from ..design.bearing_set import pitch_radius
 from ..numerics.types import array_namespace
 from ..statics.warning_kinds import KINDS
 from .life_factor import KAPPA

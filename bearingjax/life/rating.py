@@ -27,8 +27,8 @@ from ..design import (
     SelfAligningBallRow,
     SetRow,
     rows_of,
-    shares_rings,
 )
+from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program

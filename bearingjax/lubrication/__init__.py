@@ -1,41 +1,60 @@
-"""Oil between rolling surfaces: viscosity, films, traction."""
+"""Oil between rolling surfaces: viscosity, films, traction.
 
-from .coefficient import AbstractCoefficient as AbstractCoefficient
-from .coefficient import ConstantCoefficient as ConstantCoefficient
-from .coefficient import DynamicCoefficient as DynamicCoefficient
-from .coefficient import KinematicCoefficient as KinematicCoefficient
-from .film import Film as Film
-from .film import Regime as Regime
-from .film import line_film as line_film
-from .film import point_film as point_film
-from .film_factors import WarmInlet as WarmInlet
-from .film_factors import at_least as at_least
-from .film_factors import inlet_heating as inlet_heating
-from .film_factors import lambda_ratio as lambda_ratio
-from .film_factors import starvation as starvation
-from .lubricant import Density as Density
-from .lubricant import Lubricant as Lubricant
-from .oils import OILS as OILS
-from .oils import free_volume_23699 as free_volume_23699
-from .oils import iso_vg as iso_vg
-from .oils import mil_l_23699 as mil_l_23699
-from .patch import AbstractPatch as AbstractPatch
-from .patch import EllipsePatch as EllipsePatch
-from .patch import LinePatch as LinePatch
-from .patch import ellipse_patch as ellipse_patch
-from .patch import line_patch as line_patch
-from .traction import AbstractTraction as AbstractTraction
-from .traction import DryFriction as DryFriction
-from .traction import Eyring as Eyring
-from .traction import LimitingStress as LimitingStress
-from .traction import Newtonian as Newtonian
-from .traction import Resultants as Resultants
-from .traction import SlipCurve as SlipCurve
-from .viscosity import AbstractAmbient as AbstractAmbient
-from .viscosity import AbstractPressureLaw as AbstractPressureLaw
-from .viscosity import Barus as Barus
-from .viscosity import Exponential as Exponential
-from .viscosity import FreeVolume as FreeVolume
-from .viscosity import Roelands as Roelands
-from .viscosity import Walther as Walther
-from .viscosity_index import viscosity_at_100 as viscosity_at_100
+Names
+-----
+
+- Oils: `Lubricant`, `Density`, `OILS`, `iso_vg`, `mil_l_23699`, `free_volume_23699`.
+- Viscosity over temperature: `Walther`, `Exponential`, `AbstractAmbient`,
+  `viscosity_at_100`.
+- Viscosity over pressure: `Barus`, `Roelands`, `FreeVolume`, `AbstractPressureLaw`.
+- Pressure-viscosity coefficient: `ConstantCoefficient`, `DynamicCoefficient`,
+  `KinematicCoefficient`, `AbstractCoefficient`.
+- Films: `point_film`, `line_film`, `Film`, `Regime`, `lambda_ratio`.
+- Factors of the film: `inlet_heating`, `WarmInlet`, `starvation`.
+- Traction: `Newtonian`, `Eyring`, `LimitingStress`, `SlipCurve`, `DryFriction`,
+  `AbstractTraction`, `Resultants`.
+- Contact areas: `ellipse_patch`, `EllipsePatch`, `line_patch`, `LinePatch`,
+  `AbstractPatch`.
+"""
+
+from .coefficient import (
+    AbstractCoefficient,
+    ConstantCoefficient,
+    DynamicCoefficient,
+    KinematicCoefficient,
+)
+from .film import Film, Regime, line_film, point_film
+from .film_factors import WarmInlet, inlet_heating, lambda_ratio, starvation
+from .lubricant import Density, Lubricant
+from .oils import OILS, free_volume_23699, iso_vg, mil_l_23699
+from .patch import AbstractPatch, EllipsePatch, LinePatch, ellipse_patch, line_patch
+from .traction import (
+    AbstractTraction,
+    DryFriction,
+    Eyring,
+    LimitingStress,
+    Newtonian,
+    Resultants,
+    SlipCurve,
+)
+from .viscosity import (
+    AbstractAmbient,
+    AbstractPressureLaw,
+    Barus,
+    Exponential,
+    FreeVolume,
+    Roelands,
+    Walther,
+)
+from .viscosity_index import viscosity_at_100
+
+__all__ = [
+    "Lubricant", "Density", "OILS", "iso_vg", "mil_l_23699", "free_volume_23699",
+    "Walther", "Exponential", "AbstractAmbient", "viscosity_at_100", "Barus",
+    "Roelands", "FreeVolume", "AbstractPressureLaw", "ConstantCoefficient",
+    "DynamicCoefficient", "KinematicCoefficient", "AbstractCoefficient", "point_film",
+    "line_film", "Film", "Regime", "lambda_ratio", "inlet_heating", "WarmInlet",
+    "starvation", "Newtonian", "Eyring", "LimitingStress", "SlipCurve", "DryFriction",
+    "AbstractTraction", "Resultants", "ellipse_patch", "EllipsePatch", "line_patch",
+    "LinePatch", "AbstractPatch",
+]  # fmt: skip

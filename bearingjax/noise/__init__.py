@@ -21,71 +21,77 @@ before JAX starts, as the command line does.
 
 Waves and damping are seldom known: levels compare designs and tolerances, they do not
 predict the reading of a rig. Example: the notebook noise_from_form_errors.
+
+Names
+-----
+
+- The bearing on its rig: `NoiseModel`, `Sensor`, `GuidedCage`, `CageContact`,
+  `static_start`, `with_bridged_waves`, `contact_half_width`.
+- Vibration in time: `vibration`, `Vibration`, `CageMotion`, `needed_steps`,
+  `bandwidth`, `contact_states`, `ContactStates`.
+- Small and slow motion: `natural_modes`, `NaturalModes`, `ring_modes`, `linear_model`,
+  `LinearModel`, `transfer`, `Transfer`, `excitation`, `Excitation`.
+- Spectra: `spectrum`, `Spectrum`, `Hann`, `Rectangular`, `AbstractWindow`.
+- Levels and bands: `level`, `acceleration_of`, `combine_levels`,
+  `REFERENCE_ACCELERATION`, `octave_bands`, `third_octave_bands`, `Bands`,
+  `band_levels`, `band_root_mean_square`, `band_shift`, `total_root_mean_square`.
+- Lines and orders: `kinematic_frequencies`, `KinematicFrequencies`, `waviness_force`,
+  `WavinessForce`, `name_lines`, `Line`, `line_causes`.
+- Many bearings: `Tolerances`, `RandomWaves`, `sample_errors`, `SampledErrors`,
+  `sampled_model`, `monte_carlo`, `MonteCarlo`, `source_contributions`,
+  `SourceContributions`.
+- Sound and warnings: `sound`, `write_sound`, `model_warnings`, `record_warnings`,
+  `contribution_warnings`.
 """
 
-from .bands import Bands as Bands
-from .bands import band_levels as band_levels
-from .bands import band_root_mean_square as band_root_mean_square
-from .bands import band_shift as band_shift
-from .bands import is_held as is_held
-from .bands import octave_bands as octave_bands
-from .bands import third_octave_bands as third_octave_bands
-from .bands import total_root_mean_square as total_root_mean_square
-from .causes import line_causes as line_causes
-from .contact_width import contact_half_width as contact_half_width
-from .contact_width import with_bridged_waves as with_bridged_waves
-from .dynamics.cage import GuidedCage as GuidedCage
-from .dynamics.cage_contact import CageContact as CageContact
-from .dynamics.contact_states import ContactStates as ContactStates
-from .dynamics.contact_states import contact_states as contact_states
-from .dynamics.system import NoiseSystem as NoiseSystem
-from .level import REFERENCE_ACCELERATION as REFERENCE_ACCELERATION
-from .level import acceleration_of as acceleration_of
-from .level import combine_levels as combine_levels
-from .level import level as level
-from .linear import LinearModel as LinearModel
-from .linear import Transfer as Transfer
-from .linear import linear_model as linear_model
-from .linear import transfer as transfer
-from .lines import UNNAMED as UNNAMED
-from .lines import Line as Line
-from .lines import name_lines as name_lines
-from .model import NoiseModel as NoiseModel
-from .monte_carlo import MonteCarlo as MonteCarlo
-from .monte_carlo import monte_carlo as monte_carlo
-from .monte_carlo import sampled_model as sampled_model
-from .natural import NaturalModes as NaturalModes
-from .natural import after_orbit as after_orbit
-from .natural import natural_modes as natural_modes
-from .natural import ring_modes as ring_modes
-from .natural import stiffness as stiffness
-from .orders import KinematicFrequencies as KinematicFrequencies
-from .orders import WavinessForce as WavinessForce
-from .orders import kinematic_frequencies as kinematic_frequencies
-from .orders import waviness_force as waviness_force
-from .quasi_static import Excitation as Excitation
-from .quasi_static import excitation as excitation
-from .scatter import RandomWaves as RandomWaves
-from .scatter import SampledErrors as SampledErrors
-from .scatter import Tolerances as Tolerances
-from .scatter import sample_errors as sample_errors
-from .sensor import Sensor as Sensor
-from .sound import sound as sound
-from .sound import write_sound as write_sound
-from .source_contributions import SourceContributions as SourceContributions
-from .source_contributions import source_contributions as source_contributions
-from .spectrum import AbstractWindow as AbstractWindow
-from .spectrum import Hann as Hann
-from .spectrum import Rectangular as Rectangular
-from .spectrum import Spectrum as Spectrum
-from .spectrum import spectrum as spectrum
-from .static_start import static_start as static_start
-from .vibration import CageMotion as CageMotion
-from .vibration import Vibration as Vibration
-from .vibration import bandwidth as bandwidth
-from .vibration import needed_steps as needed_steps
-from .vibration import rounding as rounding
-from .vibration import vibration as vibration
-from .warning import contribution_warnings as contribution_warnings
-from .warning import model_warnings as model_warnings
-from .warning import record_warnings as record_warnings
+from .bands import (
+    Bands,
+    band_levels,
+    band_root_mean_square,
+    band_shift,
+    octave_bands,
+    third_octave_bands,
+    total_root_mean_square,
+)
+from .causes import line_causes
+from .contact_width import contact_half_width, with_bridged_waves
+from .dynamics.cage import GuidedCage
+from .dynamics.cage_contact import CageContact
+from .dynamics.contact_states import ContactStates, contact_states
+from .level import REFERENCE_ACCELERATION, acceleration_of, combine_levels, level
+from .linear import LinearModel, Transfer, linear_model, transfer
+from .lines import Line, name_lines
+from .model import NoiseModel
+from .monte_carlo import MonteCarlo, monte_carlo, sampled_model
+from .natural import NaturalModes, natural_modes, ring_modes
+from .orders import (
+    KinematicFrequencies,
+    WavinessForce,
+    kinematic_frequencies,
+    waviness_force,
+)
+from .quasi_static import Excitation, excitation
+from .scatter import RandomWaves, SampledErrors, Tolerances, sample_errors
+from .sensor import Sensor
+from .sound import sound, write_sound
+from .source_contributions import SourceContributions, source_contributions
+from .spectrum import AbstractWindow, Hann, Rectangular, Spectrum, spectrum
+from .static_start import static_start
+from .vibration import CageMotion, Vibration, bandwidth, needed_steps, vibration
+from .warning import contribution_warnings, model_warnings, record_warnings
+
+__all__ = [
+    "NoiseModel", "Sensor", "GuidedCage", "CageContact", "static_start",
+    "with_bridged_waves", "contact_half_width", "vibration", "Vibration", "CageMotion",
+    "needed_steps", "bandwidth", "contact_states", "ContactStates", "natural_modes",
+    "NaturalModes", "ring_modes", "linear_model", "LinearModel", "transfer", "Transfer",
+    "excitation", "Excitation", "spectrum", "Spectrum", "Hann", "Rectangular",
+    "AbstractWindow", "level", "acceleration_of", "combine_levels",
+    "REFERENCE_ACCELERATION", "octave_bands", "third_octave_bands", "Bands",
+    "band_levels", "band_root_mean_square", "band_shift", "total_root_mean_square",
+    "kinematic_frequencies", "KinematicFrequencies", "waviness_force", "WavinessForce",
+    "name_lines", "Line", "line_causes", "Tolerances", "RandomWaves", "sample_errors",
+    "SampledErrors", "sampled_model", "monte_carlo", "MonteCarlo",
+    "source_contributions", "SourceContributions", "sound", "write_sound",
+    "model_warnings", "record_warnings", "contribution_warnings",
+]  # fmt: skip

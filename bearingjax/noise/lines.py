@@ -5,7 +5,8 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet, bearings_of
+from ..design import AbstractBearing, BearingSet
+from ..design.bearing_set import bearings_of
 from ..design.checks import count, non_negative, positive
 from ..element.inertia import Speed
 from ..numerics.units import unit

@@ -9,11 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import (
-    AbstractBallBearing,
-    is_self_aligning,
-    rows_of,
-)
+from ..design import AbstractBallBearing, rows_of
+from ..design.bearing_set import is_self_aligning
 from ..design.checks import (
     check,
     concrete,

@@ -14,7 +14,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design import BearingSet, bearings_of
+from ..design import BearingSet
+from ..design.bearing_set import bearings_of
 from ..design.checks import check, count, of_class
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement

@@ -20,20 +20,33 @@ hold, with exact gradients (`best.optimality`, at most `tolerance`; of "nelder-m
 most its root), whatever the method says. Warnings about the best design are in
 `best.after.warnings`. Balls and rollers that may skid: see `bearingjax.skid`; shafts on
 several bearings: `bearingjax.shafts.ShaftDesign`. Worked: the notebook roller_bearing.
+
+Names
+-----
+
+- The search: `optimise`, `Variable`, `Constraint`, `design_numbers`.
+- Measures of load and pressure: `PeakPressure`, `MeanPressure`, `EdgeLoad`.
+- Measures of stiffness: `Displacement`, `Stiffness`, `StiffnessTarget`.
+- Measures of life: `RatingLife`, `Damage`.
+- Results: `Optimised`, `Outcome`, `History`.
 """
 
-from .constraint import Constraint as Constraint
-from .design_problem import Outcome as Outcome
-from .life import Damage as Damage
-from .life import RatingLife as RatingLife
-from .measure import Displacement as Displacement
-from .measure import EdgeLoad as EdgeLoad
-from .measure import MeanPressure as MeanPressure
-from .measure import PeakPressure as PeakPressure
-from .measure import Stiffness as Stiffness
-from .measure import StiffnessTarget as StiffnessTarget
-from .optimise import History as History
-from .optimise import Optimised as Optimised
-from .optimise import optimise as optimise
-from .variable import Variable as Variable
-from .variable import design_numbers as design_numbers
+from .constraint import Constraint
+from .design_problem import Outcome
+from .life import Damage, RatingLife
+from .measure import (
+    Displacement,
+    EdgeLoad,
+    MeanPressure,
+    PeakPressure,
+    Stiffness,
+    StiffnessTarget,
+)
+from .optimise import History, Optimised, optimise
+from .variable import Variable, design_numbers
+
+__all__ = [
+    "optimise", "Variable", "Constraint", "design_numbers", "PeakPressure",
+    "MeanPressure", "EdgeLoad", "Displacement", "Stiffness", "StiffnessTarget",
+    "RatingLife", "Damage", "Optimised", "Outcome", "History",
+]  # fmt: skip

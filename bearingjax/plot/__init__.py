@@ -2,68 +2,88 @@
 
 A plot draws on the axes `ax`, on those of a new figure if they are `None`, and returns
 them; a page returns its figure.
+
+Names
+-----
+
+- Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`, `optimised`,
+  `noise_overview`, `skid_overview`, `rotor_overview`, `shaft_overview`.
+- Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
+- A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
+  `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
+- Half-space contacts: `contact_map`, `contact_surface`, `contact_stress`,
+  `contact_line_load`, `centre_pressure`.
+- Noise: `acceleration_over_time`, `noise_spectrum`, `band_bars`, `contact_state_map`,
+  `level_distribution`, `source_bars`.
+- Rotors: `campbell_diagram`, `mode_shapes`, `linear_curve`, `speed_curve`,
+  `response_curve`, `orbits`, `waveforms`, `waterfall`.
+- Skidding over the orbit: `load_over_orbit`, `sliding_over_orbit`, `spin_over_orbit`,
+  `heat_over_orbit`, `cage_force_over_orbit`.
+- Skidding over time: `speed_over_time`, `slip_over_time`, `load_over_time`,
+  `sliding_over_time`, `spin_over_time`, `cage_force_over_time`, `power_over_time`.
+- Other plots of skidding: `cage_speed`, `power_bars`, `sliding_spectrum`, `heat_map`,
+  `sliding_map`.
 """
 
-from ..rotor.nonlinear import Spectra as Spectra
-from ..rotor.nonlinear import envelope as envelope
-from ..rotor.nonlinear import spectra_over_time as spectra_over_time
-from ..rotor.nonlinear import steady_spectra as steady_spectra
-from ..skid import sliding_ellipse as sliding_ellipse
-from .balls import contact_angles as contact_angles
-from .balls import ellipses as ellipses
-from .contact import contact_map as contact_map
-from .contact import contact_overview as contact_overview
-from .contact import contact_surface as contact_surface
-from .contact_lines import centre_pressure as centre_pressure
-from .contact_lines import contact_line_load as contact_line_load
-from .contact_stress import contact_stress as contact_stress
-from .drawings.drawing import drawing as drawing
-from .drawings.section import cross_section as cross_section
-from .drawings.sections import cross_sections as cross_sections
-from .life import life_overview as life_overview
-from .load import load_displacement as load_displacement
-from .load import load_zone as load_zone
-from .load import stiffness_over_speed as stiffness_over_speed
-from .noise import acceleration_over_time as acceleration_over_time
-from .noise import band_bars as band_bars
-from .noise import contact_state_map as contact_state_map
-from .noise import level_distribution as level_distribution
-from .noise import noise_spectrum as noise_spectrum
-from .noise import source_bars as source_bars
-from .noise_page import noise_overview as noise_overview
-from .optimised import optimised as optimised
-from .page import overview as overview
-from .pressure import pressure_map as pressure_map
-from .pressure import pressure_profiles as pressure_profiles
-from .profiles import profile as profile
-from .rotors.rotor import rotor_section as rotor_section
-from .rotors.rotor_modes import campbell_diagram as campbell_diagram
-from .rotors.rotor_modes import mode_shapes as mode_shapes
-from .rotors.rotor_motion import orbits as orbits
-from .rotors.rotor_motion import waterfall as waterfall
-from .rotors.rotor_motion import waveforms as waveforms
-from .rotors.rotor_page import rotor_overview as rotor_overview
-from .rotors.rotor_response import linear_curve as linear_curve
-from .rotors.rotor_response import response_curve as response_curve
-from .rotors.rotor_response import speed_curve as speed_curve
-from .shafts import shaft_overview as shaft_overview
-from .skid import cage_speed as cage_speed
-from .skid import power_bars as power_bars
-from .skid import skid_overview as skid_overview
-from .skid_contact import heat_map as heat_map
-from .skid_contact import sliding_map as sliding_map
-from .skid_curves import cage_force_over_orbit as cage_force_over_orbit
-from .skid_curves import cage_force_over_time as cage_force_over_time
-from .skid_curves import heat_over_orbit as heat_over_orbit
-from .skid_curves import load_over_orbit as load_over_orbit
-from .skid_curves import load_over_time as load_over_time
-from .skid_curves import power_over_time as power_over_time
-from .skid_curves import sliding_over_orbit as sliding_over_orbit
-from .skid_curves import sliding_over_time as sliding_over_time
-from .skid_curves import sliding_spectrum as sliding_spectrum
-from .skid_curves import slip_over_time as slip_over_time
-from .skid_curves import spectrum as spectrum
-from .skid_curves import speed_over_time as speed_over_time
-from .skid_curves import spin_over_orbit as spin_over_orbit
-from .skid_curves import spin_over_time as spin_over_time
-from .sweep import sweep_overview as sweep_overview
+from .balls import contact_angles, ellipses
+from .contact import contact_map, contact_overview, contact_surface
+from .contact_lines import centre_pressure, contact_line_load
+from .contact_stress import contact_stress
+from .drawings.drawing import drawing
+from .drawings.section import cross_section
+from .drawings.sections import cross_sections
+from .life import life_overview
+from .load import load_displacement, load_zone, stiffness_over_speed
+from .noise import (
+    acceleration_over_time,
+    band_bars,
+    contact_state_map,
+    level_distribution,
+    noise_spectrum,
+    source_bars,
+)
+from .noise_page import noise_overview
+from .optimised import optimised
+from .page import overview
+from .pressure import pressure_map, pressure_profiles
+from .profiles import profile
+from .rotors.rotor import rotor_section
+from .rotors.rotor_modes import campbell_diagram, mode_shapes
+from .rotors.rotor_motion import orbits, waterfall, waveforms
+from .rotors.rotor_page import rotor_overview
+from .rotors.rotor_response import linear_curve, response_curve, speed_curve
+from .shafts import shaft_overview
+from .skid import cage_speed, power_bars, skid_overview
+from .skid_contact import heat_map, sliding_map
+from .skid_curves import (
+    cage_force_over_orbit,
+    cage_force_over_time,
+    heat_over_orbit,
+    load_over_orbit,
+    load_over_time,
+    power_over_time,
+    sliding_over_orbit,
+    sliding_over_time,
+    sliding_spectrum,
+    slip_over_time,
+    speed_over_time,
+    spin_over_orbit,
+    spin_over_time,
+)
+from .sweep import sweep_overview
+
+__all__ = [
+    "overview", "sweep_overview", "life_overview", "contact_overview", "optimised",
+    "noise_overview", "skid_overview", "rotor_overview", "shaft_overview", "drawing",
+    "cross_section", "cross_sections", "rotor_section", "profile", "load_zone",
+    "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
+    "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",
+    "contact_stress", "contact_line_load", "centre_pressure", "acceleration_over_time",
+    "noise_spectrum", "band_bars", "contact_state_map", "level_distribution",
+    "source_bars", "campbell_diagram", "mode_shapes", "linear_curve", "speed_curve",
+    "response_curve", "orbits", "waveforms", "waterfall", "load_over_orbit",
+    "sliding_over_orbit", "spin_over_orbit", "heat_over_orbit", "cage_force_over_orbit",
+    "speed_over_time", "slip_over_time", "load_over_time", "sliding_over_time",
+    "spin_over_time", "cage_force_over_time", "power_over_time", "cage_speed",
+    "power_bars", "sliding_spectrum", "heat_map", "sliding_map",
+]  # fmt: skip

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..noise import (
     REFERENCE_ACCELERATION,
-    UNNAMED,
     Bands,
     ContactStates,
     Line,
@@ -16,6 +15,7 @@ from ..noise import (
     Vibration,
 )
 from ..noise.level import LOWEST_LEVEL
+from ..noise.lines import UNNAMED
 from ..noise.scatter import SOURCES
 from .panel import Ax, Axis, Curve, Panel, chart, finish
 from .style import CURVES, GREY, SMALL, Axes, axes_or_new

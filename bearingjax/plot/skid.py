@@ -12,9 +12,9 @@ from ..skid import (
     SkidRollerHistory,
     SteadyRollerSkid,
     SteadySkid,
-    by_raceway,
     sliding_ellipse,
 )
+from ..skid.conditions import by_raceway
 from .panel import NEWTONS, Ax, Axis, Bars, Curve, Panel, chart
 from .skid_contact import heat_map, sliding_map
 from .skid_curves import (

@@ -51,45 +51,61 @@ polynomials with a measured error. Two bearings of one structure are compiled on
 
 For nonlinear vibration see `bearingjax.rotor.nonlinear`. Examples: the notebooks
 linear_rotordynamics, rotor_in_jax and rotor_on_bearings.
+
+Names
+-----
+
+- Nonlinear vibration: `nonlinear`.
+- The rotor: `Rotor`, `Shaft`, `Disc`, `PointMass`, `Housing`, `AbstractPart`,
+  `STATION_FREEDOMS`.
+- Supports: `BearingSupport`, `LinearSupport`, `SpeedSupport`, `AbstractSupport`,
+  `preload_offset`.
+- Damping: `ModalDamping`, `ProportionalDamping`, `AbstractDamping`.
+- Loads: `RotorLoads`, `StationForce`, `Unbalance`.
+- Equilibrium: `static_equilibrium`, `StaticEquilibrium`, `static_equilibrium_over`,
+  `StaticEquilibriumOver`.
+- Modes: `modes`, `Modes`, `campbell`, `critical_speeds`, `CriticalSpeeds`,
+  `instability_onsets`, `Onset`, `major_axis`.
+- Response: `unbalance_response`, `harmonic_response`, `UnbalanceResponse`.
+- Matrices: `RotorMatrices`, `craig_bampton`, `reduction_error`.
+- Coefficients for other programs: `stiffness_table`, `to_ross`.
 """
 
-from . import nonlinear as nonlinear
-from .bearing_support import BearingSupport as BearingSupport
-from .damping import AbstractDamping as AbstractDamping
-from .damping import ModalDamping as ModalDamping
-from .damping import ProportionalDamping as ProportionalDamping
-from .linear.coefficients import stiffness_table as stiffness_table
-from .linear.critical import CriticalSpeeds as CriticalSpeeds
-from .linear.critical import critical_speeds as critical_speeds
-from .linear.harmonic import harmonic_response as harmonic_response
-from .linear.harmonic import reduction_error as reduction_error
-from .linear.modes import Modes as Modes
-from .linear.modes import campbell as campbell
-from .linear.modes import is_axial as is_axial
-from .linear.modes import major_axis as major_axis
-from .linear.modes import modes as modes
-from .linear.onset import Onset as Onset
-from .linear.onset import instability_onsets as instability_onsets
-from .linear.reduction import craig_bampton as craig_bampton
-from .linear.response import Unbalance as Unbalance
-from .linear.response import UnbalanceResponse as UnbalanceResponse
-from .linear.response import unbalance_response as unbalance_response
-from .loads import RotorLoads as RotorLoads
-from .loads import StationForce as StationForce
-from .parts import AbstractPart as AbstractPart
-from .parts import AbstractSupport as AbstractSupport
-from .parts import Disc as Disc
-from .parts import Housing as Housing
-from .parts import LinearSupport as LinearSupport
-from .parts import PointMass as PointMass
-from .preload_offset import preload_offset as preload_offset
-from .ross import to_ross as to_ross
-from .rotor import Rotor as Rotor
-from .rotor import RotorMatrices as RotorMatrices
-from .shaft import STATION_FREEDOMS as STATION_FREEDOMS
-from .shaft import Shaft as Shaft
-from .speed_support import SpeedSupport as SpeedSupport
-from .statics import StaticEquilibrium as StaticEquilibrium
-from .statics import static_equilibrium as static_equilibrium
-from .statics_over_speed import StaticEquilibriumOver as StaticEquilibriumOver
-from .statics_over_speed import static_equilibrium_over as static_equilibrium_over
+from . import nonlinear
+from .bearing_support import BearingSupport
+from .damping import AbstractDamping, ModalDamping, ProportionalDamping
+from .linear.coefficients import stiffness_table
+from .linear.critical import CriticalSpeeds, critical_speeds
+from .linear.harmonic import harmonic_response, reduction_error
+from .linear.modes import Modes, campbell, major_axis, modes
+from .linear.onset import Onset, instability_onsets
+from .linear.reduction import craig_bampton
+from .linear.response import Unbalance, UnbalanceResponse, unbalance_response
+from .loads import RotorLoads, StationForce
+from .parts import (
+    AbstractPart,
+    AbstractSupport,
+    Disc,
+    Housing,
+    LinearSupport,
+    PointMass,
+)
+from .preload_offset import preload_offset
+from .ross import to_ross
+from .rotor import Rotor, RotorMatrices
+from .shaft import STATION_FREEDOMS, Shaft
+from .speed_support import SpeedSupport
+from .statics import StaticEquilibrium, static_equilibrium
+from .statics_over_speed import StaticEquilibriumOver, static_equilibrium_over
+
+__all__ = [
+    "nonlinear", "Rotor", "Shaft", "Disc", "PointMass", "Housing", "AbstractPart",
+    "STATION_FREEDOMS", "BearingSupport", "LinearSupport", "SpeedSupport",
+    "AbstractSupport", "preload_offset", "ModalDamping", "ProportionalDamping",
+    "AbstractDamping", "RotorLoads", "StationForce", "Unbalance", "static_equilibrium",
+    "StaticEquilibrium", "static_equilibrium_over", "StaticEquilibriumOver", "modes",
+    "Modes", "campbell", "critical_speeds", "CriticalSpeeds", "instability_onsets",
+    "Onset", "major_axis", "unbalance_response", "harmonic_response",
+    "UnbalanceResponse", "RotorMatrices", "craig_bampton", "reduction_error",
+    "stiffness_table", "to_ross",
+]  # fmt: skip

@@ -26,38 +26,53 @@ pressure, tilt, misalignment), `PowerLoss`, `ShaftMass`.
 The frame, the signs of torques and the force of a gear are described in `shafts.line`
 and `shafts.parts`. Left out: torsion, loops of meshes (planetary gears), stiffness of
 teeth, friction of floating rings, heat along the shaft from one bearing to the next.
+
+Names
+-----
+
+- The system: `ShaftSystem`, `ShaftLine`, `Seat`, `Gear`, `Pulley`, `Coupling`, `Drive`,
+  `ShaftLoad`, `HousingStiffness`.
+- Equilibrium: `solve_system`, `SystemSolution`, `ShaftState`, `bearing_solutions`,
+  `power_flow`, `PowerFlow`.
+- Load cases: `solve_duty`, `DutyResult`, `bearing_hours`, `system_life`.
+- Heat: `solve_heat`, `HeatNetwork`, `ThermalPaths`, `ThermalState`, `BearingOil`,
+  `runaway_speed`, `warm_up`.
+- Optimisation: `ShaftDesign`, `load_cases`, `ShaftCases`, `SystemLife`, `Worst`,
+  `PowerLoss`, `ShaftMass`.
 """
 
-from .bearing_oil import BearingOil as BearingOil
-from .duty import DutyResult as DutyResult
-from .duty import bearing_hours as bearing_hours
-from .duty import solve_duty as solve_duty
-from .duty import system_life as system_life
-from .equilibrium import solve_system as solve_system
-from .heat import HeatNetwork as HeatNetwork
-from .heat import ThermalPaths as ThermalPaths
-from .heat import ThermalState as ThermalState
-from .heat import runaway_speed as runaway_speed
-from .heat import solve_heat as solve_heat
-from .heat import warm_up as warm_up
-from .line import ShaftLine as ShaftLine
-from .parts import Coupling as Coupling
-from .parts import Drive as Drive
-from .parts import Gear as Gear
-from .parts import Pulley as Pulley
-from .parts import Seat as Seat
-from .parts import ShaftLoad as ShaftLoad
-from .power import PowerFlow as PowerFlow
-from .power import power_flow as power_flow
-from .seats import bearing_solutions as bearing_solutions
-from .shaft_design import PowerLoss as PowerLoss
-from .shaft_design import ShaftCases as ShaftCases
-from .shaft_design import ShaftDesign as ShaftDesign
-from .shaft_design import ShaftMass as ShaftMass
-from .shaft_design import SystemLife as SystemLife
-from .shaft_design import Worst as Worst
-from .shaft_design import load_cases as load_cases
-from .state import ShaftState as ShaftState
-from .state import SystemSolution as SystemSolution
-from .system import HousingStiffness as HousingStiffness
-from .system import ShaftSystem as ShaftSystem
+from .bearing_oil import BearingOil
+from .duty import DutyResult, bearing_hours, solve_duty, system_life
+from .equilibrium import solve_system
+from .heat import (
+    HeatNetwork,
+    ThermalPaths,
+    ThermalState,
+    runaway_speed,
+    solve_heat,
+    warm_up,
+)
+from .line import ShaftLine
+from .parts import Coupling, Drive, Gear, Pulley, Seat, ShaftLoad
+from .power import PowerFlow, power_flow
+from .seats import bearing_solutions
+from .shaft_design import (
+    PowerLoss,
+    ShaftCases,
+    ShaftDesign,
+    ShaftMass,
+    SystemLife,
+    Worst,
+    load_cases,
+)
+from .state import ShaftState, SystemSolution
+from .system import HousingStiffness, ShaftSystem
+
+__all__ = [
+    "ShaftSystem", "ShaftLine", "Seat", "Gear", "Pulley", "Coupling", "Drive",
+    "ShaftLoad", "HousingStiffness", "solve_system", "SystemSolution", "ShaftState",
+    "bearing_solutions", "power_flow", "PowerFlow", "solve_duty", "DutyResult",
+    "bearing_hours", "system_life", "solve_heat", "HeatNetwork", "ThermalPaths",
+    "ThermalState", "BearingOil", "runaway_speed", "warm_up", "ShaftDesign",
+    "load_cases", "ShaftCases", "SystemLife", "Worst", "PowerLoss", "ShaftMass",
+]  # fmt: skip

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import pitch_radius
+from ..design.bearing_set import pitch_radius
 from ..design.checks import check, concrete, instance, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit

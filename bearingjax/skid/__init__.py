@@ -72,34 +72,44 @@ torque with at most 1 % slip over a spectrum: benchmarks/skid_design.py. `skid_w
 warns of pockets too tight for the end state or too wide for the balls,
 shear stresses that no oil sustains, an oil that is a glass, films that are not
 elastohydrodynamic or too thin, gross skidding.
+
+Names
+-----
+
+- The bearing in its oil: `SkidModel`, `Cage`, `Drag`.
+- Steady motion: `steady`, `SteadySkid`, `SteadyRollerSkid`, `Power`, `zones`, `Zone`.
+- Motion in time: `simulate`, `SkidHistory`, `SkidRollerHistory`, `SkidState`,
+  `SpeedTable`, `ramp`, `LoadHistory`, `SinusoidalLoad`.
+- Contacts: `conditions`, `Conditions`, `sliding_ellipse`, `Ellipse`,
+  `sliding_spectrum`, `SlidingSpectrum`.
+- Optimisation: `SkiddingBearing`, `FrictionTorque`, `FrictionPower`, `CageSlip`.
+- Warnings: `skid_warnings`.
 """
 
-from .conditions import Conditions as Conditions
-from .conditions import by_raceway as by_raceway
-from .conditions import conditions as conditions
-from .contact_ellipse import Ellipse as Ellipse
-from .contact_ellipse import sliding_ellipse as sliding_ellipse
-from .model import SkidModel as SkidModel
-from .motion import SkidState as SkidState
-from .orbits.orbit_zones import Zone as Zone
-from .orbits.orbit_zones import zones as zones
-from .orbits.steady import steady as steady
-from .orbits.steady_results import Power as Power
-from .orbits.steady_results import SteadyRollerSkid as SteadyRollerSkid
-from .orbits.steady_results import SteadySkid as SteadySkid
-from .ring_load import LoadHistory as LoadHistory
-from .ring_load import SinusoidalLoad as SinusoidalLoad
-from .ring_speed import SpeedTable as SpeedTable
-from .ring_speed import ramp as ramp
-from .skidding_bearing import CageSlip as CageSlip
-from .skidding_bearing import FrictionPower as FrictionPower
-from .skidding_bearing import FrictionTorque as FrictionTorque
-from .skidding_bearing import SkiddingBearing as SkiddingBearing
-from .surroundings import Cage as Cage
-from .surroundings import Drag as Drag
-from .transients.history import SkidHistory as SkidHistory
-from .transients.history import SkidRollerHistory as SkidRollerHistory
-from .transients.history import SlidingSpectrum as SlidingSpectrum
-from .transients.history import sliding_spectrum as sliding_spectrum
-from .transients.transient import simulate as simulate
-from .warning import skid_warnings as skid_warnings
+from .conditions import Conditions, conditions
+from .contact_ellipse import Ellipse, sliding_ellipse
+from .model import SkidModel
+from .motion import SkidState
+from .orbits.orbit_zones import Zone, zones
+from .orbits.steady import steady
+from .orbits.steady_results import Power, SteadyRollerSkid, SteadySkid
+from .ring_load import LoadHistory, SinusoidalLoad
+from .ring_speed import SpeedTable, ramp
+from .skidding_bearing import CageSlip, FrictionPower, FrictionTorque, SkiddingBearing
+from .surroundings import Cage, Drag
+from .transients.history import (
+    SkidHistory,
+    SkidRollerHistory,
+    SlidingSpectrum,
+    sliding_spectrum,
+)
+from .transients.transient import simulate
+from .warning import skid_warnings
+
+__all__ = [
+    "SkidModel", "Cage", "Drag", "steady", "SteadySkid", "SteadyRollerSkid", "Power",
+    "zones", "Zone", "simulate", "SkidHistory", "SkidRollerHistory", "SkidState",
+    "SpeedTable", "ramp", "LoadHistory", "SinusoidalLoad", "conditions", "Conditions",
+    "sliding_ellipse", "Ellipse", "sliding_spectrum", "SlidingSpectrum",
+    "SkiddingBearing", "FrictionTorque", "FrictionPower", "CageSlip", "skid_warnings",
+]  # fmt: skip

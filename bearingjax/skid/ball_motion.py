@@ -23,14 +23,8 @@ from jaxtyping import Array, Float
 
 from ..element.balls.ball_speed import ball_kinematics
 from ..element.inertia import Speed
-from ..lubrication import (
-    AbstractPatch,
-    AbstractTraction,
-    Film,
-    Resultants,
-    WarmInlet,
-    at_least,
-)
+from ..lubrication import AbstractPatch, AbstractTraction, Film, Resultants, WarmInlet
+from ..lubrication.film_factors import at_least
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 

@@ -18,7 +18,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..element.inertia import Speed
-from ..lubrication import AbstractTraction, Film, LinePatch, WarmInlet, at_least
+from ..lubrication import AbstractTraction, Film, LinePatch, WarmInlet
+from ..lubrication.film_factors import at_least
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 

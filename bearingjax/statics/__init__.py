@@ -34,23 +34,32 @@ it out it is zero, of a life (`rating_life`) too::
 
 Mask what was solved itself: NaN comes back from what else is computed from a failed
 case before the mask.
+
+Names
+-----
+
+- Load solves: `solve_load`, `SolveOptions`, `Solution`, `BallSolution`,
+  `RollerSolution`, `Stats`, `failure_message`.
+- Preload and seats: `Installed`, `preload`, `remaining_preload`.
+- Stiffness: `linearise`, `OperatingPoint`, `restrained_freedoms`.
+- Half-space contact of one roller: `refine`, `Refined`.
+- Warnings: `warnings`, `seat_warnings`, `speed_warnings`.
 """
 
-from .installed import Installed as Installed
-from .linearise import OperatingPoint as OperatingPoint
-from .linearise import linearise as linearise
-from .load import solve_load as solve_load
-from .options import SolveOptions as SolveOptions
-from .preload import preload as preload
-from .preload import remaining_preload as remaining_preload
-from .refine import Refined as Refined
-from .refine import refine as refine
-from .service_warning import seat_warnings as seat_warnings
-from .service_warning import speed_warnings as speed_warnings
-from .solution import BallSolution as BallSolution
-from .solution import RollerSolution as RollerSolution
-from .solution import Solution as Solution
-from .solution import Stats as Stats
-from .solution import failure_message as failure_message
-from .support import restrained_freedoms as restrained_freedoms
-from .warning import warnings as warnings
+from .installed import Installed
+from .linearise import OperatingPoint, linearise
+from .load import solve_load
+from .options import SolveOptions
+from .preload import preload, remaining_preload
+from .refine import Refined, refine
+from .service_warning import seat_warnings, speed_warnings
+from .solution import BallSolution, RollerSolution, Solution, Stats, failure_message
+from .support import restrained_freedoms
+from .warning import warnings
+
+__all__ = [
+    "solve_load", "SolveOptions", "Solution", "BallSolution", "RollerSolution", "Stats",
+    "failure_message", "Installed", "preload", "remaining_preload", "linearise",
+    "OperatingPoint", "restrained_freedoms", "refine", "Refined", "warnings",
+    "seat_warnings", "speed_warnings",
+]  # fmt: skip

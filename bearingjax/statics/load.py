@@ -10,12 +10,8 @@ from typing import Any, TypedDict, Unpack, overload
 import jax
 from jaxtyping import Array, Int
 
-from ..design import (
-    AbstractBallBearing,
-    AbstractRollerBearing,
-    pitch_radius,
-    rows_of,
-)
+from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
+from ..design.bearing_set import pitch_radius
 from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.bearing_model import BearingModel

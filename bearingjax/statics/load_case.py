@@ -7,7 +7,8 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBearing, BearingSet, bearings_of
+from ..design import AbstractBearing, BearingSet
+from ..design.bearing_set import bearings_of
 from ..design.checks import real_numbers
 from ..element.frame import FREEDOMS, LOADS
 from ..element.inertia import Speed

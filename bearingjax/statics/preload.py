@@ -6,7 +6,8 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..design import AbstractBearing, BearingSet, SetRow, is_self_aligning, rows_of
+from ..design import AbstractBearing, BearingSet, SetRow, rows_of
+from ..design.bearing_set import is_self_aligning
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed

@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from ..design import AbstractBearing, BearingSet, bearings_of
+from ..design import AbstractBearing, BearingSet
+from ..design.bearing_set import bearings_of
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel, Evaluated, Solved
 from ..element.choices import BallChoices, RollerChoices

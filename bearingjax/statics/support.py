@@ -13,10 +13,9 @@ from ..design import (
     CylindricalThrustRollerBearing,
     SphericalThrustRollerBearing,
     ToroidalRollerBearing,
-    bearings_of,
-    is_self_aligning,
     rows_of,
 )
+from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.checks import is_traced
 from ..element.frame import FREEDOMS, LOADS
 

@@ -11,10 +11,9 @@ from ..design import (
     AbstractRollerBearing,
     AngularContactBallBearing,
     SphericalThrustRollerBearing,
-    bearings_of,
-    is_self_aligning,
     rows_of,
 )
+from ..design.bearing_set import bearings_of, is_self_aligning
 from ..element.bearing_element import BearingElement
 from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed

@@ -21,10 +21,9 @@ from ..design import (
     SphericalRollerRow,
     SphericalThrustRollerBearing,
     ToroidalRollerBearing,
-    bearings_of,
-    is_self_aligning,
     rows_of,
 )
+from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
 from ..element.kinematics import Linearised

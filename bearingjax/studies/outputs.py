@@ -26,7 +26,7 @@ def write_outputs(outputs) -> bool:
     Returns:
         Whether one of them failed.
     """
-    from ..files import write_outputs
+    from ..files.output_files import write_outputs
 
     written = write_outputs(outputs)
     for path in written.removed:
@@ -45,7 +45,7 @@ def save(figure, path, **format) -> None:
 
 def failure_of_output(error: Exception) -> str:
     """Describe why an output, or a part of one, is missing."""
-    from ..files import Incomplete
+    from ..files.output_files import Incomplete
 
     if isinstance(error, Incomplete):
         return str(error)
@@ -59,7 +59,8 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
         options: Command line options.
         inputs: Files that are read; default: those of the scene.
     """
-    from ..files import SceneError, check_outputs, scene_files
+    from ..files import SceneError
+    from ..files.output_files import check_outputs, scene_files
 
     outputs = {name: getattr(options, name, None) for name in OUTPUTS}
     for name, (endings, words) in _ENDINGS.items():

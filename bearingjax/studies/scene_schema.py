@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from ..design import ARRANGEMENTS, MATERIALS, RIB_NAMES, Material, Rib
+from ..design import MATERIALS, RIB_NAMES, Material, Rib
+from ..design.rib import ARRANGEMENTS
 from ..element import RINGS
 from ..element.frame import LOADS
 from ..files.quantity import SceneError

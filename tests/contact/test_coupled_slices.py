@@ -11,8 +11,9 @@ import pytest
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.contact import LineContact, Palmgren, response
+from bearingjax.contact import LineContact, Palmgren
 from bearingjax.contact.halfspace import RollerContact
+from bearingjax.contact.line_contact import response
 
 LENGTH, DIAMETER = 0.015, 0.010
 STEEL = bj.Material(210e9, 0.3)

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from tolerances import DIFFERENCE, QUADRATURE_FORCE, ROUNDING
 
-from bearingjax.contact import LineContact, response
+from bearingjax.contact import LineContact
+from bearingjax.contact.line_contact import response
 from bearingjax.design import (
     CircularCrown,
     CrownedEnds,

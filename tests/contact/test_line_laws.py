@@ -22,8 +22,8 @@ from bearingjax.contact import (
     LineConstant,
     LineContact,
     Palmgren,
-    response,
 )
+from bearingjax.contact.line_contact import response
 from bearingjax.design import Material, Straight
 from bearingjax.numerics import ContactMapped, Midpoint
 from bearingjax.numerics.types import as_real

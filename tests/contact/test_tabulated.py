@@ -12,7 +12,8 @@ import pytest
 from tolerances import QUADRATURE_FORCE, QUADRATURE_STIFFNESS
 
 import bearingjax as bj
-from bearingjax.contact import LineContact, response
+from bearingjax.contact import LineContact
+from bearingjax.contact.line_contact import response
 from bearingjax.design import Logarithmic, Straight, Tabulated
 from bearingjax.statics.rollers import approaches
 

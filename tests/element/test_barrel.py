@@ -22,8 +22,9 @@ from tolerances import (
 )
 
 import bearingjax as bj
-from bearingjax.contact import LineContact, response
+from bearingjax.contact import LineContact
 from bearingjax.contact.halfspace import RollerContact
+from bearingjax.contact.line_contact import response
 from bearingjax.contact.slices import slices
 from bearingjax.element.constants import contact_constants
 from bearingjax.element.inertia import inertia_force, mass_and_inertia

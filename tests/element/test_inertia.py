@@ -8,7 +8,8 @@ from registry import balls, bearings, taper
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.element import inertia_force, mass_and_inertia, roller_speeds
+from bearingjax.element import roller_speeds
+from bearingjax.element.inertia import inertia_force, mass_and_inertia
 
 SPEED = bj.Speed(inner=300.0, outer=-120.0)
 

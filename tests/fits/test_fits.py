@@ -24,8 +24,8 @@ from bearingjax.fits import (
     limits,
     needed_drive_up,
     outside_limits,
-    smoothing,
 )
+from bearingjax.fits.fits import smoothing
 
 MICRON = 1e-6
 ALUMINIUM = WarmMaterial(Material(70e9, 0.33, 2700.0), 23e-6)

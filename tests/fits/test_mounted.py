@@ -18,12 +18,11 @@ from bearingjax.fits import (
     clearance_range,
     fit_state,
     mounting_at,
-    raceway_diameters,
     radial_clearance,
-    row_shifts,
     with_bearing_dimensions,
     with_radial_clearance,
 )
+from bearingjax.fits.mounted import raceway_diameters, row_shifts
 from bearingjax.life.rating import nominal_contact_angle
 
 MICRON = 1e-6

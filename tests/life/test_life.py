@@ -24,7 +24,6 @@ from bearingjax.life import (
     CLEANLINESS,
     Cleanliness,
     life_factor,
-    refined_lamina_loads,
     reliability_factor,
     viscosity_ratio,
 )
@@ -55,7 +54,11 @@ from bearingjax.life.reference_life import (
     edge_stress,
     row_fatigue,
 )
-from bearingjax.life.refined_life import _of_laminae, _peaks_at_an_end
+from bearingjax.life.refined_life import (
+    _of_laminae,
+    _peaks_at_an_end,
+    refined_lamina_loads,
+)
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics.warning import sentences_of_cases
 

@@ -18,6 +18,7 @@ from tolerances import DIFFERENCE, PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.life import row_rating
+from bearingjax.life.rating import rated_axially
 from bearingjax.life.row_rating import BallRow
 
 _DEG = np.pi / 180
@@ -273,7 +274,7 @@ def test_steep_bearings_are_rated_by_their_axial_load():
     angular = EXAMPLES["angular contact"]
     angle = 60 * _DEG
     steep = eqx.tree_at(lambda b: b.contact_angle, angular, jnp.asarray(angle))
-    assert not bj.life.rated_axially(angular) and bj.life.rated_axially(steep)
+    assert not rated_axially(angular) and rated_axially(steep)
     g = 22.225 * 0.5 / 125.26
     # f_c of the standard's table at 60 degrees, and f_0 of thrust bearings.
     f = np.interp(g, np.arange(1, 21) / 100, printed(F_C["60"]))

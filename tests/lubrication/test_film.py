@@ -9,7 +9,6 @@ from tolerances import DIFFERENCE, ROUNDING
 
 from bearingjax.lubrication import (
     Regime,
-    at_least,
     inlet_heating,
     iso_vg,
     lambda_ratio,
@@ -18,6 +17,7 @@ from bearingjax.lubrication import (
     point_film,
     starvation,
 )
+from bearingjax.lubrication.film_factors import at_least
 
 # A 12.7 mm ball on an inner raceway under 100 N.
 E_STAR, RADIUS, MU, ALPHA = 113.19e9, 4.98e-3, 0.0376, 15.1e-9

@@ -14,7 +14,8 @@ from registry import bearings as rollers
 from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
-from bearingjax.element import contact_constants, roller_speeds
+from bearingjax.element import roller_speeds
+from bearingjax.element.constants import contact_constants
 from bearingjax.noise import kinematic_frequencies, waviness_force
 
 TURN = 2 * np.pi

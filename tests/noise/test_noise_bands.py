@@ -14,13 +14,12 @@ from bearingjax.noise import (
     band_levels,
     band_root_mean_square,
     band_shift,
-    is_held,
     octave_bands,
     spectrum,
     third_octave_bands,
     total_root_mean_square,
 )
-from bearingjax.noise.bands import LEAST_SHIFT, _root, leakage
+from bearingjax.noise.bands import LEAST_SHIFT, _root, is_held, leakage
 from bearingjax.noise.warning import _total
 
 OCTAVES = (4.0, 8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1e3, 2e3, 4e3, 8e3)

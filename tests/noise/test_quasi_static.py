@@ -14,7 +14,8 @@ from registry import balls
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
-from bearingjax.design import deviation_of, with_raceways
+from bearingjax.design import with_raceways
+from bearingjax.design.deviation import deviation_of
 from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors
 from bearingjax.element.azimuth import azimuths
 from bearingjax.noise import NoiseModel, excitation, waviness_force

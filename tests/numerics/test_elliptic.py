@@ -6,7 +6,7 @@ import numpy as np
 import scipy.special as special
 from tolerances import ROUNDING
 
-from bearingjax.numerics import carlson_rd, complete
+from bearingjax.numerics.elliptic import carlson_rd, complete
 
 RATIOS = np.concatenate(
     [10.0 ** np.linspace(-7, 7, 57), [1.0, 1.0 - 1e-9, 1.0 + 1e-6, 0.5, 3.0]]

@@ -11,9 +11,14 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.numerics import attach, attach_roots
 from bearingjax.numerics.expansion import by_autodiff
-from bearingjax.numerics.implicit import stop_gradient, through_jacobian, unless_failed
+from bearingjax.numerics.implicit import (
+    attach,
+    attach_roots,
+    stop_gradient,
+    through_jacobian,
+    unless_failed,
+)
 
 STIFFNESS = jnp.asarray([[2.0, 0.5, -0.3], [0.5, 1.5, 0.2], [-0.3, 0.2, 1.0]])
 

@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING, SOLVER
 
-from bearingjax.numerics import smallest_pivot, solve_symmetric
-from bearingjax.numerics.linear import dot, lengths, norm, null_space, quadratic, trace
+from bearingjax.numerics.linear import (
+    dot,
+    lengths,
+    norm,
+    null_space,
+    quadratic,
+    smallest_pivot,
+    solve_symmetric,
+    trace,
+)
 
 solve_many = jax.jit(jax.vmap(solve_symmetric))
 pivot_many = jax.jit(jax.vmap(smallest_pivot))

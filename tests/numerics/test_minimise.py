@@ -12,13 +12,8 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
-from bearingjax.numerics import (
-    BFGS,
-    Evaluation,
-    Result,
-    TrustRegionNewton,
-    inverse_update,
-)
+from bearingjax.numerics import BFGS, Evaluation, Result, TrustRegionNewton
+from bearingjax.numerics.bfgs import inverse_update
 from bearingjax.numerics.minimise import Problem, continuation
 
 N, COUNT = 3, 40

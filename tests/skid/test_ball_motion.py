@@ -16,10 +16,10 @@ from bearingjax.lubrication import (
     Eyring,
     Newtonian,
     WarmInlet,
-    at_least,
     inlet_heating,
     mil_l_23699,
 )
+from bearingjax.lubrication.film_factors import at_least
 from bearingjax.skid.ball_motion import (
     BallState,
     kinetic_energy,

@@ -7,8 +7,9 @@ import os
 import pytest
 
 import bearingjax as bj
-from bearingjax.files import Incomplete, SceneError, check_outputs, write_outputs
-from bearingjax.report import write_numbers
+from bearingjax.files import SceneError
+from bearingjax.files.output_files import Incomplete, check_outputs, write_outputs
+from bearingjax.report.json_output import write_numbers
 
 LIST = "operating.load.Fy [kN]\n-1\n"
 

@@ -20,10 +20,10 @@ from bearingjax.design import rows_of
 from bearingjax.fits import (
     Mounting,
     needed_drive_up,
-    raceway_diameters,
     radial_clearance,
     with_bearing_dimensions,
 )
+from bearingjax.fits.mounted import raceway_diameters
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics.options import SolveOptions
 from bearingjax.studies.bearing.catalogue_keys import as_keys

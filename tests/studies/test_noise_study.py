@@ -15,7 +15,8 @@ import bearingjax as bj
 from bearingjax import SceneError
 from bearingjax.design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
 from bearingjax.design.tolerance import running_accuracy
-from bearingjax.files import scene_files, shipped_scenes
+from bearingjax.files import shipped_scenes
+from bearingjax.files.output_files import scene_files
 from bearingjax.noise import (
     NoiseModel,
     Rectangular,

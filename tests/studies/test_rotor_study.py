@@ -15,7 +15,8 @@ from runs import Runs, Study
 from tolerances import PUBLISHED, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.files import SceneError, scene_files, shipped_scenes
+from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.files.output_files import scene_files
 from bearingjax.rotor import harmonic_response
 from bearingjax.rotor.nonlinear import BranchEnd
 from bearingjax.studies.rotor import run as rotor_run

@@ -61,7 +61,7 @@ class Solved:
     """A scene, its solution, and what is written of them."""
 
     scene: Scene
-    solution: bj.Solution
+    solution: bj.statics.Solution
     numbers: dict
 
     def __getitem__(self, name):

@@ -40,7 +40,7 @@ def test_study_reads_every_shipped_scene(name):
 
 def test_run_solves_scene_with_settings(untyped):
     found = bj.run("cylindrical_rig", ["operating.load.Fy=-2 kN"])
-    assert isinstance(found, bj.Solution) and found.converged
+    assert isinstance(found, bj.statics.Solution) and found.converged
     assert float(found.force[1]) == pytest.approx(-2000.0, rel=1e-9)
 
 
@@ -176,7 +176,7 @@ def test_command_interrupted_exit_status(run, monkeypatch, command):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bearingjax.files.scene_files", stop)
+    monkeypatch.setattr("bearingjax.files.output_files.scene_files", stop)
     done = run(command, SCENES[command])
     assert done == (130, "", "bearingjax: interrupted\n")
 

@@ -22,22 +22,30 @@ there): the pressure mirrored at them acts as well, weighted by place as a quart
 asks for (benchmarks/quarter_space.py). `stress_below` has the whole stress tensor at
 any points of either body; `plot.contact_stress` draws a section. `bearingjax.refine`
 takes a roller of any solved bearing here. Worked: the notebook half_space_contact.
+
+Names
+-----
+
+- A roller on a raceway: `RollerContact`, `FreeEnds`.
+- Any two bodies: `solve_pressure`, `ContactSolution`, `influence`, `AbstractInfluence`.
+- Cells: `Grid`, `even_grid`, `graded_grid`.
+- Pressure solvers: `ConjugateGradients`, `Strips`, `AbstractPressureSolver`, `Problem`,
+  `Pressed`.
+- Stress below the surface: `stress_below`, `Stress`.
 """
 
-from .ends import FreeEnds as FreeEnds
-from .gradients import AbstractPressureSolver as AbstractPressureSolver
-from .gradients import ConjugateGradients as ConjugateGradients
-from .grid import Grid as Grid
-from .grid import even_grid as even_grid
-from .grid import graded_grid as graded_grid
-from .influence import AbstractInfluence as AbstractInfluence
-from .influence import influence as influence
-from .love import love as love
-from .pressure import ContactSolution as ContactSolution
-from .pressure import solve_pressure as solve_pressure
-from .problem import Pressed as Pressed
-from .problem import Problem as Problem
-from .roller import RollerContact as RollerContact
-from .stress import Stress as Stress
-from .stress import stress_below as stress_below
-from .strips import Strips as Strips
+from .ends import FreeEnds
+from .gradients import AbstractPressureSolver, ConjugateGradients
+from .grid import Grid, even_grid, graded_grid
+from .influence import AbstractInfluence, influence
+from .pressure import ContactSolution, solve_pressure
+from .problem import Pressed, Problem
+from .roller import RollerContact
+from .stress import Stress, stress_below
+from .strips import Strips
+
+__all__ = [
+    "RollerContact", "FreeEnds", "solve_pressure", "ContactSolution", "influence",
+    "AbstractInfluence", "Grid", "even_grid", "graded_grid", "ConjugateGradients",
+    "Strips", "AbstractPressureSolver", "Problem", "Pressed", "stress_below", "Stress",
+]  # fmt: skip

@@ -2,12 +2,8 @@
 
 import numpy as np
 
-from ...design import (
-    AbstractBallBearing,
-    BearingSet,
-    CrossedRollerRow,
-    is_self_aligning,
-)
+from ...design import AbstractBallBearing, BearingSet, CrossedRollerRow
+from ...design.bearing_set import is_self_aligning
 from ..style import INNER, SMALL, Axes
 from .ball_section import ball_row, row_position
 from .dimension import (

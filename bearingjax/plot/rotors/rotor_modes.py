@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ...rotor import CriticalSpeeds, Modes, Rotor, is_axial, major_axis
+from ...rotor import CriticalSpeeds, Modes, Rotor, major_axis
+from ...rotor.linear.modes import is_axial
 from ..panel import Axis, finish
 from ..style import GREY, INNER, OUTER, ROLLER, SMALL, Ax, Axes, axes_or_new
 

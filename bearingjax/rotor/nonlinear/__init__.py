@@ -31,46 +31,56 @@ amplitude and `spectra_over_time` the spectra of a run-up over its speed.
 free vibration over its amplitude, along which resonances bend; `peak(system, branch,
 freedom, method)` the largest amplitude on a branch, between its points, with
 derivatives of its height and frequency.
+
+Names
+-----
+
+- Systems: `vibrating_rotor`, `VibratingRotor`, `VibratingSystem`,
+  `AbstractVibratingSystem`, `HarmonicLoad`.
+- Two bearings under a rigid rotor: `rigid_rotor`, `RigidRotor`, `OpposedPair`,
+  `natural_frequencies`.
+- Laws of supports: `LawSupport`, `FixedAngle`, `CubicExpansion`, `MovingAngle`,
+  `Grooves`, `AbstractSupportLaw`.
+- Periodic orbits: `solve_orbit`, `PeriodicOrbit`, `HarmonicBalance`, `Shooting`,
+  `AbstractMethod`.
+- Branches: `follow`, `trace`, `Branch`, `BranchEnd`, `Event`, `Steps`, `Arclength`,
+  `ChangeOfParameter`, `peak`.
+- Free vibration: `backbone`, `Backbone`.
+- In time: `simulate`, `History`, `FrequencyTable`, `poincare`, `envelope`.
+- Spectra over speed: `waterfall`, `Waterfall`, `steady_spectra`, `spectra_over_time`,
+  `Spectra`.
 """
 
-from .backbone import Backbone as Backbone
-from .backbone import backbone as backbone
-from .branch import Branch as Branch
-from .branch import Event as Event
-from .branch import follow as follow
-from .continuation import Arclength as Arclength
-from .continuation import BranchEnd as BranchEnd
-from .continuation import ChangeOfParameter as ChangeOfParameter
-from .continuation import Steps as Steps
-from .continuation import trace as trace
-from .harmonic_balance import HarmonicBalance as HarmonicBalance
-from .law_support import LawSupport as LawSupport
-from .method import AbstractMethod as AbstractMethod
-from .orbit import PeriodicOrbit as PeriodicOrbit
-from .orbit import solve_orbit as solve_orbit
-from .peak import peak as peak
-from .rigid_rotor import OpposedPair as OpposedPair
-from .rigid_rotor import RigidRotor as RigidRotor
-from .rigid_rotor import natural_frequencies as natural_frequencies
-from .rigid_rotor import rigid_rotor as rigid_rotor
-from .run_up import FrequencyTable as FrequencyTable
-from .shooting import Shooting as Shooting
-from .support_law import AbstractSupportLaw as AbstractSupportLaw
-from .support_law import CubicExpansion as CubicExpansion
-from .support_law import FixedAngle as FixedAngle
-from .support_law import Grooves as Grooves
-from .support_law import MovingAngle as MovingAngle
-from .system import AbstractVibratingSystem as AbstractVibratingSystem
-from .system import HarmonicLoad as HarmonicLoad
-from .system import VibratingSystem as VibratingSystem
-from .transient import History as History
-from .transient import envelope as envelope
-from .transient import poincare as poincare
-from .transient import simulate as simulate
-from .vibrating_rotor import VibratingRotor as VibratingRotor
-from .vibrating_rotor import vibrating_rotor as vibrating_rotor
-from .waterfall import Spectra as Spectra
-from .waterfall import Waterfall as Waterfall
-from .waterfall import spectra_over_time as spectra_over_time
-from .waterfall import steady_spectra as steady_spectra
-from .waterfall import waterfall as waterfall
+from .backbone import Backbone, backbone
+from .branch import Branch, Event, follow
+from .continuation import Arclength, BranchEnd, ChangeOfParameter, Steps, trace
+from .harmonic_balance import HarmonicBalance
+from .law_support import LawSupport
+from .method import AbstractMethod
+from .orbit import PeriodicOrbit, solve_orbit
+from .peak import peak
+from .rigid_rotor import OpposedPair, RigidRotor, natural_frequencies, rigid_rotor
+from .run_up import FrequencyTable
+from .shooting import Shooting
+from .support_law import (
+    AbstractSupportLaw,
+    CubicExpansion,
+    FixedAngle,
+    Grooves,
+    MovingAngle,
+)
+from .system import AbstractVibratingSystem, HarmonicLoad, VibratingSystem
+from .transient import History, envelope, poincare, simulate
+from .vibrating_rotor import VibratingRotor, vibrating_rotor
+from .waterfall import Spectra, Waterfall, spectra_over_time, steady_spectra, waterfall
+
+__all__ = [
+    "vibrating_rotor", "VibratingRotor", "VibratingSystem", "AbstractVibratingSystem",
+    "HarmonicLoad", "rigid_rotor", "RigidRotor", "OpposedPair", "natural_frequencies",
+    "LawSupport", "FixedAngle", "CubicExpansion", "MovingAngle", "Grooves",
+    "AbstractSupportLaw", "solve_orbit", "PeriodicOrbit", "HarmonicBalance", "Shooting",
+    "AbstractMethod", "follow", "trace", "Branch", "BranchEnd", "Event", "Steps",
+    "Arclength", "ChangeOfParameter", "peak", "backbone", "Backbone", "simulate",
+    "History", "FrequencyTable", "poincare", "envelope", "waterfall", "Waterfall",
+    "steady_spectra", "spectra_over_time", "Spectra",
+]  # fmt: skip

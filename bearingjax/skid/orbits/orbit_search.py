@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ...design import pitch_radius
+from ...design.bearing_set import pitch_radius
 from ...element.inertia import Speed
 from ...element.solved_row import RowResults, SolvedRow
 from ...numerics.compiled import batched_loop

@@ -12,7 +12,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ...design import pitch_radius
+from ...design.bearing_set import pitch_radius
 from ...design.checks import is_traced
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ...design import pitch_radius
+from ...design.bearing_set import pitch_radius
 from ...design.checks import count, is_traced, one_of, positive
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program

@@ -4,7 +4,8 @@ import dataclasses
 from collections.abc import Iterable
 from typing import Any
 
-from ...design import BearingSet, rows_of, shares_rings
+from ...design import BearingSet, rows_of
+from ...design.bearing_set import shares_rings
 from ...life.life import LifeConditions
 from ...life.rating import GIVEN, PUBLISHED
 from .read_scene import Scene

@@ -4,7 +4,8 @@ import difflib
 from typing import Any
 
 from ...catalogue.entry import catalogue_entry
-from ...design import AbstractBearing, BearingSet, PreloadSpring, SetRow, shares_rings
+from ...design import AbstractBearing, BearingSet, PreloadSpring, SetRow
+from ...design.bearing_set import shares_rings
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, text_of
 from ...statics.preload import check_preload

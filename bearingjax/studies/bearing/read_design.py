@@ -1,7 +1,6 @@
 """A bearing from the keys of its design."""
 
 from ...design import (
-    ARRANGEMENTS,
     MATERIALS,
     RIB_NAMES,
     AbstractBearing,
@@ -13,9 +12,10 @@ from ...design import (
     Rib,
     Ribs,
     pitch_on_sphere,
-    shares_rings,
 )
+from ...design.bearing_set import shares_rings
 from ...design.keywords import BALLS, PROFILES, ROLLERS, both_rows
+from ...design.rib import ARRANGEMENTS
 from ...element import RINGS
 from ...files.table import Table, format_number, written_numbers
 

@@ -12,8 +12,8 @@ from ...design import (
     Material,
     TaperedRollerBearing,
     rows_of,
-    shares_rings,
 )
+from ...design.bearing_set import shares_rings
 from ...element import Speed
 from ...files.quantity import SceneError, scene_number
 from ...files.schema import Keys, read_keys, scene_key
@@ -21,9 +21,7 @@ from ...files.schema_text import class_schema, number_schema
 from ...files.table import Table
 from ...fits import (
     CLEARANCE_CLASSES,
-    CLEARANCE_PARTS,
     LIMIT_CLASSES,
-    MOTOR_CLASS,
     PLACES,
     WARM_MATERIALS,
     FitConditions,
@@ -31,18 +29,18 @@ from ...fits import (
     Mounting,
     WarmMaterial,
     bore_limits,
-    limit_classes,
     limits,
     mounted,
     mounting_at,
     needed_drive_up,
     outside_limits,
     radial_clearance,
-    smoothing,
     with_bearing_dimensions,
     with_radial_clearance,
 )
-from ...fits.fits import PARTS
+from ...fits.fit_limits import CLEARANCE_PARTS, MOTOR_CLASS
+from ...fits.fits import PARTS, smoothing
+from ...fits.iso286 import limit_classes
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 from .fits import Fits
 

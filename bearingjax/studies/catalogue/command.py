@@ -38,7 +38,7 @@ def run(options) -> int:
     """List bearings of the catalogue."""
     from ...catalogue import catalogue_entries
     from ...files import SceneError
-    from ...report import write_numbers
+    from ...report.json_output import write_numbers
     from ..bearing.catalogue_keys import listed_bearing
     from .catalogue_report import (
         catalogue_as_dict,

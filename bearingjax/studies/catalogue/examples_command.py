@@ -17,7 +17,8 @@ def add(commands):
 
 def run(options) -> int:
     """List the shipped scenes, or print one."""
-    from ...files import SceneError, not_among, shipped_scenes
+    from ...files import SceneError, shipped_scenes
+    from ...files.table import not_among
     from .catalogue_report import scene_list
 
     if options.name is None:

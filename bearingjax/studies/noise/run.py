@@ -27,7 +27,6 @@ from ...noise import (
     natural_modes,
     record_warnings,
     ring_modes,
-    rounding,
     source_contributions,
     spectrum,
     total_root_mean_square,
@@ -35,6 +34,7 @@ from ...noise import (
     with_bridged_waves,
 )
 from ...noise.static_start import failure_message
+from ...noise.vibration import rounding
 from ...numerics.result import Result
 from .scene import AXES, NoiseScene
 

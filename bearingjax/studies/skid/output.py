@@ -9,7 +9,7 @@ from ...cases.sweep_table import column_header
 from ...element import RINGS
 from ...numerics.result import Result
 from ...report.json_output import run_json
-from ...skid import by_raceway
+from ...skid.conditions import by_raceway
 from ...skid.transients.transient import CAUSES
 from ...statics.solution import failure_message
 from .run import SkidRun

@@ -16,9 +16,9 @@ from ...design import (
     BearingSet,
     CrossedRollerRow,
     TaperedRollerBearing,
-    bearings_of,
     rows_of,
 )
+from ...design.bearing_set import bearings_of
 from ...element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ...numerics.units import shown_count
 from ...report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
