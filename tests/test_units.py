@@ -3,7 +3,6 @@ docstrings."""
 
 import dataclasses
 import importlib
-import itertools
 import pkgutil
 import re
 import sys
@@ -16,8 +15,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import design
+from bearingjax.cases.output_labels import label_output
 from bearingjax.cases.sweep import SUMMARIES
-from bearingjax.cases.sweep_table import _label
 from bearingjax.files.quantity import KINDS, kind_of
 from bearingjax.numerics import units
 from bearingjax.numerics.types import as_real
@@ -131,10 +130,11 @@ def test_a_scene_can_hold_every_number_of_the_drawing(kind):
 @pytest.mark.parametrize("kind", [RollerSolution, BallSolution])
 def test_columns_of_a_sweep_have_the_unit_of_the_docstring(kind):
     for name, axes in floats(kind):
-        shape = tuple(int(axis) if axis.isdigit() else 2 for axis in axes)
+        sizes = [axis.rpartition("=")[2] for axis in axes]
+        shape = tuple(int(size) if size.isdigit() else 2 for size in sizes)
         units = {
-            _label(name, index, shape)[1]
-            for index in itertools.product(*(range(n) for n in shape))
+            header.partition(" [")[2].rstrip("]")
+            for header, *_ in label_output(name, np.zeros((1, *shape))).columns(name)
         }
         assert units == stated_units(kind, name), name
 
@@ -214,16 +214,24 @@ def test_measures_have_the_unit_of_their_docstring(measure):
 
 
 def test_a_column_of_another_shape_than_the_field_has_no_unit_of_one_entry():
-    assert _label("displacement", (1,), (12,)) == ("displacement_outer_uy", "m")
-    assert _label("displacement", (1,), (2,)) == ("displacement_1", "")
-    assert _label("stiffness", (), ()) == ("stiffness", "")
-    assert _label("roller_load", (3,), (7,)) == ("roller_load_3", "N")
-    units = {name: _label(name, (), ())[1] for name in SUMMARIES}  # each is stated
-    assert {name: unit for name, unit in units.items() if unit} == {
-        "largest_load": "N",
-        "peak_pressure": "Pa",
-    }
-    assert _label("power", (), ()) == ("power", "")
+    def headers(name, *shape):
+        values = np.zeros((1, *shape))
+        return [header for header, *_ in label_output(name, values).columns(name)]
+
+    assert headers("displacement", 12)[1] == "displacement_outer_uy [m]"
+    assert headers("displacement", 2) == ["displacement_0", "displacement_1"]
+    assert headers("stiffness") == ["stiffness"]
+    assert headers("roller_load", 7)[3] == "roller_load_3 [N]"
+    assert headers("roller_motion", 1, 4)[3] == "roller_motion_0_3"
+    assert headers("edge_load", 1, 2, 2)[1] == "edge_load_0_0_1 [N/m]"
+    assert [headers(name) for name in SUMMARIES] == [
+        ["largest_load [N]"],
+        ["peak_pressure [Pa]"],
+        ["n_loaded"],
+        ["iterations"],
+        ["residual"],
+    ]
+    assert headers("power") == ["power"]
 
 
 def test_one_thing_is_shown_in_the_singular():

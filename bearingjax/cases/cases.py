@@ -39,11 +39,13 @@ class Cases(eqx.Module):
     Traced: all fields.
     """
 
-    load: Float[Array | np.ndarray, "case 6"] = eqx.field(metadata=unit(LOAD_UNITS))
+    load: Float[Array | np.ndarray, "case component=6"] = eqx.field(
+        metadata=unit(LOAD_UNITS)
+    )
     prescribed: dict[str, Float[Array | np.ndarray, " case"]] = eqx.field(
         metadata=unit(MOTION_UNITS)
     )
-    fixed_displacement: Float[Array | np.ndarray, "case 6"] | None = eqx.field(
+    fixed_displacement: Float[Array | np.ndarray, "case freedom=6"] | None = eqx.field(
         metadata=unit(MOTION_UNITS)
     )
     inner_speed: Float[Array | np.ndarray, " case"] | None = eqx.field(

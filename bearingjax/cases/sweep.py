@@ -6,6 +6,7 @@ each block of chunks, so that memory stays bounded however long the sweep is. JA
 distributes the chunks over the devices of one process or of many (`jax.distributed`).
 """
 
+import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -21,6 +22,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..life.life import LIFE_OUTPUTS, LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
+from ..numerics.labels import make_dataset
 from ..numerics.result import Result
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
@@ -28,6 +30,7 @@ from ..statics.support import check_held
 from ..statics.warning import exceeded_kinds, sentences_of_cases
 from .cases import Cases
 from .names_of_zeros import structural_zeros
+from .output_labels import LARGEST, label_cases, label_output
 from .sweep_program import WARNED, Program, Task
 
 CHUNK = 512
@@ -35,16 +38,21 @@ CHUNK = 512
 batch has no solved cases to start from: an eighth of a sweep at most, or 64; smaller
 ones end in slots that wait (benchmarks/load_solve_throughput.py)."""
 
+
+def _largest(field: str, solution: Solution) -> Array:
+    return jnp.max(getattr(solution, field))
+
+
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
-    "peak_pressure": lambda s: jnp.max(s.roller_pressure),
-    "largest_load": lambda s: jnp.max(s.roller_load),
+    name: functools.partial(_largest, field) for name, field in LARGEST.items()
+} | {
     "n_loaded": lambda s: jnp.sum(s.load_zone),
     "iterations": lambda s: s.stats.iterations,
     "residual": lambda s: s.stats.residual,
 }
-"""Outputs other than fields of a Solution: largest contact pressure [Pa], largest load
-of a rolling element [N], number of loaded elements, steps of the load solve, residual.
-"""
+"""Outputs other than fields of a Solution: the largest numbers of fields that state a
+name for it (`LARGEST`: the largest load of a rolling element, the largest contact
+pressure), number of loaded elements, steps of the load solve, residual."""
 
 
 class Sweep(eqx.Module):
@@ -107,6 +115,15 @@ class Sweep(eqx.Module):
             name: int(cases.sum())
             for name, cases in exceeded_kinds(self.warned, ALL).items()
         }
+
+    def to_xarray(self) -> Any:
+        """Return outputs and cases with names and units, as an `xarray.Dataset`.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        found = {name: label_output(name, v) for name, v in self.outputs.items()}
+        return make_dataset({**label_cases(self.cases), **found})
 
 
 def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any]:

@@ -64,12 +64,12 @@ def execute(command: Any, options: Any) -> int:
 
 def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     """Write the outputs of a run; return whether one of them failed."""
-    from ..cases.sweep_table import write_columns
+    from ..files.table_file import write_table
     from ..report.json_output import write_numbers
 
     def tabulate(path):
         assert found.columns is not None
-        write_columns(found.columns(), path)
+        write_table(found.columns(), path)
 
     def sound(path):
         assert found.sound is not None

@@ -2,11 +2,12 @@
 
 import equinox as eqx
 
+from ..numerics.labels import name_axis
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .checks import instance, non_negative, number, one_of, positive
 
-RIB_NAMES = ("outer_minus", "outer_plus", "inner_minus", "inner_plus")
+RIB_NAMES = name_axis("rib", ("outer_minus", "outer_plus", "inner_minus", "inner_plus"))
 """Order of the ribs wherever they are an axis: ring, then side (-z, +z)."""
 
 ARRANGEMENTS = {

@@ -9,11 +9,16 @@ has (u axial, v radial, θ about e_t turning +z towards +r).
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..numerics.labels import name_axis
 from ..numerics.types import Scalar
 
-FREEDOMS = ("ux", "uy", "uz", "gx", "gy", "gz")
-LOADS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
-RINGS = ("outer", "inner")
+FREEDOMS = name_axis("freedom", ("ux", "uy", "uz", "gx", "gy", "gz"))
+LOADS = name_axis("component", ("Fx", "Fy", "Fz", "Mx", "My", "Mz"))
+RINGS = name_axis("raceway", ("outer", "inner"))
+name_axis("section_freedom", ("u", "v", "theta"))
+name_axis("ring_component", (f"{ring}_{load}" for ring in RINGS for load in LOADS))
+for _axis in "ring_freedom", "moved_ring_freedom":
+    name_axis(_axis, (f"{ring}_{name}" for ring in RINGS for name in FREEDOMS))
 
 MOTION_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 LOAD_UNITS = ("N", "N", "N", "N m", "N m", "N m")

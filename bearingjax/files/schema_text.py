@@ -5,10 +5,11 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ..numerics.labels import stated_axes
 from ..numerics.units import docstring, unit_of
 from .quantity import KINDS, kind_of
 from .schema import Field, Keys, element_of, fields_of, is_keys
-from .table import LARGEST, axes_of
+from .table import LARGEST
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _QUANTITY = r"^\s*[-+−]?(\d+\.?\d*|\.\d+)([eE][-+−]?\d+)?\s*(1\s*/|[^\s\d]).*$"
@@ -153,11 +154,11 @@ def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
     if word:
         properties["type"] = {"const": word, "description": first_line(kind)}
     for field in dataclasses.fields(kind):
-        if "unit" not in field.metadata or len(axes_of(field.type)) > 1:
+        if "unit" not in field.metadata or len(stated_axes(field.type) or ()) > 1:
             continue
         unit = unit_of(kind, field.name)
         number = number_schema(kind_of(unit) if unit else "")
-        if axes_of(field.type):
+        if stated_axes(field.type):
             number = {"type": "array", "items": number}
         about = re.sub(r" (\[[^\]]*\]|\(\w+,\))", "", texts.get(field.name, ""))
         about, _, none = about.partition("; `None`: ")

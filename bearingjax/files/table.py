@@ -5,8 +5,9 @@ import dataclasses
 import difflib
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from typing import Any
 
+from ..numerics.labels import stated_axes
 from ..numerics.units import unit_of
 from .quantity import KINDS, SceneError, kind_of, to_si
 
@@ -190,7 +191,7 @@ class Table:
             name, unit = field.name, unit_of(kind, field.name)
             must = field.default is dataclasses.MISSING or name in required
             if must or name in self:
-                several = axes_of(field.type)
+                several = stated_axes(field.type)
                 found[name] = (
                     self.quantities(name, kind_of(unit))
                     if several
@@ -427,16 +428,6 @@ def written_numbers(owner: Any) -> dict[str, str | float]:
         for field in dataclasses.fields(owner)
         if "unit" in field.metadata
     }
-
-
-def axes_of(annotation: Any) -> Sequence[str]:
-    """Return the axes of a field: none of a number, digits of a fixed length.
-
-    Args:
-        annotation: Type of the field, an array or `None`.
-    """
-    kinds = get_args(annotation) or (annotation,)
-    return " ".join(getattr(kind, "dim_str", "") for kind in kinds).split()
 
 
 def not_among(value: object, choices: Sequence[str], words: str = "") -> str:

@@ -217,8 +217,8 @@ class Life(eqx.Module):
     contamination_factor: Scalar | None = eqx.field(metadata=unit("1"))
     a_iso: Scalar | None = eqx.field(metadata=unit("1"))
     reliability_factor: Scalar = eqx.field(metadata=unit("1"))
-    damage_share: Float[Array, "row 2 track"] = eqx.field(metadata=unit("1"))
-    turns_against_load: Float[Array, "2"] = eqx.field(metadata=unit("1"))
+    damage_share: Float[Array, "row raceway=2 track"] = eqx.field(metadata=unit("1"))
+    turns_against_load: Float[Array, "raceway=2"] = eqx.field(metadata=unit("1"))
 
     @property
     def dynamic_capacity(self) -> Float[Array, "*case"]:

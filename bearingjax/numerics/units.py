@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import inspect
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 import numpy as np
@@ -14,15 +14,18 @@ Units = str | tuple[Any, ...]
 """A unit, or those of the entries along the last axes of an array, nested."""
 
 
-def unit(name: Units) -> dict[str, Any]:
+def unit(name: Units, **shown: str) -> dict[str, Any]:
     """Metadata of a field of real numbers, `eqx.field(metadata=unit("m"))`.
 
     Args:
         name: SI unit; "1" for a pure number. Of an array with entries of several
             units those of the entries along its last axes: ("m", "m", "rad"). They
             begin anew where the axis is longer.
+        shown: How reports show a result of each rolling element: `column`, the heading
+            of its column, and `largest`, the name of its largest number, which is a
+            result too.
     """
-    return {"unit": name}
+    return {"unit": name, **shown}
 
 
 def mixed(*names: str) -> dict[str, Any]:
@@ -57,7 +60,17 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         index = (int(path.rpartition(".")[2]),)
     for part in parts:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
-    units = np.asarray(field_metadata(owner, name).get("unit", "1"))
+    return entry_unit(field_metadata(owner, name).get("unit", "1"), index)
+
+
+def entry_unit(stated: Units, index: Sequence[int]) -> str:
+    """Unit of an entry of an array, empty for a pure number.
+
+    Args:
+        stated: Units of the array, as in `unit`.
+        index: Which entry; empty for an array of several units without it.
+    """
+    units = np.asarray(stated)
     if len(index) < units.ndim:
         return ""
     last = zip(index[len(index) - units.ndim :], units.shape, strict=True)

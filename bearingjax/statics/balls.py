@@ -42,15 +42,17 @@ class BallResults(eqx.Module):
         centrifugal_force: Centrifugal force of each ball (ball,) [N], likewise.
     """
 
-    contact_load: Float[Array, "ball contact"] = eqx.field(metadata=unit("N"))
-    contact_angle: Float[Array, "ball contact"] = eqx.field(metadata=unit("rad"))
-    contact_pressure: Float[Array, "ball contact"] = eqx.field(metadata=unit("Pa"))
-    semi_axes: Float[Array, "ball contact 2"] = eqx.field(metadata=unit("m"))
-    approach: Float[Array, "ball contact"] = eqx.field(metadata=unit("m"))
-    shoulder_margin: Float[Array, "ball contact"] = eqx.field(metadata=unit("m"))
+    contact_load: Float[Array, "element contact"] = eqx.field(metadata=unit("N"))
+    contact_angle: Float[Array, "element contact"] = eqx.field(metadata=unit("rad"))
+    contact_pressure: Float[Array, "element contact"] = eqx.field(metadata=unit("Pa"))
+    semi_axes: Float[Array, "element contact half_axis=2"] = eqx.field(
+        metadata=unit("m")
+    )
+    approach: Float[Array, "element contact"] = eqx.field(metadata=unit("m"))
+    shoulder_margin: Float[Array, "element contact"] = eqx.field(metadata=unit("m"))
     kinematics: BallKinematics | None
-    gyroscopic_moment: Float[Array, " ball"] | None = eqx.field(metadata=unit("N m"))
-    centrifugal_force: Float[Array, " ball"] | None = eqx.field(metadata=unit("N"))
+    gyroscopic_moment: Float[Array, " element"] | None = eqx.field(metadata=unit("N m"))
+    centrifugal_force: Float[Array, " element"] | None = eqx.field(metadata=unit("N"))
 
     @property
     def n_contacts(self) -> Int[Array | np.ndarray, "*case ball"]:

@@ -44,13 +44,19 @@ class RollerResults(eqx.Module):
             (roller, 2, end) [Pa].
     """
 
-    rib_load: Float[Array, "roller 4"] = eqx.field(metadata=unit("N"))
-    position: Float[Array, "*roller point"] = eqx.field(metadata=unit("m"))
-    line_load: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("N/m"))
-    contact_pressure: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("Pa"))
-    contact_half_width: Float[Array, "roller 2 point"] = eqx.field(metadata=unit("m"))
-    edge_load: Float[Array, "roller 2 2"] = eqx.field(metadata=unit("N/m"))
-    edge_pressure: Float[Array, "roller 2 2"] = eqx.field(metadata=unit("Pa"))
+    rib_load: Float[Array, "element rib=4"] = eqx.field(metadata=unit("N"))
+    position: Float[Array, "*element point"] = eqx.field(metadata=unit("m"))
+    line_load: Float[Array, "element raceway=2 point"] = eqx.field(metadata=unit("N/m"))
+    contact_pressure: Float[Array, "element raceway=2 point"] = eqx.field(
+        metadata=unit("Pa")
+    )
+    contact_half_width: Float[Array, "element raceway=2 point"] = eqx.field(
+        metadata=unit("m")
+    )
+    edge_load: Float[Array, "element raceway=2 end=2"] = eqx.field(metadata=unit("N/m"))
+    edge_pressure: Float[Array, "element raceway=2 end=2"] = eqx.field(
+        metadata=unit("Pa")
+    )
 
     @property
     def edge_loaded(self) -> Bool[Array | np.ndarray, "*case roller 2 2"]:

@@ -22,9 +22,10 @@ from ..element.frame import (
 )
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults
+from ..numerics.labels import to_xarray
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
-from ..numerics.types import Ring, RingStiffness, Scalar
+from ..numerics.types import Ring, Scalar
 from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results
 from .rollers import RollerResults, roller_results
@@ -93,12 +94,20 @@ class Solution(eqx.Module):
     Static: row_sizes, free, held, moving_ring.
     """
 
-    displacement: Ring = eqx.field(metadata=unit(MOTION_UNITS))
-    force: Ring = eqx.field(metadata=unit(LOAD_UNITS))
-    stiffness: RingStiffness = eqx.field(metadata=unit(STIFFNESS_UNITS))
-    roller_load: Float[Array, "element 2"] = eqx.field(metadata=unit("N"))
-    roller_pressure: Float[Array, "element 2"] = eqx.field(metadata=unit("Pa"))
-    roller_motion: Float[Array, "element 3"] = eqx.field(
+    displacement: Float[Array, "ring_freedom=12"] = eqx.field(
+        metadata=unit(MOTION_UNITS)
+    )
+    force: Float[Array, "ring_component=12"] = eqx.field(metadata=unit(LOAD_UNITS))
+    stiffness: Float[Array, "ring_freedom=12 moved_ring_freedom=12"] = eqx.field(
+        metadata=unit(STIFFNESS_UNITS)
+    )
+    roller_load: Float[Array, "element raceway=2"] = eqx.field(
+        metadata=unit("N", column="load", largest="largest_load")
+    )
+    roller_pressure: Float[Array, "element raceway=2"] = eqx.field(
+        metadata=unit("Pa", column="pmax", largest="peak_pressure")
+    )
+    roller_motion: Float[Array, "element section_freedom=3"] = eqx.field(
         metadata=unit(("m", "m", "rad"))
     )
     azimuth: Float[Array, " element"] = eqx.field(metadata=unit("rad"))
@@ -124,6 +133,15 @@ class Solution(eqx.Module):
     def converged(self) -> Bool[Array | np.ndarray, "*case"] | np.bool_:
         """Whether the result code is `CONVERGED`."""
         return self.result == Result.CONVERGED
+
+    def to_xarray(self) -> Any:
+        """Return all arrays with names and units, as an `xarray.Dataset`.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        parts = ("kinematics",) if hasattr(self, "kinematics") else ()
+        return to_xarray(self, "stats", *parts)
 
 
 class RollerSolution(Solution, RollerResults):

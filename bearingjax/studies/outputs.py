@@ -81,8 +81,8 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
 
 def check_table(options, rows: int = 0) -> None:
     """Fail before solving if a table with this number of rows cannot be written."""
-    from ..cases.sweep_table import check_writable
     from ..files import SceneError
+    from ..files.table_file import check_writable
 
     table = getattr(options, "table", None)
     if table is None:

@@ -360,6 +360,18 @@ def test_table_has_units_and_a_result_for_each_case(swept, tmp_path, ending):
     )
 
 
+def test_sweep_to_xarray_has_names_and_units(swept):
+    found = swept.to_xarray()
+    moved = found.displacement.sel(ring_freedom="inner_uy")
+    np.testing.assert_array_equal(moved, swept.displacement[:, 7])
+    spring = found.stiffness.sel(ring_freedom="inner_ux", moved_ring_freedom="inner_gy")
+    np.testing.assert_array_equal(spring, swept.stiffness[:, 6, 10])
+    assert found.largest_load.dims == ("case",) and found.largest_load.units == "N"
+    assert found.stiffness.units == "N/m, N, N m"
+    np.testing.assert_array_equal(found["load"].sel(component="Fy"), loads()[:, 1])
+    assert found.result.values[5] == "non_finite"
+
+
 def test_columns_of_round_off_are_zero():
     """A true small number stays: one that is large in a single case, or of its unit."""
     moved = np.full((3, 12), np.nan)

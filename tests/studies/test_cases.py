@@ -10,7 +10,7 @@ import pytest
 from pages import missing_on_page
 
 from bearingjax.cases import Sweep, sweep_table
-from bearingjax.files import SceneError
+from bearingjax.files import SceneError, table_file
 from bearingjax.files import column_list as cases_list
 from bearingjax.studies.bearing.read_scene import read_scene
 from bearingjax.studies.cases import read_cases as cases_table
@@ -381,7 +381,8 @@ def test_sweep_command_rejects_invalid_arguments(run, scene, arguments, message)
 
 
 @pytest.mark.parametrize(
-    ("name", "needed"), [("x.csv", "pyarrow"), ("x.XLSX", "openpyxl")]
+    ("name", "needed"),
+    [("x.parquet", "pandas and pyarrow"), ("x.XLSX", "pandas and openpyxl")],
 )
 def test_sweep_table_rejected_without_optional_package(
     run, scene, monkeypatch, name, needed
@@ -396,7 +397,7 @@ def test_sweep_table_rejected_without_optional_package(
 
 
 def test_sweep_table_rejects_rows_above_sheet_limit(run, scene, monkeypatch):
-    monkeypatch.setattr(sweep_table, "MOST_ROWS", 11)
+    monkeypatch.setattr(table_file, "MOST_ROWS", 11)
     monkeypatch.setattr("bearingjax.studies.cases.sweep_run.run_cases", None)
     ended = run("sweep", scene(GRID), "--table", "x.xlsx")
     assert ended.status == 2

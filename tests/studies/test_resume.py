@@ -10,15 +10,16 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax import FREEDOMS, Cases
-from bearingjax.cases import Sweep, sweep_program, sweep_table
+from bearingjax.cases import Sweep, sweep_program
 from bearingjax.cases.sweep_table import (
     case_columns,
     left_out,
     read,
     restore_outputs,
     write,
-    write_columns,
 )
+from bearingjax.files import table_file
+from bearingjax.files.table_file import write_table
 from bearingjax.numerics.result import Result
 from bearingjax.studies.cases import resume
 from bearingjax.studies.cases.read_cases import read_cases
@@ -224,9 +225,9 @@ def test_interrupted_while_the_table_is_written(
 ):
     def late(*given):
         signal.raise_signal(signal.SIGINT)
-        return write_columns(*given)
+        return write_table(*given)
 
-    monkeypatch.setattr(sweep_table, "write_columns", late)
+    monkeypatch.setattr(table_file, "write_table", late)
     table = tmp_path / "t.csv"
     done = run("sweep", scene(), "--table", table)
     assert done.status == 0

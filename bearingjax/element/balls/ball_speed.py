@@ -188,11 +188,11 @@ class BallKinematics(NamedTuple):
         roll: Rolling about the contact tangent, outer and inner ring (2,) [rad/s].
     """
 
-    orbit: Annotated[Float[Array, "..."], unit("rad/s")]
-    rotation: Annotated[Float[Array, "..."], unit("rad/s")]
-    axis: Float[Array, "... 2"]
-    spin: Annotated[Float[Array, "... 2"], unit("rad/s")]
-    roll: Annotated[Float[Array, "... 2"], unit("rad/s")]
+    orbit: Annotated[Float[Array, "*element"], unit("rad/s")]
+    rotation: Annotated[Float[Array, "*element"], unit("rad/s")]
+    axis: Float[Array, "*element direction=2"]
+    spin: Annotated[Float[Array, "*element raceway=2"], unit("rad/s")]
+    roll: Annotated[Float[Array, "*element raceway=2"], unit("rad/s")]
 
     @property
     def pitch_angle(self) -> Float[Array | np.ndarray | np.floating, "..."]:

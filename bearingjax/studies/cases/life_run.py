@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ...cases.sweep import Sweep
-from ...cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
+from ...cases.sweep_table import columns
 from ...design.published import with_published
 from ...files.quantity import SceneError
 from ...life.life import LIFE_OUTPUTS, turns_against_load

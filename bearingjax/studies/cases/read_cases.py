@@ -26,8 +26,9 @@ from ...files.column_list import LARGEST, read_list
 from ...files.quantity import KINDS, SceneError, kind_of, to_si
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
-from ...files.table import Table, axes_of, text_of
+from ...files.table import Table, text_of
 from ...life.life import LIFE_OUTPUTS, Life
+from ...numerics.labels import stated_axes
 from ...numerics.units import unit_of
 from ...statics.solution import Solution
 from ..bearing.read_scene import Scene, scene_of
@@ -323,8 +324,8 @@ def _check_outputs(table, outputs, design_groups) -> None:
 
 def _is_whole(field) -> bool:
     """Whether an output has no axis whose length is that of a bearing."""
-    axes = axes_of(field.type)
-    return "unit" in field.metadata and all(axis.isdecimal() for axis in axes)
+    sizes = [axis.rpartition("=")[2] for axis in stated_axes(field.type) or ()]
+    return "unit" in field.metadata and all(size.isdecimal() for size in sizes)
 
 
 def _check_key(table, key, scene):

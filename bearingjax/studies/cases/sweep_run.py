@@ -8,9 +8,10 @@ import jax
 import numpy as np
 
 from ...cases.cases import Cases
+from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.sweep import Sweep, sweep
 from ...cases.sweep_program import not_run
-from ...cases.sweep_table import OPERATING_CLEARANCE, OPERATING_PRELOAD, columns
+from ...cases.sweep_table import columns
 from ...design import rows_of
 from ...files.quantity import SceneError
 from ...fits import radial_clearance

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ...cases.sweep_table import column_header
 from ...element import RINGS
+from ...numerics.labels import column_header
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...skid.conditions import by_raceway

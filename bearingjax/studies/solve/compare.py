@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from ..._version import __version__
+from ...cases.output_labels import OPERATING_CLEARANCE
 from ...cases.sweep import SUMMARIES
-from ...cases.sweep_table import OPERATING_CLEARANCE, flatten_columns, kind
+from ...cases.sweep_table import flatten_columns, kind
 from ...element.frame import FREEDOMS
 from ...life.life import LIFE_OUTPUTS
 from ...numerics.result import Result
