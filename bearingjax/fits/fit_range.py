@@ -1,4 +1,4 @@
-"""The clearance of a mounted bearing over the tolerances of its sizes.
+"""States of a mounted bearing, and its clearance over the tolerances of its sizes.
 
 Compiles nothing for a mounting of NumPy numbers, as from `jax.device_get`.
 """
@@ -9,11 +9,31 @@ import equinox as eqx
 
 from ..design.checks import concrete, in_range, one_of
 from ..numerics.units import unit
-from .fits import FitConditions, Mounting, fit_state, positive_part
+from .fits import FitConditions, FitState, Mounting, fit_state, positive_part
 from .iso286 import Limits
 
 _WIDEST = 0.01
 """Beyond all clearances and deviations of bearings up to 1 m; micrometres meant? [m]"""
+
+
+class SizeLimits(NamedTuple):
+    """Limits of the sizes on which the clearance of a mounted bearing depends.
+
+    They are arguments of `clearance_range` and `mounting_at`: `*limits`.
+
+    Attributes:
+        clearance: Limits of the radial clearance before mounting [m].
+        shaft: Limits of the deviation of the shaft's diameter [m].
+        bore: Limits of the deviation of the bore [m].
+        housing: Limits of the deviation of the housing's bore [m].
+        outside_diameter: Limits of the deviation of the outside diameter [m].
+    """
+
+    clearance: Annotated[Limits, unit("m")]
+    shaft: Annotated[Limits, unit("m")]
+    bore: Annotated[Limits, unit("m")]
+    housing: Annotated[Limits, unit("m")]
+    outside_diameter: Annotated[Limits, unit("m")]
 
 
 class ClearanceRange(NamedTuple):
@@ -65,6 +85,55 @@ def clearance_range(
         middle,
         Limits(least, most),
         Limits(_larger_of(middle - half, least), -_larger_of(-middle - half, -most)),
+    )
+
+
+class FitStates(NamedTuple):
+    """Clearance and seats of a bearing, from before mounting to operation.
+
+    Attributes:
+        free: Radial clearance before mounting [m].
+        mounted: State when mounted, at rest, at the reference temperature.
+        operating: State in operation.
+        mounted_range: Clearance over all tolerances, mounted; `None` without limits.
+        operating_range: Clearance over all tolerances, in operation, likewise.
+        loosest: State in operation at the sizes with the largest clearance, likewise.
+    """
+
+    free: Annotated[Any, unit("m")]
+    mounted: FitState
+    operating: FitState
+    mounted_range: ClearanceRange | None
+    operating_range: ClearanceRange | None
+    loosest: FitState | None
+
+
+def fit_states(
+    mounting: Mounting,
+    conditions: FitConditions | None = None,
+    limits: SizeLimits | None = None,
+) -> FitStates:
+    """Clearance and seats of a bearing before mounting, mounted and in operation.
+
+    Args:
+        mounting: The bearing and its seats.
+        conditions: Temperatures and speeds in operation; `None`: as mounted.
+        limits: Limits of its sizes; `None`: nothing is said of tolerances.
+
+    Raises:
+        ValueError: As `clearance_range`.
+    """
+    free = mounting.radial_clearance
+    cold, warm = (fit_state(mounting, one) for one in (None, conditions))
+    if limits is None:
+        return FitStates(free, cold, warm, None, None, None)
+    return FitStates(
+        free,
+        cold,
+        warm,
+        clearance_range(mounting, *limits),
+        clearance_range(mounting, *limits, conditions),
+        fit_state(mounting_at(mounting, "loosest", *limits), conditions),
     )
 
 

@@ -167,3 +167,12 @@ def shown_number(value: float, unit: str) -> str:
         return f"{value - CELSIUS:.4g} °C"
     factor, shown = display_unit(unit, abs(value))
     return f"{factor * value:.4g} {shown}".rstrip()
+
+
+def rpm(speed: Any) -> str:
+    """Format a speed in rpm.
+
+    Args:
+        speed: Speed [rad/s].
+    """
+    return f"{float(speed) * 30.0 / np.pi:.5g} rpm"

@@ -137,15 +137,6 @@ Part = str | Grid
 Section = Sequence[Part]
 
 
-def rpm(speed: Any) -> str:
-    """Format a speed in rpm.
-
-    Args:
-        speed: Speed [rad/s].
-    """
-    return f"{float(speed) * 30.0 / np.pi:.5g} rpm"
-
-
 def load_text(load: Iterable[Any]) -> str:
     """Format the parts of a load that are not zero; "" without any.
 

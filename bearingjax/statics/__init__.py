@@ -40,7 +40,7 @@ Names
 
 - Load solves: `solve_load`, `SolveOptions`, `Solution`, `BallSolution`,
   `RollerSolution`, `Stats`, `failure_message`.
-- Preload and seats: `Installed`, `preload`, `remaining_preload`.
+- Preload and seats: `Installed`, `preload`, `remaining_preload`, `SetPreload`.
 - Stiffness: `linearise`, `OperatingPoint`, `restrained_freedoms`.
 - Half-space contact of one roller: `refine`, `Refined`.
 - Warnings: `warnings`, `seat_warnings`, `speed_warnings`.
@@ -50,7 +50,7 @@ from .installed import Installed
 from .linearise import OperatingPoint, linearise
 from .load import solve_load
 from .options import SolveOptions
-from .preload import preload, remaining_preload
+from .preload import SetPreload, preload, remaining_preload
 from .refine import Refined, refine
 from .service_warning import seat_warnings, speed_warnings
 from .solution import BallSolution, RollerSolution, Solution, Stats, failure_message
@@ -59,7 +59,8 @@ from .warning import warnings
 
 __all__ = [
     "solve_load", "SolveOptions", "Solution", "BallSolution", "RollerSolution", "Stats",
-    "failure_message", "Installed", "preload", "remaining_preload", "linearise",
+    "failure_message", "Installed", "preload", "remaining_preload", "SetPreload",
+    "linearise",
     "OperatingPoint", "restrained_freedoms", "refine", "Refined", "warnings",
     "seat_warnings", "speed_warnings",
 ]  # fmt: skip

@@ -1,7 +1,7 @@
 """Preload by force: the ring offsets that give a set an axial preload, and the preload
 that remains."""
 
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,9 +12,30 @@ from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import unit
 from .load import solve_load
 from .solution import Solution
 from .support import restrained_freedoms
+
+
+class SetPreload(NamedTuple):
+    """Axial preload force between the rows of a set, without external load [N].
+
+    Attributes:
+        ground: As ground, before mounting [N].
+        mounted: When mounted, at rest, at the reference temperature [N].
+        operating: In operation [N].
+        mounted_range: Mounted, at the loosest and the tightest sizes of shaft, housing
+            and rings; `None` where all sizes are exact. NaN: with that fit the balls
+            have no contact angle, or no equilibrium was found [N].
+        operating_range: In operation at the loosest and the tightest sizes [N].
+    """
+
+    ground: Annotated[float, unit("N")]
+    mounted: Annotated[float, unit("N")]
+    operating: Annotated[float, unit("N")]
+    mounted_range: Annotated[tuple[float, float] | None, unit("N")]
+    operating_range: Annotated[tuple[float, float] | None, unit("N")]
 
 
 def preload(

@@ -9,10 +9,17 @@ from jaxtyping import Array, Float
 from ..element.inertia import Speed
 from ..fits.fits import FitState
 from ..numerics.types import as_real
+from .preload import SetPreload
 
 MOST_STRESS = 127e6
 """Hoop stress above which a fit is warned of, of bearing steel [Pa]: the largest that
 catalogues of rolling bearings (JTEKT, NTN) allow a fit."""
+
+MOST_DRIFT = 0.5e-6
+"""Change of radial clearance over the speed above which it is warned of [m]."""
+
+MOST_CHANGE = 2.0
+"""Ratio to the preload as ground from which a change of preload is warned of [1]."""
 
 _SEATS = {"housing": "the outer ring", "shaft": "the inner ring on its shaft"}
 """Seats in the order of the rings (outer, inner), and what sits there."""
@@ -141,3 +148,60 @@ def speed_warnings(
             many += f" {np.argmax(size)}"
         texts.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
     return texts
+
+
+def preload_warnings(found: SetPreload) -> list[str]:
+    """Warnings about the preload of a set on its seats, a sentence each.
+
+    Args:
+        found: From `Installed.set_preload`.
+    """
+    ground, operating = found.ground, found.operating
+    least, most = found.operating_range or (operating, operating)
+    ends = ""
+    if found.operating_range is not None:
+        ends = f" ({shown_preload(least)} to {shown_preload(most)} over the tolerances)"
+    if operating == 0.0 < ground:
+        return [
+            f"preload: the set, ground to {shown_preload(ground)}, has none left in"
+            f" operation{ends}: fits, warmth and speed take it"
+        ]
+    if ground > 0.0 and not 1.0 / MOST_CHANGE < operating / ground < MOST_CHANGE:
+        return [
+            f"preload: {shown_preload(ground)} as ground are {shown_preload(operating)}"
+            f" in operation{ends}, by fits, warmth and speed"
+        ]
+    if least == 0.0 < ground:
+        return [
+            "preload: at the loosest sizes of the tolerances the set has none left in"
+            " operation"
+        ]
+    return []
+
+
+def preload_range_warnings(ground: float, least: float, most: float) -> list[str]:
+    """Warnings about the preload of a set over many cases, a sentence each.
+
+    Args:
+        ground: Preload as ground, before mounting [N].
+        least, most: Preload in operation, over the cases [N].
+    """
+    if least == 0.0:
+        words = "has none left in operation in some of the cases"
+        return [f"preload: the set, ground to {shown_preload(ground)}, {words}"]
+    if ground / MOST_CHANGE < least and most < MOST_CHANGE * ground:
+        return []
+    ends = " to ".join(dict.fromkeys(map(shown_preload, (least, most))))
+    return [
+        f"preload: {shown_preload(ground)} as ground are {ends} in operation over the"
+        " cases, by fits, warmth and speed"
+    ]
+
+
+def shown_preload(force: float) -> str:
+    """Preload in words; NaN where the set has no equilibrium, or no contact angle.
+
+    Args:
+        force: Preload force [N].
+    """
+    return f"{force:.4g} N" if np.isfinite(force) else "not possible"

@@ -363,11 +363,11 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, low, high):
     text += f'housing = "H7"\nhousing_diameter = "{1.5 * entry.outside_diameter} m"\n'
     scene = scene_of(tomllib.loads(text), Path("fitted.toml"))
     np.testing.assert_allclose(
-        np.array(scene.fits.limits["clearance"]) * 1e6, [low, high]
+        np.array(scene.installed.limits.clearance) * 1e6, [low, high]
     )
     echoed = scene_of(scene.inputs, Path("echoed.toml"))
-    assert tuple(echoed.fits.limits["clearance"]) == tuple(
-        scene.fits.limits["clearance"]
+    assert tuple(echoed.installed.limits.clearance) == tuple(
+        scene.installed.limits.clearance
     )
 
 

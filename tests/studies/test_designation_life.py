@@ -120,9 +120,9 @@ def test_rated_capacity_of_self_aligning_bearing_covers_both_rows(read):
 def test_clearance_restating_catalogue_keeps_class(read):
     fit = '[fit]\nshaft = "k5"\nhousing = "H7"\nhousing_diameter = "80 mm"\n'
     restated = 'designation = "6205"\nradial_internal_clearance = "12.5 um"'
-    limits = read(restated, fit).fits.limits["clearance"]
+    limits = read(restated, fit).installed.limits.clearance
     assert tuple(limits) == pytest.approx((5e-6, 20e-6))
-    limits = read(restated, fit, ["fit.clearance=C3"]).fits.limits["clearance"]
+    limits = read(restated, fit, ["fit.clearance=C3"]).installed.limits.clearance
     assert tuple(limits) == pytest.approx((13e-6, 28e-6))
     with pytest.raises(bj.SceneError, match=r"`fit.clearance`: stands beside"):
         read(restated.replace("12.5", "3"), fit, ["fit.clearance=C3"])

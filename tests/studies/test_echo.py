@@ -231,7 +231,7 @@ def test_echo_includes_fits(tmp_path):
     scene = read_scene(path)
     again = echoed(tmp_path / "fits.json", scene)
     assert again.inputs == scene.inputs
-    leaves = [jax.tree.leaves((one.element, one.fits)) for one in (scene, again)]
+    leaves = [jax.tree.leaves((one.installed, one.fits)) for one in (scene, again)]
     for one, other in zip(*leaves, strict=True):
         np.testing.assert_array_equal(one, other)
 

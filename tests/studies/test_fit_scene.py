@@ -9,6 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 
@@ -93,7 +94,7 @@ def test_the_usual_fits_of_a_6205(scene):
     read = bj.read_scene(scene(BEARING + FIT))
     assert read.warnings == ()
     assert clearance(read.element) == pytest.approx(12.5 * MICRON)
-    found = read.fits.facts
+    found = read.fit_states
     # Of 2 to 21 µm of interference 25/30.56 reach the raceway; H7 takes nothing.
     share = 25 / 30.56
     worst = np.array([5 - 21 * share, 20 - 2 * share]) * MICRON
@@ -103,25 +104,70 @@ def test_the_usual_fits_of_a_6205(scene):
     assert clearance(read.running()) == pytest.approx(left, rel=1e-9)
 
 
+def test_states_and_warnings_of_a_bearing_installed_by_hand(scene):
+    """Those of the scene: its JSON, and what it warns of."""
+    fit = 'shaft = "k5"\nhousing = "H7"\nhousing_diameter = "80 mm"\n'
+    warm = 'inner_ring = "90 °C"\nshaft = "70 °C"\nhousing = "60 °C"'
+    text = f'[bearing]\ndesignation = "6205/C3"\n[fit]\n{fit}[temperature]\n{warm}\n'
+    running = '[operating]\nload = { Fy = "-1 kN" }\ninner_speed = "30000 rpm"\n'
+    read = bj.read_scene(scene(text + running))
+    entry = bj.catalogue.catalogue_entry("6205/C3")
+    bore, outside = entry.bore, entry.outside_diameter
+    limits = bj.fits.SizeLimits(
+        bj.fits.ball_clearance("C3", bore),
+        bj.fits.limits("k5", bore),
+        bj.fits.bore_limits(bore),
+        bj.fits.limits("H7", outside),
+        bj.fits.outside_limits(outside),
+    )
+    bearing = bj.load_bearing("6205/C3")
+    given = bj.Mounting(bore, outside, 0.08, 0.0, 0.0)
+    seats = bj.fits.mounting_at(
+        with_bearing_dimensions(given, bearing), "middle", *limits
+    )
+    bearing = bj.fits.with_radial_clearance(bearing, seats.radial_clearance)
+    kelvin = dict(reference=293.15, elements=293.15, outer_ring=293.15)
+    kelvin |= dict(inner_ring=363.15, shaft=343.15, housing=333.15)
+    speed = bj.Speed(30000 * np.pi / 30)
+    own = bj.Installed(
+        bj.BearingElement(bearing),
+        None,
+        seats,
+        bj.FitConditions(**kelvin, speed=speed.inner),
+        limits,
+        entry.limiting_speed,
+        entry.reference_speed,
+    )
+    assert len(read.warnings) > 2
+    assert own.warnings(speed) == list(read.warnings)
+    told, mine = (
+        fit_as_dict(one) for one in (read, dataclasses.replace(read, installed=own))
+    )
+    assert told.pop("place") == mine.pop("place") == "middle"
+    flat: Any = [jax.tree.leaves(one) for one in (told, mine)]
+    assert len(flat[0]) == 23
+    np.testing.assert_allclose(*flat, rtol=1e-9)
+
+
 def test_fit_of_catalogue_bearing(scene):
     text = FIT.replace('bore = "25 mm"\noutside_diameter = "52 mm"\n', "").replace(
         'clearance = "CN"\n', ""
     )
     path = scene('[bearing]\ndesignation = "6205/C3"\n' + text)
     read = bj.read_scene(path, ["fit.at=tightest"])
-    assert float(read.fits.mounting.bore) == 0.025
-    assert float(read.fits.mounting.outside_diameter) == pytest.approx(0.052)
-    assert read.fits.limits["clearance"] == pytest.approx((13e-6, 28e-6))  # ISO 5753-1
+    assert float(read.installed.mounting.bore) == 0.025
+    assert float(read.installed.mounting.outside_diameter) == pytest.approx(0.052)
+    # ISO 5753-1
+    assert read.installed.limits.clearance == pytest.approx((13e-6, 28e-6))
     assert clearance(read.element) == pytest.approx(13 * MICRON)
     assert read.inputs["fit"]["clearance"] == "C3"
     other = bj.read_scene(path, ["bearing.radial_internal_clearance=9 um"])
-    assert other.fits.limits["clearance"] == pytest.approx((9e-6, 9e-6))
-    assert bj.read_scene(path, ["fit.clearance=C4"]).fits.limits[
-        "clearance"
-    ] == pytest.approx((23e-6, 41e-6))
+    assert other.installed.limits.clearance == pytest.approx((9e-6, 9e-6))
+    wide = bj.read_scene(path, ["fit.clearance=C4"]).installed
+    assert wide.limits.clearance == pytest.approx((23e-6, 41e-6))
     motor = scene(path.read_text().replace("6205/C3", "6205/CM"))
     read = bj.read_scene(motor)
-    assert read.fits.limits["clearance"] == bj.fits.ball_clearance("CM", 0.025)
+    assert read.installed.limits.clearance == bj.fits.ball_clearance("CM", 0.025)
     # What is echoed can be read again.
     assert bj.read_scene(motor, [f"fit.clearance={read.inputs['fit']['clearance']}"])
     with pytest.raises(SceneError, match="`fit.housing_diameter`: is missing"):
@@ -131,7 +177,7 @@ def test_fit_of_catalogue_bearing(scene):
 @pytest.mark.parametrize("place, left", [("tightest", 0), ("loosest", 1)])
 def test_ends_of_the_tolerances(scene, place, left):
     read = bj.read_scene(scene(BEARING + FIT), [f"fit.at={place}"])
-    found = read.fits.facts
+    found = read.fit_states
     mounted = clearance(read.running())
     assert mounted == pytest.approx(found.mounted_range.worst[left], rel=1e-9)
 
@@ -156,7 +202,7 @@ def test_given_numbers(scene):
             "operating.outer_speed=20 rad/s",
         ],
     )
-    seats, warm = read.fits.mounting, read.fits.conditions
+    seats, warm = read.installed.mounting, read.installed.conditions
     assert float(seats.shaft_interference) == pytest.approx(12 * MICRON)
     assert float(seats.housing_interference) == pytest.approx(20 * MICRON)
     assert float(seats.shaft_bore) == 0.010
@@ -170,7 +216,7 @@ def test_given_numbers(scene):
     assert float(warm.shaft) == 333.15 and float(warm.reference) == 298.15
     assert float(warm.inner_ring) == float(warm.housing) == 298.15
     assert float(warm.speed) == 100.0 and float(warm.outer_speed) == 20.0
-    assert read.fits.facts.free == 15e-6
+    assert read.fit_states.free == 15e-6
 
 
 TAPERED = """
@@ -197,7 +243,7 @@ def test_fit_rejects_housing_in_another_unit(scene):
 def test_fit_drive_up_of_tapered_bore(scene):
     text = TAPERED.format("22220 EK", 'drive_up = "0.6 mm"')
     read = bj.read_scene(scene(text))
-    facts = read.fits.facts
+    facts = read.fit_states
     assert read.inputs["fit"]["bore_taper"] == "1:12"
     interference = float(facts.mounted.shaft_interference)
     assert interference == pytest.approx(0.6e-3 / 12, rel=1e-12)
@@ -206,18 +252,18 @@ def test_fit_drive_up_of_tapered_bore(scene):
     share = (0.1 + 0.046 / 24) / raceway
     taken = facts.free - float(facts.mounted.radial_clearance)
     assert taken == pytest.approx(share * interference, rel=1e-9)
-    told = fit_as_dict(read.fits)
+    told = fit_as_dict(read)
     assert told["drive_up"] == pytest.approx(0.6e-3)
     assert told["bore_taper"] == pytest.approx(1 / 12)
-    words = "\n".join(str(part) for part in fit_report(read.fits))
+    words = "\n".join(str(part) for part in fit_report(read))
     assert "1:12: driven up by 0.6 mm, an interference of 50 µm" in words
     # And what takes 45 µm.
     wanted = TAPERED.format("24120 CCK30", 'clearance_reduction = "45 um"')
     other = bj.read_scene(scene(wanted))
-    facts = other.fits.facts
+    facts = other.fit_states
     taken = facts.free - float(facts.mounted.radial_clearance)
     assert taken == pytest.approx(45e-6, rel=1e-9)
-    assert float(other.fits.mounting.bore_taper) == pytest.approx(1 / 30)
+    assert float(other.installed.mounting.bore_taper) == pytest.approx(1 / 30)
 
 
 def test_classes_of_a_tapered_bore_without_a_designation(scene):
@@ -230,12 +276,12 @@ def test_classes_of_a_tapered_bore_without_a_designation(scene):
     sizes = 'bore = "100 mm"\noutside_diameter = "180 mm"\nclearance = "C3"\n'
     seat = f'{sizes}bore_taper = "1:12"\ndrive_up = "0.6 mm"'
     text = TAPERED.format("22220", seat).replace('designation = "22220"', keys)
-    limits = bj.read_scene(scene(text)).fits.limits["clearance"]
+    limits = bj.read_scene(scene(text)).installed.limits.clearance
     np.testing.assert_allclose(np.array(limits) / MICRON, [110, 140])
     # Cylindrical: 100 to 135 µm.
     for line in ('bore_taper = "1:12"', 'drive_up = "0.6 mm"'):
         text = text.replace(line, "" if "taper" in line else 'shaft = "m5"')
-    limits = bj.read_scene(scene(text)).fits.limits["clearance"]
+    limits = bj.read_scene(scene(text)).installed.limits.clearance
     np.testing.assert_allclose(np.array(limits) / MICRON, [100, 135])
 
 
@@ -246,7 +292,7 @@ def test_the_drive_up_varies_and_is_sought(scene):
     table = read_cases(scene(text + grid))
     row: Any = rows_of(table.design_groups[0].element.bearing)[0].bearing
     left = row.radial_internal_clearance
-    seats = table.scene.fits.mounting
+    seats = table.scene.installed.mounting
     inner = float(raceway_diameters(rows_of(bj.load_bearing("1205 EK"))[0].bearing)[0])
     share = (float(seats.bore) + 0.5 * 0.015 / 12) / inner
     assert left[0] - left[1] == pytest.approx(0.1e-3 / 12 * share, rel=1e-6)
@@ -334,7 +380,7 @@ def test_drive_up_beside_the_table_of_a_maker():
 def test_hybrid_balls_expand_less(scene):
     text = BEARING.replace("n_balls", 'material = "silicon_nitride"\nn_balls')
     text = text.replace("n_balls", 'ring_material = "steel"\nn_balls', 1) + FIT
-    seats = bj.read_scene(scene(text)).fits.mounting
+    seats = bj.read_scene(scene(text)).installed.mounting
     assert float(seats.elements.expansion) == 3.2e-6
     assert float(seats.inner_ring.expansion) == 12e-6
     assert float(seats.elements.material.elastic_modulus) == 310e9
@@ -435,7 +481,7 @@ def test_cases_vary_fits_temperatures_and_speed(scene):
     fast = bj.read_scene(
         scene(BEARING + FIT), [*settings, "operating.inner_speed=20000 rpm"]
     )
-    facts = fast.fits.facts
+    facts = fast.fit_states
     assert told[7] == pytest.approx(float(facts.operating.radial_clearance), rel=1e-12)
     # Without fits speeds make no designs, and there is no other clearance.
     plain = BEARING + grid.replace(
@@ -488,8 +534,9 @@ def test_a_design_on_seats_at_several_speeds(scene):
     text += '"fit.shaft_interference" = { from = "2 um", to = "20 um" }\n'
     task = read_optimisation(scene(text))
     assert task.cases.count == 3 and task.cases.design is None
-    best: Any = scene_of_design(task, task.scene.installed).fits
-    assert float(best.conditions.speed) == pytest.approx(-40000 * np.pi / 30)
+    best: Any = scene_of_design(task, task.scene.installed)
+    speed = best.installed.conditions.speed
+    assert float(speed) == pytest.approx(-40000 * np.pi / 30)
     with pytest.raises(SceneError, match="temperature.shaft vary the design"):
         warm = text.replace(speeds, f'{speeds}, "temperature.shaft" = ["40 °C"]')
         read_optimisation(scene(warm))
@@ -564,7 +611,7 @@ def test_fit_key_optimised_may_be_absent(scene):
     task = read_optimisation(scene(f'{text}{shaft}{housing} "-2 um" }}\n'))
     assert [v.start for v in task.variables] == pytest.approx([12e-6, -2e-6])
     assert task.cases.count == 2
-    mounting = task.scene.fits.mounting
+    mounting = task.scene.installed.mounting
     assert float(mounting.housing_interference) == -2e-6
     # One of a tolerance class begins where the class has it.
     task = read_optimisation(
@@ -692,7 +739,7 @@ def test_rotor_report_and_warnings_of_fits(scene):
     assert found["bearing"] == "own" and found["stations"] == [0, 1]
     assert found["speed"] == pytest.approx(1000.0 * np.pi)
     (mount, _), *_ = task.seats
-    expected = fit_as_dict(mount.fits)
+    expected = fit_as_dict(mount.scene)
     assert found | expected == found
     text = str(rotor_report(run))
     assert "own at stations 0, 1, its inner ring turning at 30000 rpm" in text

@@ -11,13 +11,9 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.cases.sweep_table import columns
-from bearingjax.studies.bearing.preload_of_set import (
-    PreloadOfSet,
-    preload_of_set,
-    preload_report,
-    preload_warnings,
-    range_warnings,
-)
+from bearingjax.statics.preload import SetPreload
+from bearingjax.statics.service_warning import preload_range_warnings, preload_warnings
+from bearingjax.studies.bearing.fit_report import preload_report
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.cases.sweep_run import run_cases, set_warnings, sweep_report
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
@@ -66,7 +62,7 @@ def scene(tmp_path):
 def left(read, at):
     """What `remaining_preload` says of the set ground by hand and put on its seats."""
     ground = bj.preload(read.element, 200.0)
-    seats = at.fits.mounting, at.fits.conditions
+    seats = at.installed.mounting, at.installed.conditions
     return float(bj.statics.remaining_preload(bj.Installed(ground, None, *seats).at()))
 
 
@@ -88,6 +84,10 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     assert ends[0] < found["operating"] < ends[1]
     told = rf"(?m)^operating  +{found['operating']:.4g} N  "
     assert re.search(told, done.out)
+    # So does Python, of the bearing as drawn and its limits.
+    own = read.installed.set_preload(read.speed)
+    assert own.operating == pytest.approx(found["operating"], rel=1e-8)
+    np.testing.assert_allclose(own.mounted_range, found["worst"]["mounted"], rtol=1e-8)
     # A sweep and a life of one design tell it as well, and warn of the same.
     cases = tmp_path / "cases.toml"
     one = (
@@ -105,8 +105,7 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     # With a smaller angle the tightest fit leaves none: that end is not possible.
     shallow = ["bearing.contact_angle=14 deg", "fit.shaft=k5"]
     steep = bj.read_scene(scene, shallow)
-    ground = bj.preload(steep.element, 200.0)
-    ends = preload_of_set(steep.fits, ground, None).operating_range
+    ends = steep.installed.set_preload().operating_range
     assert ends[0] > 0.0 and np.isnan(ends[1])
     # (Its first warning is of the loosest fit on the shaft.)
     # A shaft of 45 °C in a cold housing: O arrangement, its rows come loose axially,
@@ -114,7 +113,7 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     shorter = bj.read_scene(scene, ["set.spacing=16 mm"])
     assert left(shorter, shorter) > 1.05 * found["operating"]
     assert numbers["warnings"][1:] == preload_warnings(
-        PreloadOfSet(
+        SetPreload(
             found["ground"],
             found["mounted"],
             found["operating"],
@@ -166,7 +165,7 @@ def test_read_optimisation_preload_force_variable(scene):
 
 def test_preload_and_range_warnings():
     def told(*numbers):
-        return preload_warnings(PreloadOfSet(*numbers))
+        return preload_warnings(SetPreload(*numbers))
 
     assert told(200.0, 250.0, 300.0, None, None) == []
     assert told(200.0, 250.0, 300.0, (50.0, 400.0), (40.0, 500.0)) == []
@@ -178,11 +177,10 @@ def test_preload_and_range_warnings():
     assert "none left in operation (0 N to 60 N over the tolerances)" in text
     (text,) = told(200.0, 250.0, 300.0, (50.0, 400.0), (0.0, 500.0))
     assert "at the loosest sizes" in text
-    assert range_warnings(200.0, 101.0, 399.0) == []
-    assert (
-        "200 N as ground are 150 N to 401 N" in range_warnings(200.0, 150.0, 401.0)[0]
-    )
-    assert "has none left" in range_warnings(200.0, 0.0, 300.0)[0]
+    assert preload_range_warnings(200.0, 101.0, 399.0) == []
+    (text,) = preload_range_warnings(200.0, 150.0, 401.0)
+    assert "200 N as ground are 150 N to 401 N" in text
+    assert "has none left" in preload_range_warnings(200.0, 0.0, 300.0)[0]
     # Pressed together by nothing, or not to be had.
     assert told(0.0, 0.0, 0.0, None, None) == []
     nan = float("nan")
@@ -192,5 +190,5 @@ def test_preload_and_range_warnings():
     )
     ends = (50.0, nan), (40.0, nan)
     grid: Any
-    (grid,) = preload_report(PreloadOfSet(200.0, 250.0, 300.0, *ends))
+    (grid,) = preload_report(SetPreload(200.0, 250.0, 300.0, *ends))
     assert grid.rows()[-1] == ("operating", "300 N", "40 N to not possible")

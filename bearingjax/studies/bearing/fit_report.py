@@ -1,12 +1,15 @@
-"""Fits of a scene as text, and as numbers in SI."""
+"""Fits of a scene, and the preload of its set on them, as text and numbers in SI."""
 
 from typing import Any
 
 import numpy as np
 
 from ...design import TaperedRollerBearing, rows_of
+from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
-from .fits import Fits
+from ...statics.preload import SetPreload
+from ...statics.service_warning import shown_preload
+from .read_scene import Scene
 
 ACROSS_TAPERS = "normal to the outer raceway"
 """Direction in which the clearance of a tapered roller bearing is specified."""
@@ -22,23 +25,31 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
     return float(np.cos(angle))
 
 
-def fit_report(fits: Fits) -> list[Part]:
-    """Return the report of fits: radial clearance from free to operation, and seats.
+def fit_report(scene: Scene) -> list[Part]:
+    """Return the report of fits: radial clearance from free to operation, and seats;
+    empty for a scene without fits.
 
     Args:
-        fits: From `read_fits`.
+        scene: The scene.
     """
-    facts = fits.facts
-    shaft, housing = (name or "as given" for name in fits.names)
-    if float(fits.mounting.bore_taper):
-        shaft = "tapered"
+    found, notes, seats = scene.fit_states, scene.fits, scene.installed.mounting
+    if found is None or notes is None or seats is None:
+        return []
+    shaft, housing = (name or "as given" for name in notes.classes)
+    taper, driven = float(seats.bore_taper), []
+    if taper:
+        shaft, travel = "tapered", float(seats.drive_up)
+        driven = [
+            f"tapered seat 1:{1.0 / taper:.4g}: driven up by {1e3 * travel:.4g} mm, an"
+            f" interference of {_micron(taper * travel)} µm"
+        ]
     states = {
-        "free": facts.free,
-        "mounted": facts.mounted.radial_clearance,
-        "operating": facts.operating.radial_clearance,
+        "free": found.free,
+        "mounted": found.mounted.radial_clearance,
+        "operating": found.operating.radial_clearance,
     }
-    ranges = [None, facts.mounted_range, facts.operating_range]
-    row = rows_of(fits.bearing)[0].bearing
+    ranges = [None, found.mounted_range, found.operating_range]
+    row = rows_of(scene.element.bearing)[0].bearing
     columns = [Column("", list(states)), _microns("nominal", list(states.values()))]
     if isinstance(row, TaperedRollerBearing):
         across = [float(c) * outer_cosine(row) for c in states.values()]
@@ -48,23 +59,12 @@ def fit_report(fits: Fits) -> list[Part]:
         columns.append(Column(kind, ends, "m"))
     return [
         f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
-        f" {fits.place.replace('_', ' ')}",
-        *_driven(fits),
+        f" {notes.place.replace('_', ' ')}",
+        *driven,
         Grid(columns, "radial clearance"),
-        _seats(facts),
+        _seats(found),
         "hoop stress of the inner ring at its bore, operating"
-        f" {1e-6 * float(facts.operating.ring_stress):.4g} MPa",
-    ]
-
-
-def _driven(fits: Fits) -> list[Part]:
-    """Return what driving up a tapered seat does, if there is one."""
-    taper, travel = float(fits.mounting.bore_taper), float(fits.mounting.drive_up)
-    if not taper:
-        return []
-    return [
-        f"tapered seat 1:{1.0 / taper:.4g}: driven up by {1e3 * travel:.4g} mm, an"
-        f" interference of {_micron(taper * travel)} µm"
+        f" {1e-6 * float(found.operating.ring_stress):.4g} MPa",
     ]
 
 
@@ -80,29 +80,29 @@ def _microns(name, values):
     return Column(name, [round(float(v), 8) for v in values], "m", ".4g")
 
 
-def _seats(facts) -> Grid:
+def _seats(found) -> Grid:
     """Tabulate interference and pressure of both seats."""
 
     def both(state, what):
         return [getattr(state, f"{seat}_{what}") for seat in seats]
 
     seats = "shaft", "housing"
-    pressure = both(facts.operating, "pressure")
+    pressure = both(found.operating, "pressure")
     return Grid(
         [
             Column("", seats),
-            _microns("interference mounted", both(facts.mounted, "interference")),
-            _microns("operating", both(facts.operating, "interference")),
+            _microns("interference mounted", both(found.mounted, "interference")),
+            _microns("operating", both(found.operating, "interference")),
             Column("pressure operating", pressure, "Pa", ".4g"),
         ]
     )
 
 
-def fit_as_dict(fits: Fits) -> dict[str, Any]:
-    """Return the fits of a scene as plain numbers, in SI.
+def fit_as_dict(scene: Scene) -> dict[str, Any]:
+    """Return the fits of a scene as plain numbers, in SI; empty without fits.
 
     Args:
-        fits: From `read_fits`.
+        scene: The scene.
 
     Returns:
         place; bore_taper [1] and drive_up [m], 0 of cylindrical seats;
@@ -111,7 +111,9 @@ def fit_as_dict(fits: Fits) -> dict[str, Any]:
         shaft_interference, housing_interference [m], shaft_pressure, housing_pressure,
         ring_stress [Pa].
     """
-    facts = fits.facts
+    facts, notes, seats = scene.fit_states, scene.fits, scene.installed.mounting
+    if facts is None or notes is None or seats is None:
+        return {}
     states = {"mounted": facts.mounted, "operating": facts.operating}
     ranges = {"mounted": facts.mounted_range, "operating": facts.operating_range}
     kept = (
@@ -122,11 +124,11 @@ def fit_as_dict(fits: Fits) -> dict[str, Any]:
         "ring_stress",
     )
     return {
-        "place": fits.place,
-        "bore_taper": float(fits.mounting.bore_taper),
-        "drive_up": float(fits.mounting.drive_up),
+        "place": notes.place,
+        "bore_taper": float(seats.bore_taper),
+        "drive_up": float(seats.drive_up),
         "radial_clearance": {
-            "free": facts.free,
+            "free": float(facts.free),
             **{k: float(state.radial_clearance) for k, state in states.items()},
         },
         **{
@@ -141,3 +143,44 @@ def fit_as_dict(fits: Fits) -> dict[str, Any]:
             for k, state in states.items()
         },
     }
+
+
+def preload_as_dict(found: SetPreload) -> dict[str, Any]:
+    """Return the preload of a set as plain numbers [N]; impossible values are null.
+
+    Args:
+        found: From `Installed.set_preload`.
+
+    Returns:
+        ground, mounted, operating; with tolerances also worst: mounted, operating,
+        each at the loosest and the tightest sizes.
+    """
+    numbers: dict[str, Any] = {
+        name: getattr(found, name) for name in ("ground", "mounted", "operating")
+    }
+    ranges = {"mounted": found.mounted_range, "operating": found.operating_range}
+    if worst := {k: ends for k, ends in ranges.items() if ends}:
+        numbers["worst"] = worst
+    return to_json(numbers)
+
+
+def preload_report(found: SetPreload) -> list[Part]:
+    """Return the report of the preload of a set.
+
+    Args:
+        found: From `Installed.set_preload`.
+    """
+    states = {
+        "ground": (found.ground, None),
+        "mounted": (found.mounted, found.mounted_range),
+        "operating": (found.operating, found.operating_range),
+    }
+    columns = [
+        Column("", list(states)),
+        Column("nominal", [shown_preload(force) for force, _ in states.values()]),
+    ]
+    ends = [r for _, r in states.values()]
+    if any(ends):
+        texts = [" to ".join(map(shown_preload, r)) if r else "-" for r in ends]
+        columns.append(Column("over the tolerances", texts))
+    return [Grid(columns, "preload of the set, unloaded")]

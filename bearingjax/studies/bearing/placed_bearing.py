@@ -12,8 +12,6 @@ import numpy as np
 from ...catalogue.entry import catalogue_entry
 from ...files.table import Table, text_of
 from ...rotor import Shaft
-from .catalogue_keys import FromCatalogue
-from .fits import Fits
 from .read_bearing import EXTRA_KEYS
 from .read_design import BALLS
 from .read_scene import Scene, scene_of
@@ -112,8 +110,7 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
 def check_seat(
     name: str,
-    fits: Fits | None,
-    catalogue: FromCatalogue | None,
+    scene: Scene,
     shaft: Shaft,
     station: int,
 ) -> None:
@@ -121,23 +118,23 @@ def check_seat(
 
     Args:
         name: Name of the bearing.
-        fits, catalogue: As in `Scene`.
+        scene: The bearing.
         shaft: The shaft.
         station: Its station with the bearing.
     """
     segments = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
     diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
     there = diameters[:, segments].T
-    if fits is not None:
-        seat = fits.mounting
+    seat = scene.installed.mounting
+    if seat is not None:
         wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
         has = (
             f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
             f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
         )
         sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
-    elif catalogue is not None:
-        entry = catalogue.entry
+    elif scene.catalogue is not None:
+        entry = scene.catalogue.entry
         wanted, there = np.array([entry.bore]), there[:, :1]
         has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
         sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))

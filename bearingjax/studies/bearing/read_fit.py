@@ -1,7 +1,7 @@
 """The [fit] and [temperature] tables of a scene: seats of a bearing, temperatures."""
 
 import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 
@@ -27,6 +27,7 @@ from ...fits import (
     FitConditions,
     Limits,
     Mounting,
+    SizeLimits,
     WarmMaterial,
     bore_limits,
     limits,
@@ -42,7 +43,6 @@ from ...fits.fit_limits import CLEARANCE_PARTS, MOTOR_CLASS
 from ...fits.fits import PARTS, smoothing
 from ...fits.iso286 import limit_classes
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
-from .fits import Fits
 
 _ZERO = 273.15
 _REFERENCE = _ZERO + 20.0
@@ -257,13 +257,29 @@ class TemperatureKeys(Keys):
         return FitConditions(**warm, **speeds)
 
 
+class FitNotes(NamedTuple):
+    """What a scene says of its seats, besides their numbers.
+
+    Attributes:
+        place: Position of the sizes of the solve within their tolerances, one of
+            `PLACES`.
+        classes: Tolerance classes of shaft and housing; empty for numbers.
+        unknown: Parts of the bearing of unknown thermal expansion, at reference
+            temperature, with the key of their material in [bearing].
+    """
+
+    place: str
+    classes: tuple[str, str]
+    unknown: dict[str, str]
+
+
 def read_fits(
     parent: Table,
     own: Table,
     bearing: AbstractBearing | BearingSet,
     speed: Speed | None,
     catalogue: FromCatalogue | None = None,
-) -> tuple[Any, Fits | None]:
+) -> tuple[Any, dict[str, Any], FitNotes | None]:
     """Read the fits of a scene; return them and the bearing with unmounted clearance.
 
     Args:
@@ -276,8 +292,9 @@ def read_fits(
             dimensions and the clearance class.
 
     Returns:
-        The bearing, with the clearance of the clearance class if there is one, and its
-        fits; `None` without [fit].
+        The bearing, with the clearance of the clearance class if there is one; the
+        `mounting`, `conditions` and `limits` of its `Installed`, and what else is said
+        of them; nothing and `None` without [fit].
 
     Raises:
         SceneError: For what is missing, unknown or not allowed.
@@ -288,7 +305,7 @@ def read_fits(
         if temperature.keys():
             problem = f"goes with a {fit}; without one nothing depends on it"
             raise parent.error("temperature", problem)
-        return bearing, None
+        return bearing, {}, None
     row = rows_of(bearing)[0].bearing
     if row.is_thrust:
         problem = "is for radial bearings; a thrust bearing has no play to be changed:"
@@ -302,8 +319,8 @@ def read_fits(
     sizes = _sizes(keys, catalogue)
     taper = _taper(keys, catalogue)
     given = _limits(keys, row, sizes)
-    given["clearance"] = _clearance(keys, own, sizes["bore"], catalogue, taper)
-    scatters = given["clearance"] is not None
+    clearance = _clearance(keys, own, sizes["bore"], catalogue, taper)
+    scatters = clearance is not None
     if place != "middle" and not (scatters or keys.shaft or keys.housing):
         problem = "goes with tolerance classes, or a class of clearance"
         raise table.error("at", f"{place!r} {problem}; here all sizes are given")
@@ -325,22 +342,23 @@ def read_fits(
             whole = jax.device_get(whole)
             seats["drive_up"] = needed_drive_up(whole, keys.clearance_reduction)
             whole = with_bearing_dimensions(Mounting(**seats), row)
-        if not scatters:
+        if clearance is None:
             free = float(radial_clearance(row))
-            given["clearance"] = Limits(free, free)
+            clearance = Limits(free, free)
+        limits = SizeLimits(clearance, **given)
         # In NumPy: JAX would compile every small operation.
         there = mounting_at(
-            jax.device_get(whole), place, **given, conditions=jax.device_get(conditions)
+            jax.device_get(whole), place, *limits, jax.device_get(conditions)
         )
         seats["shaft_interference"] = there.shaft_interference
         seats["housing_interference"] = there.housing_interference
         if scatters:
             bearing = _with_clearance(bearing, there.radial_clearance)
         mounting = Mounting(**seats)
-        names = keys.shaft or "", keys.housing or ""
-        fits = Fits(mounting, conditions, place, given, names, unknown, bearing)
-        mounted(bearing, fits.mounting, conditions)
-    return bearing, fits
+        mounted(bearing, mounting, conditions)
+    notes = FitNotes(place, (keys.shaft or "", keys.housing or ""), unknown)
+    parts = {"mounting": mounting, "conditions": conditions, "limits": limits}
+    return bearing, parts, notes
 
 
 def _with_clearance(bearing, clearance):
@@ -410,10 +428,10 @@ def _width(keys: FitKeys, bearing, catalogue, taper: float) -> dict[str, float]:
     return {key: _given_or_catalogue(keys, key, "width", catalogue)}
 
 
-def _limits(keys: FitKeys, row, sizes) -> dict[str, Any]:
+def _limits(keys: FitKeys, row, sizes) -> dict[str, Limits]:
     """Return the tolerance limits of the seats and rings."""
     exact = Limits(0.0, 0.0)
-    found: dict[str, Any] = {}
+    found: dict[str, Limits] = {}
     for seat, ring, of_ring, sign in (
         ("shaft", "bore", bore_limits, 1.0),
         ("housing", "outside_diameter", outside_limits, -1.0),
@@ -478,7 +496,7 @@ def no_expansion(table: Table, part: str, key: str) -> SceneError:
 
     Args:
         table: Table [fit].
-        part: As in `Fits.unknown`.
+        part: As in `FitNotes.unknown`.
         key: Dotted path of the key of its material.
     """
     problem = f"is missing: `{key}` has numbers, and no expansion"

@@ -1,6 +1,7 @@
 """Scenes: a bearing, its load and speeds, and the numerics of its solve."""
 
 import dataclasses
+import functools
 import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -19,18 +20,18 @@ from ...files.scene_file import (
 )
 from ...files.schema import read_keys
 from ...files.table import Table
+from ...fits import FitStates
 from ...life.life import LifeConditions
 from ...numerics.compiled.programs import call_stored
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE
+from ...statics.preload import SetPreload
 from .catalogue_keys import FromCatalogue
-from .fits import Fits, fit_warnings, install
 from .leftover_keys import leftover_warnings
 from .oil import Oil, read_oil
-from .preload_of_set import PreloadOfSet
 from .read_bearing import read_bearing, read_designation
 from .read_choices import KINEMATICS, read_choices
-from .read_fit import read_fits
+from .read_fit import FitNotes, read_fits
 from .read_life import lubrication_warnings, rating_warnings, read_life
 from .read_operating import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
 
@@ -41,10 +42,9 @@ class Scene:
 
     Attributes:
         name: Name of the file without its ending.
-        element: The bearing with its law and numerics, before preloading and
-            mounting.
-        preload_force: Preload force to which its rows are ground [N], or `None`.
-        fits: Seats and temperatures, or `None`: solved with the drawing dimensions.
+        installed: The bearing with its law and numerics, its preload, seats and
+            temperatures.
+        fits: What is said of its seats, or `None`: solved with the drawing dimensions.
         oil: Its lubricant, or `None`: no friction or films are reported.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring [N, N m].
         prescribed: Displacements given by freedom name [m, rad].
@@ -63,9 +63,8 @@ class Scene:
     """
 
     name: str
-    element: BearingElement[Any]
-    preload_force: float | None
-    fits: Fits | None
+    installed: Installed
+    fits: FitNotes | None
     oil: Oil | None
     load: tuple[float, ...]
     prescribed: dict[str, float]
@@ -78,7 +77,7 @@ class Scene:
     warnings: tuple[str, ...]
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
-    preload_of_set: PreloadOfSet | None = None
+    preload_of_set: SetPreload | None = None
 
     @property
     def moving_ring(self) -> str:
@@ -86,16 +85,27 @@ class Scene:
         return RINGS[1 - RINGS.index(self.fixed_ring)]
 
     @property
-    def installed(self) -> Installed:
-        """The bearing with its preload, seats and temperatures."""
-        return install(self.element, self.preload_force, self.fits, self.catalogue)
+    def element(self) -> BearingElement[Any]:
+        """The bearing with its law and numerics, before preloading and mounting."""
+        return self.installed.drawing
+
+    @property
+    def preload_force(self) -> float | None:
+        """Preload force to which its rows are ground [N], or `None`."""
+        force = self.installed.preload
+        return None if force is None else float(force)
+
+    @functools.cached_property
+    def fit_states(self) -> FitStates | None:
+        """Clearance and seats, drawing to operation; `None` without fits."""
+        return self.installed.fit_states()
 
     def ground(self) -> Installed:
         """Return the installed bearing with its rows ground to their preload.
 
         Fails: offsets are NaN where the preload was not reached.
         """
-        if self.preload_force is None:
+        if self.installed.preload is None:
             return self.installed
         return call_stored(_ground, self.installed)
 
@@ -235,7 +245,8 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     if "lubricant" in top:
         oil, assumed = read_oil(top.table("lubricant"))
         warned += assumed
-    bearing, fits = read_fits(top, top.table("bearing"), bearing, speed, catalogue)
+    own = top.table("bearing")
+    bearing, seats, fits = read_fits(top, own, bearing, speed, catalogue)
     element = read_element(bearing, top.table("contact"), operating.table, numerics)
     numerics.fill("tolerance", asked.tolerance or DEFAULT_TOLERANCE["float64"])
     points = 2 if bearing.is_ball else _points(top.table("output"), bearing)
@@ -245,14 +256,16 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
         raise numerics.error("kinematics", problem)
     operating.fill_free(bearing)
     life = read_life(top, bearing, speed, points)
-    if fits is not None:
-        fixed_to = "space" if life is None else life.load_fixed_to
-        warned += tuple(fit_warnings(fits, fixed_to))
+    speeds = "limiting_speed", "reference_speed"
+    if catalogue is not None:
+        seats |= {name: getattr(catalogue.entry, name) for name in speeds}
+    installed = Installed(element, preload, **seats)
+    fixed_to = "space" if life is None else life.load_fixed_to
+    warned += tuple(installed.seat_warnings(fixed_to))
     warned += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
     return Scene(
         name=name,
-        element=element,
-        preload_force=preload,
+        installed=installed,
         fits=fits,
         oil=oil,
         load=operating.loads,

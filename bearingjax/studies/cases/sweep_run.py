@@ -20,8 +20,8 @@ from ...numerics.units import display_unit, shown_count
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
 from ...statics.preload import is_opposed, row_preload_force
+from ...statics.service_warning import preload_range_warnings, preload_warnings
 from ..bearing.life_ratings import life_conditions
-from ..bearing.preload_of_set import preload_warnings, range_warnings
 from ..solve.run import with_set_preload
 from .read_cases import CaseTable, DesignGroup, turns_of
 
@@ -247,7 +247,7 @@ def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
     if ground is None:
         return []
     ends = float(np.nanmin(preload)), float(np.nanmax(preload))
-    return range_warnings(ground, *ends)
+    return preload_range_warnings(ground, *ends)
 
 
 def design_columns(table: CaseTable) -> dict[str, np.ndarray]:

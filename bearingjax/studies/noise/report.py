@@ -5,8 +5,8 @@ import numpy as np
 from ...noise import ring_modes
 from ...noise.level import LOWEST_LEVEL
 from ...noise.scatter import SOURCES
-from ...numerics.units import shown_count
-from ...report.report_model import Column, Grid, Report, load_text, rpm
+from ...numerics.units import rpm, shown_count
+from ...report.report_model import Column, Grid, Report, load_text
 from ..solve.report import bearing_text
 from .output import PERCENTILES, parts_of
 from .run import LARGEST_LINES, NoiseRun

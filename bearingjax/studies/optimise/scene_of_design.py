@@ -3,15 +3,13 @@
 import dataclasses
 from typing import Any
 
-import equinox as eqx
 import jax
 import numpy as np
 
 from ...design import rows_of
+from ...element import Speed
 from ...fits import Limits, radial_clearance
-from ...numerics.types import as_array
 from ...statics.installed import Installed
-from ..bearing.fits import Fits, fit_warnings
 from .read_optimise import Optimisation
 from .read_shaft_optimise import ShaftOptimisation
 
@@ -30,54 +28,42 @@ def scene_of_design(task: Optimisation | ShaftOptimisation, design: Any) -> Any:
     """
     if isinstance(task, ShaftOptimisation):
         return dataclasses.replace(task.scene, system=design.system)
-    force = None if design.preload is None else float(design.preload)
-    scene = dataclasses.replace(task.scene, element=design.drawing, preload_force=force)
+    scene = dataclasses.replace(task.scene, installed=_as_run(task, design))
     if scene.fits is None:
         return scene
-    fits = _fits(scene.fits, design, {v.name for v in task.variables})
-    fits = _turning(fits, task)
+    varied = {v.name for v in task.variables}
+    classes = [
+        "" if f"fit.{seat}_interference" in varied else name
+        for seat, name in zip(("shaft", "housing"), scene.fits.classes, strict=True)
+    ]
+    notes = scene.fits._replace(classes=tuple(classes))
     fixed_to = "space" if scene.life is None else scene.life.load_fixed_to
-    old = fit_warnings(scene.fits, fixed_to)
+    old = task.scene.installed.seat_warnings(fixed_to)
     kept = [text for text in scene.warnings if text not in old]
-    warned = (*kept, *fit_warnings(fits, fixed_to))
-    return dataclasses.replace(scene, fits=fits, warnings=warned)
+    warned = (*kept, *scene.installed.seat_warnings(fixed_to))
+    return dataclasses.replace(scene, fits=notes, warnings=warned)
 
 
-def _fits(fits: Fits, design: Installed, varied: set[str]) -> Fits:
-    """Return the fits of a design; optimised numbers have no tolerance."""
-    exact = Limits(0.0, 0.0)
-    limits, names = dict(fits.limits), list(fits.names)
-    mounting: Any = jax.device_get(design.mounting)
-    for k, (seat, ring) in enumerate(
-        (("shaft", "bore"), ("housing", "outside_diameter"))
-    ):
-        if f"fit.{seat}_interference" in varied:
-            own = float(getattr(mounting, f"{seat}_interference"))
-            # Sign as a deviation: a small housing is tight.
-            own = own if seat == "shaft" else -own
-            limits |= {seat: Limits(own, own), ring: exact}
-            names[k] = ""
+def _as_run(task: Optimisation, design: Installed) -> Installed:
+    """Return a design with its seats at the highest inner ring speed of the cases;
+    optimised numbers have no tolerance."""
+    limits, warm = design.limits, design.conditions
+    if limits is None or warm is None:
+        return design
+    varied = {v.name for v in task.variables}
+    exact, fits = Limits(0.0, 0.0), jax.device_get(design.mounting)
+    if "fit.shaft_interference" in varied:
+        own = fits.shaft_interference
+        limits = limits._replace(shaft=Limits(own, own), bore=exact)
+    if "fit.housing_interference" in varied:
+        # As a deviation: a small housing is tight.
+        own = -fits.housing_interference
+        limits = limits._replace(housing=Limits(own, own), outside_diameter=exact)
     if any(name.startswith("bearing.") for name in varied):
-        row = rows_of(design.drawing.bearing)[0].bearing
-        free = float(radial_clearance(row))
-        limits["clearance"] = Limits(free, free)
-    return dataclasses.replace(
-        fits,
-        mounting=design.mounting,
-        conditions=design.conditions,
-        limits=limits,
-        names=(names[0], names[1]),
-        bearing=design.drawing.bearing,
-    )
-
-
-def _turning(fits: Fits, task: Optimisation) -> Fits:
-    """Return the fits at the highest inner ring speed of the cases."""
-    speeds = task.cases.inner_speed
-    if speeds is None:
-        return fits
+        free = radial_clearance(rows_of(design.drawing.bearing)[0].bearing)
+        limits = limits._replace(clearance=Limits(free, free))
+    design = dataclasses.replace(design, limits=limits)
+    if (speeds := task.cases.inner_speed) is None:
+        return design
     fastest = np.asarray(speeds)[np.argmax(np.abs(speeds))]
-    conditions = eqx.tree_at(
-        lambda c: c.speed, fits.conditions, as_array(fastest, float)
-    )
-    return dataclasses.replace(fits, conditions=conditions)
+    return design.with_speed(Speed(fastest, warm.outer_speed))

@@ -1,11 +1,13 @@
 """The [[rotor.bearings]] and [bearings.NAME] tables of a scene: shaft supports."""
 
+import dataclasses
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...design import AbstractBallBearing
+from ...element import Speed
 from ...files.quantity import SceneError
 from ...files.scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
 from ...files.schema import Keys, scene_key
@@ -14,9 +16,6 @@ from ...files.table import Table, not_among
 from ...rotor import Housing, Shaft
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
-from ...statics.installed import Installed
-from ..bearing.catalogue_keys import FromCatalogue
-from ..bearing.fits import Fits, fit_warnings, fits_at_speed, install
 from ..bearing.placed_bearing import check_seat, echoed, read_machine_bearing
 from ..bearing.read_scene import Scene, scene_of
 from .scene import Mount
@@ -152,17 +151,6 @@ class MountKeys(Keys):
             raise self.table.error("bearing", problem)
 
 
-class _Bearing(NamedTuple):
-    """Bearing (`None`: springs) with its name, seats, the catalogue entry of its
-    designation, and its scene."""
-
-    name: str
-    installed: Installed | None
-    fits: Fits | None = None
-    catalogue: FromCatalogue | None = None
-    scene: Scene | None = None
-
-
 def read_mounts(
     top: Table, holds: tuple[MountKeys, ...], shaft: Shaft, speed: float, path: Path
 ) -> tuple[Mount, ...]:
@@ -189,7 +177,8 @@ def read_mounts(
     mounts = []
     for keys in holds:
         bearing = _bearing(keys, top, named, speed, path)
-        check_seat(bearing.name, bearing.fits, bearing.catalogue, shaft, keys.station)
+        if bearing is not None:
+            check_seat(bearing.name, bearing, shaft, keys.station)
         mounts.append(_mount(keys, bearing))
     for name in named:
         if name not in [keys.bearing for keys in holds]:
@@ -197,7 +186,7 @@ def read_mounts(
     return tuple(mounts)
 
 
-def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bearing:
+def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> Scene:
     """Read a bearing of [bearings.NAME]."""
     scene = read_machine_bearing(top, table, name, path, speed=speed)
     for text in scene.warnings:
@@ -205,19 +194,19 @@ def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> _Bear
     return _in_rotor(scene, speed)
 
 
-def _in_rotor(scene: Scene, speed: float) -> _Bearing:
-    """Return the bearing of a scene with its fits at the speed of the rotor."""
-    fits, taken = fits_at_speed(scene.fits, speed), scene.catalogue
-    running = install(scene.element, scene.preload_force, fits, taken)
-    return _Bearing(scene.name, running, fits, taken, scene)
+def _in_rotor(scene: Scene, speed: float) -> Scene:
+    """Return the scene of a bearing with its fits at the speed of the rotor."""
+    turning = scene.installed.with_speed(Speed(speed, 0.0))
+    return dataclasses.replace(scene, installed=turning)
 
 
 def _bearing(
-    keys: MountKeys, top: Table, named: dict[str, _Bearing], speed: float, path: Path
-) -> _Bearing:
+    keys: MountKeys, top: Table, named: dict[str, Scene], speed: float, path: Path
+) -> Scene | None:
+    """Return the scene of the bearing of a mount; `None` of springs."""
     table, tables, name = keys.table, top.table("bearings"), keys.bearing
     if name is None:
-        return _Bearing("springs", None)
+        return None
     if name in named:
         return named[name]
     place = bearing_place(name, path)
@@ -237,22 +226,19 @@ def _bearing(
     tables.fill(own, inputs)
     inside = Table(inputs, path.name, f"bearings.{own}")
     placed = read_machine_bearing(top, inside, scene.name, path, speed=speed)
-    found = _in_rotor(placed, speed)
-    if found.fits is not None:
-        for text in fit_warnings(found.fits):
-            warnings.warn(f"{scene.name}: {text}", stacklevel=2)
-    return found
+    turning = _in_rotor(placed, speed)
+    for text in turning.installed.seat_warnings():
+        warnings.warn(f"{scene.name}: {text}", stacklevel=2)
+    return turning
 
 
-def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:
-    if bearing.installed is not None:
-        _check_bearing(keys, bearing.installed.drawing.bearing)
+def _mount(keys: MountKeys, bearing: Scene | None) -> Mount:
+    if bearing is not None:
+        _check_bearing(keys, bearing.element.bearing)
     springs, housing = keys.stiffness, keys.housing
     return Mount(
         station=keys.station,
-        name=bearing.name,
-        installed=bearing.installed,
-        fits=bearing.fits,
+        name="springs" if bearing is None else bearing.name,
         preload=keys.preload,
         offset=keys.offset or 0.0,
         law=keys.law,
@@ -261,7 +247,7 @@ def _mount(keys: MountKeys, bearing: _Bearing) -> Mount:
         stiffness=() if springs is None else springs.diagonal,
         damping=keys.damping.diagonal,
         housing=None if housing is None else housing.housing,
-        scene=bearing.scene,
+        scene=bearing,
     )
 
 

@@ -204,10 +204,10 @@ def _fits(task: RotorScene) -> list[dict[str, Any]]:
             "bearing": mount.name,
             "stations": stations,
             "speed": task.speed,
-            **fit_as_dict(mount.fits),
+            **fit_as_dict(mount.scene),
         }
         for mount, stations in task.seats
-        if mount.fits is not None and mount.element is not None
+        if mount.scene is not None
     ]
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...numerics.units import shown_count
-from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
+from ...numerics.units import rpm, shown_count
+from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
 from ...rotor import STATION_FREEDOMS
 from ...rotor.nonlinear import BranchEnd
 from ..bearing.fit_report import fit_report
@@ -95,7 +95,7 @@ def _fits(task):
             f"{mount.name} at {where} {', '.join(map(str, stations))}, its inner ring"
             f" turning at {rpm(task.speed)}"
         )
-        lines = fit_report(mount.fits)
+        lines = fit_report(mount.scene)
         found[f"Fits of {mount.name}"] = [head, *lines]
     return found
 

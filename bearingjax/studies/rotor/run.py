@@ -16,7 +16,7 @@ from ...life.life import Life, life_of
 from ...life.life_warning import life_warnings
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array
-from ...report.report_model import rpm
+from ...numerics.units import rpm
 from ...rotor import (
     BearingSupport,
     CriticalSpeeds,
@@ -32,7 +32,6 @@ from ...rotor import (
     static_equilibrium_over,
 )
 from ...statics.load_result import solution_at
-from ..bearing.fits import fits_at_speed
 from ..bearing.life_ratings import life_conditions
 from .motion import RotorResponse, RotorTransient, respond, run_in_time
 from .scene import Mount, RotorScene
@@ -94,8 +93,6 @@ class RotorRun:
         return not self.failures
 
 
-_DRIFT = 0.5e-6
-"""Change of radial clearance over the speed above which a warning is given [m]."""
 _COARSE = 1e-3
 """Error of the stiffness over the speed above which a warning is given [1]."""
 _STAGES = {
@@ -294,29 +291,12 @@ def task_warnings(task: RotorScene) -> Iterator[str]:
         if mount.installed is not None:
             for text in mount.installed.speed_warnings(top):
                 yield f"{mount.name}: {text}"
-    yield from held_fits(task)
-
-
-def held_fits(task: RotorScene) -> Iterator[str]:
-    """Yield warnings of fits whose clearance changes notably over the speeds, which
-    the solves neglect.
-
-    Args:
-        task: From `read_rotor`.
-    """
     for mount, _ in task.seats:
-        left = {
-            speed: float(fits.facts.operating.radial_clearance)
-            for speed in (task.speed, *_ends(task))
-            if (fits := fits_at_speed(mount.fits, speed)) is not None
-        }
-        far = max(left, key=lambda speed: abs(left[speed] - left[task.speed]))
-        if abs(left[far] - left[task.speed]) > _DRIFT:
-            yield (
-                f"{mount.name}: all speeds are solved with the radial clearance at"
-                f" {rpm(task.speed)}, {1e6 * left[task.speed]:.4g} µm; at"
-                f" {rpm(far)} its fits leave {1e6 * left[far]:.4g} µm"
-            )
+        if mount.installed is not None:
+            for text in mount.installed.held_clearance_warnings(
+                task.speed, _ends(task)
+            ):
+                yield f"{mount.name}: {text}"
 
 
 def _ends(task: RotorScene) -> list[float]:

@@ -8,7 +8,6 @@ import numpy as np
 from ...element import BearingElement
 from ...rotor import AbstractDamping, AbstractPart, Housing, Shaft
 from ...statics.installed import Installed
-from ..bearing.fits import Fits
 from ..bearing.read_scene import Scene
 from .tasks import ResponseKeys, TransientKeys
 
@@ -20,9 +19,6 @@ class Mount:
     Attributes:
         station: Number of the station.
         name: Name of the bearing; "springs" without one.
-        installed: The bearing with its seats, or `None`: springs.
-        fits: Its seats, temperatures and the speed of the rotor, or `None`: drawing
-            dimensions.
         preload: Axial preload force of the bearing as mounted [N], or `None`.
         offset: Axial displacement of the inner ring as mounted [m].
         law: "fixed_angle", "moving_angle", "cubic", or `None` for the full model.
@@ -31,13 +27,12 @@ class Mount:
         stiffness: Stiffness of springs, in ux uy uz gx gy (5,) [N/m, N m].
         damping: Damping in ux uy uz gx gy (5,) [N s/m, N m s].
         housing: Housing of the support; `None`: ground.
-        scene: The bearing as a scene of its own, with its [life]; `None`: springs.
+        scene: The bearing as a scene of its own, with its [life], its seats at the
+            speed of the rotor; `None`: springs.
     """
 
     station: int
     name: str
-    installed: Installed | None
-    fits: Fits | None
     preload: float | None
     offset: float
     law: str | None
@@ -47,6 +42,11 @@ class Mount:
     damping: tuple[float, ...]
     housing: Housing | None
     scene: Scene | None = None
+
+    @property
+    def installed(self) -> Installed | None:
+        """The bearing with its preload and seats, or `None`: springs."""
+        return None if self.scene is None else self.scene.installed
 
     @property
     def element(self) -> BearingElement[Any] | None:
@@ -97,7 +97,7 @@ class RotorScene:
         """Each bearing with fits, by its first mount, and its stations."""
         found: dict[int, tuple[Mount, tuple[int, ...]]] = {}
         for mount in self.mounts:
-            if mount.fits is not None:
+            if mount.scene is not None and mount.scene.fits is not None:
                 first, stations = found.get(id(mount.element), (mount, ()))
                 found[id(mount.element)] = first, (*stations, mount.station)
         return tuple(found.values())

@@ -111,7 +111,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     numbers["friction_torque"] = bearing.friction_torque
     numbers["clearance"] = bearing.clearance
     if scene.fits is not None:
-        numbers["fit"] = fit_as_dict(scene.fits)
+        numbers["fit"] = fit_as_dict(scene)
     return numbers
 
 

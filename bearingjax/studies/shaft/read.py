@@ -461,8 +461,7 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
     for seat, scene in zip(made, alone.values(), strict=True):
         if scene is not None:
             index, station = whole.station(seat)
-            given = scene.fits, scene.catalogue, whole.beam(index), station
-            check_seat(seat.name, *given)
+            check_seat(seat.name, scene, whole.beam(index), station)
     heat, keys = read_heat(top, own, alone)
     return ShaftScene(
         name=path.stem,

@@ -80,13 +80,15 @@ def read_heat(
         return None, None
     keys = read_keys(HeatKeys, top.table("heat"))
     paths = [_path(own[name], scene) for name, scene in bearings.items()]
-    loose = [name for name, one in bearings.items() if one is not None and not one.fits]
+    loose = [
+        name for name, one in bearings.items() if one is not None and one.fits is None
+    ]
     if loose:
         text = "temperatures change the viscosity of the oil alone, neither clearance"
         text = f"{text} nor preload, without the seats of a `fit`"
         warnings.warn(f"{', '.join(loose)}: {text}", stacklevel=2)
     for name, one in bearings.items():
-        given = None if one is None or one.fits is None else one.fits.conditions
+        given = None if one is None else one.installed.conditions
         if given is not None and any(
             float(getattr(given, part)) != float(given.reference) for part in PARTS
         ):

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ...numerics.units import shown_count
-from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section, rpm
+from ...numerics.units import rpm, shown_count
+from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
 from ..bearing.life_report import life_number, life_section
 from ..bearing.oil import oil_report, series_words
 from ..solve.report import fits_section

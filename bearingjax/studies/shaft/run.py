@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...design import rows_of
+from ...element import Speed
 from ...files.quantity import SceneError
 from ...fits import radial_clearance
 from ...life.life import Life, life_of
@@ -37,7 +38,6 @@ from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving
 from ...statics.solution import Solution
 from ...statics.warning import sentences_of_cases
-from ..bearing.fits import fits_at_speed
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
 from ..bearing.solved import solved_warnings
@@ -75,11 +75,10 @@ class InPlace:
         springs and thrust bearings."""
         if self.scene is None:
             return None
-        bearing = self.scene.element.bearing
-        if self.scene.fits is None:
-            row = rows_of(bearing)[0].bearing
-            return None if row.is_thrust else float(radial_clearance(row))
-        return float(self.scene.fits.facts.operating.radial_clearance)
+        if (fits := self.scene.fit_states) is not None:
+            return float(fits.operating.radial_clearance)
+        row = rows_of(self.scene.element.bearing)[0].bearing
+        return None if row.is_thrust else float(radial_clearance(row))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -332,11 +331,11 @@ def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
         if own and "viscosity" not in scene.inputs.get("life", {}):
             viscosity = oil.lubricant.kinematic_viscosity(rings[k])
             life = dataclasses.replace(life, viscosity=viscosity)
-        fits, warm = scene.fits, jax.device_get(seat.installed.conditions)
-        if fits is not None and warm is not None:
-            fits = dataclasses.replace(fits, conditions=warm)
+        warm = dataclasses.replace(
+            scene.installed, conditions=jax.device_get(seat.installed.conditions)
+        )
         oil = dataclasses.replace(oil, temperature=float(rings[k]))
-        scenes.append(dataclasses.replace(scene, oil=oil, fits=fits))
+        scenes.append(dataclasses.replace(scene, oil=oil, installed=warm))
         lives.append(life)
     return dataclasses.replace(
         task, system=state.system, bearings=tuple(scenes), lives=tuple(lives)
@@ -364,7 +363,7 @@ def _in_place(
         scene = dataclasses.replace(
             scene,
             speed=None if system.inertia is None else speed,
-            fits=fits_at_speed(scene.fits, float(speed.inner)),
+            installed=scene.installed.with_speed(Speed(speed.inner, 0.0)),
         )
         try:
             life = jax.device_get(life_of(solution.element, solution, conditions))

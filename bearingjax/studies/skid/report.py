@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...lubrication import Regime
-from ...numerics.units import shown_count
+from ...numerics.units import rpm, shown_count
 from ...report.report_model import (
     DEGREES,
     NEWTONS,
@@ -12,7 +12,6 @@ from ...report.report_model import (
     Report,
     labelled_facts,
     load_text,
-    rpm,
 )
 from ..bearing.read_lubricant import TRACTIONS, describe_oil
 from ..solve.report import ball_row, by_ring, roller_row

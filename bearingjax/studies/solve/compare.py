@@ -109,9 +109,8 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
     if life is not None:
         numbers |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
         del numbers["damage_share"]
-    if scene.fits is not None:
-        left = scene.fits.facts.operating
-        numbers[OPERATING_CLEARANCE] = left.radial_clearance
+    if (fits := scene.fit_states) is not None:
+        numbers[OPERATING_CLEARANCE] = fits.operating.radial_clearance
     fixed, moving = f"_{scene.fixed_ring}_", f"_{scene.moving_ring}_"
     diagonal = {f"stiffness{moving}{name}{moving}{name}" for name in FREEDOMS}
     found = {}

@@ -6,10 +6,9 @@ from typing import Any
 from ...numerics.result import Result
 from ...report.json_output import run_json, to_json, write_numbers
 from ...statics.solution import BallSolution, failure_message
-from ..bearing.fit_report import fit_as_dict
+from ..bearing.fit_report import fit_as_dict, preload_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
-from ..bearing.preload_of_set import preload_as_dict
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
 
@@ -119,7 +118,7 @@ def fits_json(scene: Scene) -> dict[str, Any]:
     """
     if scene.fits is None:
         return {}
-    found = fit_as_dict(scene.fits)
+    found = fit_as_dict(scene)
     if scene.preload_of_set is not None:
         found["preload"] = preload_as_dict(scene.preload_of_set)
     return {"fit": found}

@@ -24,10 +24,14 @@ from ...numerics.units import shown_count
 from ...report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from ...statics.solution import BallSolution, Solution
 from ...statics.warning_sizes import ends_over
-from ..bearing.fit_report import ACROSS_TAPERS, fit_report, outer_cosine
+from ..bearing.fit_report import (
+    ACROSS_TAPERS,
+    fit_report,
+    outer_cosine,
+    preload_report,
+)
 from ..bearing.life_report import life_section
 from ..bearing.oil import oil_report
-from ..bearing.preload_of_set import preload_report
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
 from .operation_report import operation
@@ -114,9 +118,7 @@ def fits_section(scene: Scene) -> Section:
     Args:
         scene: The scene.
     """
-    if scene.fits is None:
-        return []
-    found = fit_report(scene.fits)
+    found = fit_report(scene)
     if scene.preload_of_set is not None:
         found += preload_report(scene.preload_of_set)
     return found

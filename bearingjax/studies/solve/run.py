@@ -6,8 +6,8 @@ from ...design.checks import of_class
 from ...numerics.compiled.programs import call_stored
 from ...numerics.types import as_array
 from ...statics.load import solve_load
+from ...statics.service_warning import preload_warnings
 from ...statics.solution import Solution
-from ..bearing.preload_of_set import preload_of_set, preload_warnings
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
 
@@ -64,8 +64,7 @@ def with_set_preload(scene: Scene) -> Scene:
     """
     if scene.fits is None:
         return scene
-    ground = scene.ground().drawing
-    found = preload_of_set(scene.fits, ground, scene.speed)
+    found = scene.ground().set_preload(scene.speed)
     if found is None:
         return scene
     warned = (*scene.warnings, *preload_warnings(found))
