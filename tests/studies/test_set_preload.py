@@ -85,7 +85,7 @@ def test_solve_command_reports_preload(run, scene, tmp_path):
     told = rf"(?m)^operating  +{found['operating']:.4g} N  "
     assert re.search(told, done.out)
     # So does Python, of the bearing as drawn and its limits.
-    own = read.installed.set_preload(read.speed)
+    own: Any = read.installed.set_preload(read.speed)
     assert own.operating == pytest.approx(found["operating"], rel=1e-8)
     np.testing.assert_allclose(own.mounted_range, found["worst"]["mounted"], rtol=1e-8)
     # A sweep and a life of one design tell it as well, and warn of the same.
