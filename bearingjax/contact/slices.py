@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.quadrature import ContactMapped
+from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
@@ -19,6 +20,12 @@ _ENOUGH = 1e-13
 """Share of the approach by which the last step may still move."""
 
 _STEPS = 60
+
+WIDE = 0.2
+"""Half width of a contact over the roller radius above which a warning is given [1]."""
+
+FEW = 5
+"""Cells across or along a contact below which a warning is given."""
 
 
 class Slices(eqx.Module):
@@ -149,6 +156,11 @@ class Compared(eqx.Module):
         return int(np.argmax(pressure.max(axis=0)))
 
     @property
+    def peak_at_end(self) -> bool:
+        """Whether that cell is the first or the last one along the roller."""
+        return self.peak in (0, np.shape(self.solution.pressure)[1] - 1)
+
+    @property
     def edge_factor(self) -> float:
         """Largest pressure over that of the slices [1]."""
         return float(self.solution.peak_pressure / self.slices.peak_pressure)
@@ -157,3 +169,66 @@ class Compared(eqx.Module):
     def touches(self) -> bool:
         """Whether there is a contact."""
         return bool(np.asarray(self.solution.pressure).any())
+
+
+def compared_warnings(
+    contact: RollerContact, cases: list[Compared], narrowed: str | None = None
+) -> list[str]:
+    """Warnings about solved contacts of a roller, a sentence each.
+
+    Args:
+        contact: The roller and its raceway, concrete as all that is given.
+        cases: Its contacts; unsolved ones are skipped, except for a grid that is too
+            narrow.
+        narrowed: Name of the setting that made the grid narrower than the bodies;
+            `None`: it is as wide as they are.
+    """
+    found = []
+    solved = [case for case in cases if case.solution.converged]
+    for case in solved:
+        if not case.touches:
+            approach = 1e6 * float(case.solution.approach)
+            found.append(f"approach {approach:.4g} um: the bodies do not touch")
+    held = (int(Result.CONVERGED), int(Result.GRID_MISFIT))
+    narrow = [
+        c for c in cases if c.solution.truncated and int(c.solution.result) in held
+    ]
+    if narrow:
+        cure = "it is as wide as the roller or its raceway"
+        if narrowed is not None:
+            cure = f"give a larger `{narrowed}`, or none"
+        found.append(
+            f"{_loads(narrow)}: the contact reaches the sides of the grid; what it"
+            f" carries beyond them is missing; {cure}"
+        )
+    coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
+    if coarse:
+        found.append(
+            f"{_loads(coarse)}: the contact is less than {FEW} cells wide or long; its"
+            " pressures may be off by some hundredths: take more cells"
+        )
+    radius = 0.5 * float(contact.small_diameter)
+    wide = [case for case in solved if case.half_width.max() > WIDE * radius]
+    if wide:
+        found.append(
+            f"{_loads(wide)}: the contact is too wide beside the roller, more than"
+            f" {WIDE:g} of its radius to each side, for both bodies to be half-spaces"
+        )
+    sharp = [case for case in solved if case.touches and case.peak_at_end]
+    if sharp:
+        length = 2e6 * float(sharp[0].solution.grid.half_y[0])
+        found.append(
+            f"{_loads(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
+            " µm long; under a sharp end it grows without limit as cells shrink:"
+            " compare at fixed distances from the end"
+        )
+    return found
+
+
+def _is_coarse(solution):
+    across, along = (int(count) for count in solution.cells)
+    return across < FEW or along < min(FEW, solution.grid.shape[1])
+
+
+def _loads(cases):
+    return ", ".join(f"{float(case.solution.load):.5g}" for case in cases) + " N"

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from ..design import AbstractBearing, BearingSet
+from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.bearing_set import pitch_radius
 from ..numerics.types import array_namespace
 from ..statics.warning_kinds import KINDS
@@ -57,6 +57,45 @@ class LifeKind(NamedTuple):
         """Return the sentence about a size; `where` is "" for many cases."""
         where = where or self.many(size)
         return self.text.format(size=self.shown(size), where=where)
+
+
+USUAL_RATINGS = {
+    "dynamic_capacity": 1.0,
+    "static_capacity": 1.0,
+    "fatigue_load_limit": 0.07,
+}
+"""Usual ratings over the load of `_usual_load`, averaged over all types [1]."""
+
+
+def given_rating_warnings(
+    bearing: AbstractBearing | BearingSet, given: Mapping[str, Any]
+) -> list[str]:
+    """Warnings about ratings given twentyfold above or below usual ones, a sentence
+    each.
+
+    Args:
+        bearing: The design, concrete.
+        given: Ratings by name, such as `vars(conditions)` of `LifeConditions` [N];
+            `None` of those that are not given.
+    """
+    usual = sum(_usual_load(row.bearing) for row in rows_of(bearing))
+    found = []
+    for name, share in USUAL_RATINGS.items():
+        value = given.get(name)
+        if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
+            found.append(
+                f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
+                f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
+            )
+    return found
+
+
+def _usual_load(row: Any) -> float:
+    """Estimate C and C0 [N]: 18 N per mm² of all balls, 40 N per mm² of rollers."""
+    if row.is_ball:
+        return 18e6 * row.n_elements * float(row.ball_diameter) ** 2
+    area = float(row.roller_diameter) * float(row.roller_length)
+    return 40e6 * row.n_elements * area
 
 
 def life_warnings(

@@ -13,15 +13,20 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..catalogue.entry import CatalogueEntry
 from ..design.checks import check, finite, is_traced, of_shape, real_numbers
 from ..design.checks import count as whole
 from ..design.material import Material
 from ..element.frame import FREEDOMS
+from ..fits import Mounting
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 
 STATION_FREEDOMS = FREEDOMS[:5]
 """Freedoms of a cross-section, and of every station."""
+
+SAME_SIZE = 1e-3
+"""Difference of diameters over the bore above which shafts count as different [1]."""
 
 Matrices = tuple[
     Float[Array, "*element 10 10"],
@@ -187,6 +192,37 @@ class Shaft(eqx.Module):
         nothing = jnp.zeros((5 * self.n_nodes,) * 2, dtype=length.dtype)
         rows, columns = place[:, :, None], place[:, None, :]
         return tuple(nothing.at[rows, columns].add(part) for part in elements)
+
+
+def seat_size_warnings(
+    shaft: Shaft, station: int, seat: Mounting | CatalogueEntry
+) -> list[str]:
+    """Warnings about a seat of other diameters than the shaft has there, a sentence
+    each.
+
+    Args:
+        shaft: The shaft.
+        station: Its station with the bearing; either segment there may fit.
+        seat: Seats of the bearing, whose bore and hollow shaft count, or its entry of
+            the catalogue, whose bore counts.
+    """
+    segments = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
+    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
+    there = diameters[:, segments].T
+    if isinstance(seat, Mounting):
+        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
+        has = (
+            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
+            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
+        )
+        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
+    else:
+        wanted, there = np.array([seat.bore]), there[:, :1]
+        has = f"{seat.designation} has a bore of {1e3 * seat.bore:.5g} mm"
+        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
+    if (np.abs(there - wanted) < SAME_SIZE * wanted[0]).all(axis=1).any():
+        return []
+    return [f"{has}; at station {station} the shaft has {sizes} mm"]
 
 
 def shear_coefficient(bore_ratio: Scalar, poisson_ratio: Scalar) -> Scalar:

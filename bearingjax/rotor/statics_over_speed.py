@@ -18,9 +18,13 @@ from ..design.checks import count as whole
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.units import rpm
 from .rotor import Rotor
 from .speed_support import SpeedSupport, chebyshev_analysis
 from .statics import StaticEquilibrium, checked_loads, equilibrium_at
+
+MOST_ERROR = 1e-3
+"""Error of the stiffness over the speed above which a warning is given [1]."""
 
 
 class StaticEquilibriumOver(eqx.Module):
@@ -43,6 +47,35 @@ class StaticEquilibriumOver(eqx.Module):
     stiffness: Float[Array, "place support 5 5"]
     error: Scalar
     result: Int[Array, ""]
+
+    @property
+    def top_speed(self) -> Scalar:
+        """Highest speed for which the springs hold [rad/s]."""
+        first: Any = self.rotor.supports[0]
+        return first.top_speed
+
+    def warnings(self) -> list[str]:
+        """Warnings about the springs of its rotor, a sentence each."""
+        if not float(self.error) > MOST_ERROR:
+            return []
+        return [
+            "the stiffness of the bearings over the speed is known to"
+            f" {100.0 * float(self.error):.2g} % between rest and"
+            f" {rpm(self.top_speed)}, in critical speeds and Campbell diagram"
+        ]
+
+    def critical_speed_warnings(self, speeds: Any) -> list[str]:
+        """Warnings about critical speeds beyond the top speed, a sentence each.
+
+        Args:
+            speeds: Critical speeds of its rotor [rad/s].
+        """
+        if not (np.asarray(speeds) > float(self.top_speed)).any():
+            return []
+        return [
+            f"above {rpm(self.top_speed)} critical speeds are those of the stiffness"
+            " that bearings have there"
+        ]
 
 
 def static_equilibrium_over(

@@ -20,6 +20,7 @@ from jaxtyping import Array, Float, Int
 from ..design.checks import check, in_range, is_traced, number, positive
 from ..element.inertia import Speed
 from ..fits import FitConditions
+from ..friction.reference_speed import heat_area
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
@@ -40,6 +41,21 @@ from .heat_balance import (
 from .seats import in_place, speed_of, with_preload_offsets
 from .state import SystemSolution
 from .system import ShaftSystem
+
+SEAT_FLOW = 16e3 / 50.0
+"""Heat flow that ISO 15312 takes from the seats of a radial bearing, over the area of
+the seats and the rise of temperature [W/(m² K)]."""
+
+
+def usual_conductance(bore: Any, outside_diameter: Any, width: Any) -> Any:
+    """Usual conductance of each ring of a radial bearing, for `ThermalPaths` [W/K].
+
+    Half of the heat flow at the reference of ISO 15312, over its rise of 50 K.
+
+    Args:
+        bore, outside_diameter, width: As in `heat_area` [m].
+    """
+    return 0.5 * SEAT_FLOW * heat_area(bore, outside_diameter, width)
 
 
 class ThermalPaths(eqx.Module):

@@ -19,6 +19,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..design import AbstractBearing
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from . import ball_motion, roller_motion
@@ -74,6 +75,19 @@ class SkidState(NamedTuple):
     cage_turn: Annotated[Scalar, unit("rad")]
     centre: Annotated[Float[Array, "ball z"], unit("m")]
     ring: Annotated[Float[Array, " unknown"], unit("m")]
+
+
+def rest_state(bearing: AbstractBearing) -> SkidState:
+    """Return the state of elements and cage at rest, each element in the middle of its
+    pocket, for loads that are tabulated: the `start` of `simulate`.
+
+    Args:
+        bearing: The bearing, one row.
+    """
+    count, spins = bearing.n_elements, 3 if bearing.is_ball else 1
+    zero, each = jnp.zeros(()), jnp.zeros(count)
+    nothing = jnp.zeros((count, 0)), jnp.zeros(0)
+    return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
 
 
 class Surroundings(eqx.Module):

@@ -3,12 +3,19 @@
 import json
 from typing import Any
 
+import equinox as eqx
+import jax
 import numpy as np
 import pytest
 
 import bearingjax as bj
 from bearingjax.life import ratings
-from bearingjax.studies.bearing.life_ratings import rating_origins, why_not_published
+from bearingjax.studies.bearing.life_ratings import (
+    life_conditions,
+    rating_origins,
+    why_not_published,
+)
+from bearingjax.studies.bearing.life_report import ratings_as_dict
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
@@ -43,6 +50,61 @@ def rated(scene) -> tuple[Any, ...]:
     counts = found.given | np.asarray(found.published)[:3]
     pairs = zip(NAMES, counts, strict=True)
     return tuple(float(getattr(found, name)) if yes else None for name, yes in pairs)
+
+
+def told(scene, rated) -> dict[str, Any]:
+    """Ratings as the JSON of `solve` and `life` has them."""
+    return ratings_as_dict(jax.device_get(rated), rating_origins(scene, rated))
+
+
+COMPILED = ("deep_groove_ball", "spherical_roller", "thrust_ball")
+
+
+def test_python_and_commands_rate_the_same(read):
+    """Both rate the same bearing, of 39 designations of all 13 types and one without
+    printed ratings; some are rated, the others would only compile more."""
+    entries = bj.catalogue_entries()
+    of_type = {entry.type: [] for entry in entries}
+    for entry in entries:
+        of_type[entry.type].append(entry)
+    chosen = [of[k] for of in of_type.values() for k in (0, len(of) // 2, -1)]
+    assert len(chosen) >= 39
+    for entry in (*chosen, bj.catalogue_entry("7308 C")):
+        scene = read(f'designation = "{entry.designation}"', "[life]\n")
+        own: Any = bj.load_bearing(entry.designation)
+        assert eqx.tree_equal(own, scene.running().bearing), entry.designation
+        given = [getattr(life_conditions(scene), name) for name in NAMES]
+        assert given == 3 * [None]
+        printed = [getattr(entry, name) or 0.0 for name in NAMES]
+        carried = bj.design.rows_of(own)[0].bearing.published
+        held = 3 * [0.0] if carried is None else np.asarray(carried.ratings).tolist()
+        assert held == printed
+        if entry.type in COMPILED:
+            by_python, by_command = (
+                told(scene, ratings(one))
+                for one in (bj.BearingElement(own).bearing, scene.element.bearing)
+            )
+            assert by_python == by_command
+            for name, number in zip(NAMES, printed, strict=True):
+                assert (by_python[f"{name}_source"] == "published") == (number > 0.0)
+                assert number in (0.0, pytest.approx(by_python[name], rel=1e-12))
+
+
+@pytest.mark.slow
+def test_life_of_22220_E_from_python_and_from_the_command(read, run, tmp_path):
+    """One life, that of the published C, not that of the formulas (374 kN)."""
+    scene = read('designation = "22220 E"', "[life]\n")
+    out = tmp_path / "out.json"
+    assert run("solve", tmp_path / "scene.toml", "--json", out).status == 0
+    found = json.loads(out.read_text(encoding="utf-8"))
+    element = bj.BearingElement(bj.load_bearing("22220 E"))
+    solution = bj.solve_load(element, list(scene.load), points=scene.points)
+    life = bj.rating_life(element, solution)
+    assert found["dynamic_capacity"] == pytest.approx(425e3, rel=1e-12)
+    for name, number in told(scene, life.ratings).items():
+        assert found[name] == number
+    for name in ("basic_rating_life", "reference_rating_life"):
+        assert found[name] == pytest.approx(float(getattr(life, name)), rel=1e-6)
 
 
 def test_published_ratings_count_unless_given(read):

@@ -467,7 +467,8 @@ def test_run_rotor_warns_of_coarse_reduction():
     )
     (told,) = run_rotor(task).warnings
     assert (
-        "`rotor.response.reduction` = 0 changes the linear response at 500 Hz" in told
+        "`rotor.response.reduction`: a reduction to 0 modes changes the linear response"
+        " at 500 Hz" in told
     )
 
 

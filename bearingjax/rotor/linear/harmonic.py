@@ -1,8 +1,10 @@
 """Vibration of a linear rotor under harmonic loads: unbalance, base excitation."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 
 from ...design.checks import number
@@ -14,6 +16,9 @@ from ..rotor import Rotor
 from .modes import speed_list, to_complex
 from .reduction import craig_bampton
 from .response import UnbalanceResponse, steady
+
+MOST_REDUCTION_ERROR = 0.03
+"""Change of the linear response by a reduction above which it is warned of [1]."""
 
 
 def harmonic_response(
@@ -83,3 +88,31 @@ def reduction_error(
     exact = nodes(whole)
     change = nodes(whole.projected(craig_bampton(rotor, modes))) - exact
     return jnp.max(jnp.abs(change)) / jnp.max(jnp.abs(exact))
+
+
+def reduction_warnings(
+    rotor: Rotor,
+    loads: RotorLoads,
+    frequencies: Iterable[float],
+    speed: Any,
+    modes: int,
+) -> list[str]:
+    """Warnings about a reduction that changes the linear response, a sentence each.
+
+    Args:
+        rotor, loads, modes: As in `reduction_error`.
+        frequencies: Frequencies at which it is tried, until one is worth a warning
+            [rad/s].
+        speed: Speed of the rotor [rad/s]; `None`: that of the excitation.
+    """
+    for frequency in frequencies:
+        at = as_real(frequency)
+        turning = at if speed is None else as_real(speed)
+        error = float(reduction_error(rotor, loads, at, turning, modes))
+        if error > MOST_REDUCTION_ERROR:
+            return [
+                f"a reduction to {modes} modes changes the linear response at"
+                f" {float(frequency) / (2.0 * np.pi):.5g} Hz by {100.0 * error:.2g} %;"
+                " keep more modes"
+            ]
+    return []

@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ...catalogue.entry import catalogue_entry
 from ...files.table import Table, text_of
 from ...rotor import Shaft
+from ...rotor.shaft import seat_size_warnings
 from .read_bearing import EXTRA_KEYS
 from .read_design import BALLS
 from .read_scene import Scene, scene_of
@@ -20,8 +19,6 @@ _CONTROL = ("raceway_control", "friction_coefficient")
 """Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""
 _AT_REST = "constant_angle"
 """Kinematics that know no speed."""
-_SAME = 1e-3
-"""Difference of diameters over the bore above which shafts count as different [1]."""
 _COMMON = ("life", "lubricant")
 """Tables of the machine that a bearing may have for itself."""
 
@@ -108,12 +105,7 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     return {**inputs["bearing"], **tables, **chosen}
 
 
-def check_seat(
-    name: str,
-    scene: Scene,
-    shaft: Shaft,
-    station: int,
-) -> None:
+def check_seat(name: str, scene: Scene, shaft: Shaft, station: int) -> None:
     """Warn if the shaft of a bearing or its fit differs from that at its station.
 
     Args:
@@ -122,30 +114,11 @@ def check_seat(
         shaft: The shaft.
         station: Its station with the bearing.
     """
-    segments = [k for k in (station - 1, station) if 0 <= k < shaft.n_segments]
-    diameters = np.stack([np.asarray(shaft.outer_diameter), np.asarray(shaft.bore)])
-    there = diameters[:, segments].T
-    seat = scene.installed.mounting
+    entry = None if scene.catalogue is None else scene.catalogue.entry
+    seat = scene.installed.mounting or entry
     if seat is not None:
-        wanted = np.array([float(seat.bore), float(seat.shaft_bore)])
-        has = (
-            f"its fit has a shaft of {1e3 * wanted[0]:.5g} mm with a bore of"
-            f" {1e3 * wanted[1]:.5g} mm (`shaft_bore`)"
-        )
-        sizes = " or ".join(f"{1e3 * a:.5g} and {1e3 * b:.5g}" for a, b in there)
-    elif scene.catalogue is not None:
-        entry = scene.catalogue.entry
-        wanted, there = np.array([entry.bore]), there[:, :1]
-        has = f"{entry.designation} has a bore of {1e3 * entry.bore:.5g} mm"
-        sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
-    else:
-        return
-    if (np.abs(there - wanted) < _SAME * wanted[0]).all(axis=1).any():
-        return
-    warnings.warn(
-        f"{name}: {has}; at station {station} the shaft has {sizes} mm",
-        stacklevel=2,
-    )
+        for text in seat_size_warnings(shaft, station, seat):
+            warnings.warn(f"{name}: {text}", stacklevel=2)
 
 
 def _is_ball(own: Mapping[str, Any]) -> bool:

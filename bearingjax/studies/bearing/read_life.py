@@ -1,9 +1,8 @@
 """The [life] table of a scene: conditions of the rating life."""
 
 import dataclasses
-from typing import Any
 
-from ...design import AbstractBearing, BearingSet, rows_of
+from ...design import AbstractBearing, BearingSet
 from ...element import Speed
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table
@@ -95,39 +94,6 @@ def read_life(
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
         return LifeConditions(**{**values, "viscosity": viscosity})
-
-
-_USUAL = {"dynamic_capacity": 1.0, "static_capacity": 1.0, "fatigue_load_limit": 0.07}
-"""Typical ratings over the load of `_usual_load`, averaged over all types."""
-
-
-def rating_warnings(
-    life: LifeConditions | None, bearing: AbstractBearing | BearingSet
-) -> tuple[str, ...]:
-    """Warn of ratings that differ twentyfold from typical ones, a line each.
-
-    Args:
-        life: From `read_life`.
-        bearing: The design.
-    """
-    usual = sum(_usual_load(row.bearing) for row in rows_of(bearing))
-    found = []
-    for name, share in _USUAL.items():
-        value = getattr(life, name, None)
-        if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
-            found.append(
-                f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
-                f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
-            )
-    return tuple(found)
-
-
-def _usual_load(row: Any) -> float:
-    """Estimate C and C0 [N]: 18 N per mm² of all balls, 40 N per mm² of rollers."""
-    if row.is_ball:
-        return 18e6 * row.n_elements * float(row.ball_diameter) ** 2
-    area = float(row.roller_diameter) * float(row.roller_length)
-    return 40e6 * row.n_elements * area
 
 
 def _turns(speed) -> bool:

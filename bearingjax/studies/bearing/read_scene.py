@@ -22,6 +22,7 @@ from ...files.schema import read_keys
 from ...files.table import Table
 from ...fits import FitStates
 from ...life.life import LifeConditions
+from ...life.life_warning import given_rating_warnings
 from ...numerics.compiled.programs import call_stored
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE
@@ -32,7 +33,7 @@ from .oil import Oil, read_oil
 from .read_bearing import read_bearing, read_designation
 from .read_choices import KINEMATICS, read_choices
 from .read_fit import FitNotes, read_fits
-from .read_life import lubrication_warnings, rating_warnings, read_life
+from .read_life import lubrication_warnings, read_life
 from .read_operating import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
 
 
@@ -262,7 +263,9 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     installed = Installed(element, preload, **seats)
     fixed_to = "space" if life is None else life.load_fixed_to
     warned += tuple(installed.seat_warnings(fixed_to))
-    warned += (*lubrication_warnings(top, oil), *rating_warnings(life, bearing))
+    warned += lubrication_warnings(top, oil)
+    if life is not None:
+        warned += tuple(given_rating_warnings(bearing, vars(life)))
     return Scene(
         name=name,
         installed=installed,

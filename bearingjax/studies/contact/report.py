@@ -5,18 +5,12 @@ from typing import Any
 import numpy as np
 
 from ...contact.halfspace.pressure import failure_message
-from ...contact.slices import Compared
+from ...contact.slices import Compared, compared_warnings
 from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Report
 from .read import ContactScene
-
-WIDE = 0.2
-"""Half width of a contact over the roller radius above which a warning is given."""
-
-FEW = 5
-"""Cells across or along a contact below which a warning is given."""
 
 PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 """Positions at which the report gives the pressure: from the small end, over length."""
@@ -27,59 +21,10 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
 
     Args:
         scene: The scene of the contact.
-        cases: Results of its cases; unsolved ones are skipped, except for a grid that
-            is too narrow.
+        cases: Results of its cases.
     """
-    found = list(scene.warnings)
-    solved = [case for case in cases if case.solution.converged]
-    for case in solved:
-        if not case.touches:
-            approach = 1e6 * float(case.solution.approach)
-            found.append(f"approach {approach:.4g} um: the bodies do not touch")
-    held = (int(Result.CONVERGED), int(Result.GRID_MISFIT))
-    narrow = [
-        c for c in cases if c.solution.truncated and int(c.solution.result) in held
-    ]
-    if narrow:
-        cure = "it is as wide as the roller or its raceway"
-        if scene.half_width is not None:
-            cure = "give a larger `numerics.half_width`, or none"
-        found.append(
-            f"{_name(narrow)}: the contact reaches the sides of the grid; what it"
-            f" carries beyond them is missing; {cure}"
-        )
-    coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
-    if coarse:
-        found.append(
-            f"{_name(coarse)}: the contact is less than {FEW} cells wide or long; its"
-            " pressures may be off by some hundredths: take more cells"
-        )
-    radius = 0.5 * float(scene.contact.small_diameter)
-    wide = [case for case in solved if case.half_width.max() > WIDE * radius]
-    if wide:
-        found.append(
-            f"{_name(wide)}: the contact is too wide beside the roller, more than"
-            f" {WIDE:g} of its radius to each side, for both bodies to be half-spaces"
-        )
-    ends = (0, scene.along - 1)
-    sharp = [case for case in solved if case.touches and case.peak in ends]
-    if sharp:
-        length = 2e6 * float(sharp[0].solution.grid.half_y[0])
-        found.append(
-            f"{_name(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
-            " µm long; under a sharp end it grows without limit as cells shrink:"
-            " compare at fixed distances from the end"
-        )
-    return found
-
-
-def _is_coarse(solution):
-    across, along = (int(count) for count in solution.cells)
-    return across < FEW or along < min(FEW, solution.grid.shape[1])
-
-
-def _name(cases):
-    return ", ".join(f"{float(case.solution.load):.5g}" for case in cases) + " N"
+    narrowed = None if scene.half_width is None else "numerics.half_width"
+    return [*scene.warnings, *compared_warnings(scene.contact, cases, narrowed)]
 
 
 def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any]:

@@ -15,8 +15,8 @@ from ...rotor import (
     Rotor,
     StaticEquilibrium,
     harmonic_response,
-    reduction_error,
 )
+from ...rotor.linear.harmonic import reduction_warnings
 from ...rotor.nonlinear import (
     Branch,
     BranchEnd,
@@ -36,8 +36,6 @@ _PARTS = 40
 """Subdivisions of the frequency range; a step of a branch spans at most one."""
 _FREQUENCIES = 200
 """Number of frequencies searched for the largest response on linear supports."""
-_REDUCED = 0.03
-"""Change of the linear response by a reduction above which a warning is given [1]."""
 _SAMPLES = 64
 """Number of phases at which a linear vibration is output."""
 _ENDINGS = {
@@ -135,8 +133,12 @@ def respond(
     if asked.method == "linear":
         assert linear is not None  # callers check it
         return _linear(task, linear)
-    if asked.reduction is not None:
-        _warn_of_reduction(task, settled.rotor)
+    if (modes_kept := asked.reduction) is not None:
+        ends = asked.begin, asked.end
+        for text in reduction_warnings(
+            settled.rotor, task.loads, ends, asked.speed, modes_kept
+        ):
+            warnings.warn(f"`rotor.response.reduction`: {text}", stacklevel=2)
     scale = asked.scale
     if scale is None and all(isinstance(s, LinearSupport) for s in rotor.supports):
         scale = _largest(task, settled.rotor)
@@ -178,23 +180,6 @@ def respond(
         _half_ranges(marked),
         stopped,
     )
-
-
-def _warn_of_reduction(task, linear) -> None:
-    """Warn if a reduction changes the linear response at an end of the range."""
-    asked = task.response
-    for frequency in map(float, (asked.begin, asked.end)):
-        at = as_array(frequency, float)
-        speed = at if asked.speed is None else as_array(asked.speed, float)
-        error = float(reduction_error(linear, task.loads, at, speed, asked.reduction))
-        if error > _REDUCED:
-            warnings.warn(
-                f"`rotor.response.reduction` = {asked.reduction} changes the linear"
-                f" response at {frequency / (2.0 * np.pi):.5g} Hz by"
-                f" {100.0 * error:.2g} %; keep more modes",
-                stacklevel=2,
-            )
-            return
 
 
 def _largest(task, linear) -> float | None:

@@ -16,7 +16,6 @@ from ...life.life import Life, life_of
 from ...life.life_warning import life_warnings
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array
-from ...numerics.units import rpm
 from ...rotor import (
     BearingSupport,
     CriticalSpeeds,
@@ -93,8 +92,6 @@ class RotorRun:
         return not self.failures
 
 
-_COARSE = 1e-3
-"""Error of the stiffness over the speed above which a warning is given [1]."""
 _STAGES = {
     "preload": "bearings",
     "static": "static equilibrium",
@@ -223,20 +220,25 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     settled = found["settled"]
     with parts.part("modes"):
         found["modes"] = jax.device_get(modes(settled.rotor, task.speed, count=count))
-    highest = top_speed(task)
-    follows = _following(task, rotor, settled, highest, parts)
-    if follows is None:
-        return None
+    follows, over = settled.rotor, None
+    if any(mount.inertia for mount in task.mounts):
+        with parts.part("static"):
+            top = as_array(top_speed(task), float)
+            over = static_equilibrium_over(rotor, task.loads, top)
+            parts.warnings += over.warnings()
+        if over is None:
+            return None
+        follows = over.rotor
     with parts.part("critical speeds"):
         found["critical"] = jax.device_get(
             critical_speeds(follows, count=count, operating_speed=task.speed)
         )
-    if follows is not settled.rotor and (found["critical"].speed > highest).any():
-        parts.warnings.append(
-            f"above {rpm(highest)} critical speeds are those of the stiffness"
-            " that bearings have there; it is known to the highest speed of"
-            " [rotor.campbell] and [rotor.response], or to twice the speed"
-        )
+    if over is not None:
+        known = "[rotor.campbell] and [rotor.response], or to twice the speed"
+        for text in over.critical_speed_warnings(found["critical"].speed):
+            parts.warnings.append(
+                f"{text}; it is known to the highest speed of {known}"
+            )
     if task.campbell is not None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
@@ -245,23 +247,6 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
                 follows, task.campbell, found["campbell"]
             )
     return follows
-
-
-def _following(task, rotor, settled, highest, parts) -> Rotor | None:
-    """Return the linear rotor over speed, resettled if its bearings depend on speed."""
-    if not any(mount.inertia for mount in task.mounts):
-        return settled.rotor
-    with parts.part("static"):
-        over = static_equilibrium_over(rotor, task.loads, as_array(highest, float))
-        if float(over.error) > _COARSE:
-            parts.warnings.append(
-                f"the stiffness of the bearings over the speed is known to"
-                f" {100.0 * float(over.error):.2g} % between rest and"
-                f" {rpm(highest)}, in critical speeds and"
-                " Campbell diagram"
-            )
-        return over.rotor
-    return None
 
 
 def top_speed(task: RotorScene) -> float:

@@ -10,16 +10,13 @@ from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table
 from ...fits.fits import PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
-from ...friction.reference_speed import heat_area
 from ...shafts import BearingOil, HeatNetwork, ThermalPaths
+from ...shafts.heat import usual_conductance
 from ..bearing.oil import Oil
 from ..bearing.read_scene import Scene
 
-_FLOW = 16e3 / 50.0
-"""Heat flow that ISO 15312 takes from the seats of a radial bearing, over the area of
-the seats and the rise of temperature [W/(m² K)]."""
 _CONDUCTANCES = "inner", "outer"
-"""By default half of this each, over the area of the seats."""
+"""By default `usual_conductance` each."""
 
 
 class HeatKeys(Keys):
@@ -111,8 +108,8 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     usual = None
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
-        area = heat_area(entry.bore, entry.outside_diameter, entry.width)
-        usual = float(0.5 * _FLOW * area)
+        sizes = entry.bore, entry.outside_diameter, entry.width
+        usual = float(usual_conductance(*sizes))
     for name in _CONDUCTANCES:
         if name not in heat and usual is None:
             problem = "is missing; without a `designation` the area of its seats is not"

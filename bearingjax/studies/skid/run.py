@@ -4,13 +4,13 @@ import dataclasses
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ... import skid
 from ...files.quantity import SceneError
 from ...numerics.result import Result
-from ...skid import SkidState, conditions, skid_warnings
+from ...skid import conditions, skid_warnings
+from ...skid.motion import rest_state
 from ...statics.warning import warnings
 from .read import SkidScene
 
@@ -120,7 +120,7 @@ def _motion(task, shown) -> tuple[Any, Any]:
         speed=speed,
         duration=task.duration,
         n_times=task.n_times,
-        start=_still(task) if task.start == "rest" else None,
+        start=rest_state(task.model.bearing) if task.start == "rest" else None,
         load_speed=task.speed,
         axis=task.axis,
         balanced=task.balanced,
@@ -131,12 +131,3 @@ def _motion(task, shown) -> tuple[Any, Any]:
         **_supports(task),
     )
     return found, speed
-
-
-def _still(task) -> SkidState:
-    """Return the state of elements and cage at rest, centred in their pockets."""
-    bearing = task.model.bearing
-    count, spins = bearing.n_elements, 3 if bearing.is_ball else 1
-    zero, each = jnp.zeros(()), jnp.zeros(count)
-    nothing = jnp.zeros((count, 0)), jnp.zeros(0)
-    return SkidState(jnp.zeros((count, spins)), each, each, zero, zero, *nothing)
