@@ -48,11 +48,10 @@ from .warm_material import WARM_MATERIALS, WarmMaterial
 
 __all__ = [
     "mounted", "Mounting", "FitConditions", "fit_state", "FitState", "radial_clearance",
-    "with_radial_clearance", "with_bearing_dimensions", "needed_drive_up",
-    "fit_states", "FitStates", "SizeLimits",
-    "clearance_range", "ClearanceRange", "mounting_at", "PLACES", "limits", "Limits",
-    "standard_tolerance", "LIMIT_CLASSES", "bore_limits", "outside_limits",
-    "ball_clearance", "roller_clearance", "self_aligning_clearance",
+    "with_radial_clearance", "with_bearing_dimensions", "needed_drive_up", "fit_states",
+    "FitStates", "SizeLimits", "clearance_range", "ClearanceRange", "mounting_at",
+    "PLACES", "limits", "Limits", "standard_tolerance", "LIMIT_CLASSES", "bore_limits",
+    "outside_limits", "ball_clearance", "roller_clearance", "self_aligning_clearance",
     "spherical_roller_clearance", "toroidal_roller_clearance", "CLEARANCE_CLASSES",
     "WarmMaterial", "WARM_MATERIALS",
 ]  # fmt: skip

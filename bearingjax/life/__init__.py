@@ -11,7 +11,7 @@ Names
 
 - Rating life: `rating_life`, `Life`, `LifeConditions`, `LIFE_OUTPUTS`, `life_warnings`.
 - Load ratings: `ratings`, `Ratings`, `dynamic_capacity`, `static_capacity`,
-  `fatigue_load_limit`.
+  `fatigue_load_limit`, `given_rating_warnings`.
 - Equivalent loads: `equivalent_load`, `EquivalentLoad`.
 - Factors of life: `life_factor`, `reliability_factor`, `viscosity_ratio`,
   `Cleanliness`, `CLEANLINESS`.
@@ -26,7 +26,7 @@ from .life_factor import (
     reliability_factor,
     viscosity_ratio,
 )
-from .life_warning import life_warnings
+from .life_warning import given_rating_warnings, life_warnings
 from .rating import (
     Ratings,
     dynamic_capacity,
@@ -38,6 +38,6 @@ from .rating import (
 __all__ = [
     "rating_life", "Life", "LifeConditions", "LIFE_OUTPUTS", "life_warnings", "ratings",
     "Ratings", "dynamic_capacity", "static_capacity", "fatigue_load_limit",
-    "equivalent_load", "EquivalentLoad", "life_factor", "reliability_factor",
-    "viscosity_ratio", "Cleanliness", "CLEANLINESS",
+    "given_rating_warnings", "equivalent_load", "EquivalentLoad", "life_factor",
+    "reliability_factor", "viscosity_ratio", "Cleanliness", "CLEANLINESS",
 ]  # fmt: skip

@@ -57,7 +57,7 @@ Names
 
 - Nonlinear vibration: `nonlinear`.
 - The rotor: `Rotor`, `Shaft`, `Disc`, `PointMass`, `Housing`, `AbstractPart`,
-  `STATION_FREEDOMS`.
+  `STATION_FREEDOMS`, `seat_size_warnings`.
 - Supports: `BearingSupport`, `LinearSupport`, `SpeedSupport`, `AbstractSupport`,
   `preload_offset`.
 - Damping: `ModalDamping`, `ProportionalDamping`, `AbstractDamping`.
@@ -67,7 +67,7 @@ Names
 - Modes: `modes`, `Modes`, `campbell`, `critical_speeds`, `CriticalSpeeds`,
   `instability_onsets`, `Onset`, `major_axis`.
 - Response: `unbalance_response`, `harmonic_response`, `UnbalanceResponse`.
-- Matrices: `RotorMatrices`, `craig_bampton`, `reduction_error`.
+- Matrices: `RotorMatrices`, `craig_bampton`, `reduction_error`, `reduction_warnings`.
 - Coefficients for other programs: `stiffness_table`, `to_ross`.
 """
 
@@ -76,7 +76,7 @@ from .bearing_support import BearingSupport
 from .damping import AbstractDamping, ModalDamping, ProportionalDamping
 from .linear.coefficients import stiffness_table
 from .linear.critical import CriticalSpeeds, critical_speeds
-from .linear.harmonic import harmonic_response, reduction_error
+from .linear.harmonic import harmonic_response, reduction_error, reduction_warnings
 from .linear.modes import Modes, campbell, major_axis, modes
 from .linear.onset import Onset, instability_onsets
 from .linear.reduction import craig_bampton
@@ -93,19 +93,19 @@ from .parts import (
 from .preload_offset import preload_offset
 from .ross import to_ross
 from .rotor import Rotor, RotorMatrices
-from .shaft import STATION_FREEDOMS, Shaft
+from .shaft import STATION_FREEDOMS, Shaft, seat_size_warnings
 from .speed_support import SpeedSupport
 from .statics import StaticEquilibrium, static_equilibrium
 from .statics_over_speed import StaticEquilibriumOver, static_equilibrium_over
 
 __all__ = [
     "nonlinear", "Rotor", "Shaft", "Disc", "PointMass", "Housing", "AbstractPart",
-    "STATION_FREEDOMS", "BearingSupport", "LinearSupport", "SpeedSupport",
-    "AbstractSupport", "preload_offset", "ModalDamping", "ProportionalDamping",
-    "AbstractDamping", "RotorLoads", "StationForce", "Unbalance", "static_equilibrium",
-    "StaticEquilibrium", "static_equilibrium_over", "StaticEquilibriumOver", "modes",
-    "Modes", "campbell", "critical_speeds", "CriticalSpeeds", "instability_onsets",
-    "Onset", "major_axis", "unbalance_response", "harmonic_response",
-    "UnbalanceResponse", "RotorMatrices", "craig_bampton", "reduction_error",
-    "stiffness_table", "to_ross",
+    "STATION_FREEDOMS", "seat_size_warnings", "BearingSupport", "LinearSupport",
+    "SpeedSupport", "AbstractSupport", "preload_offset", "ModalDamping",
+    "ProportionalDamping", "AbstractDamping", "RotorLoads", "StationForce", "Unbalance",
+    "static_equilibrium", "StaticEquilibrium", "static_equilibrium_over",
+    "StaticEquilibriumOver", "modes", "Modes", "campbell", "critical_speeds",
+    "CriticalSpeeds", "instability_onsets", "Onset", "major_axis", "unbalance_response",
+    "harmonic_response", "UnbalanceResponse", "RotorMatrices", "craig_bampton",
+    "reduction_error", "reduction_warnings", "stiffness_table", "to_ross",
 ]  # fmt: skip

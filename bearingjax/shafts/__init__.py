@@ -36,7 +36,7 @@ Names
   `power_flow`, `PowerFlow`.
 - Load cases: `solve_duty`, `DutyResult`, `bearing_hours`, `system_life`.
 - Heat: `solve_heat`, `HeatNetwork`, `ThermalPaths`, `ThermalState`, `BearingOil`,
-  `runaway_speed`, `warm_up`.
+  `usual_conductance`, `runaway_speed`, `warm_up`.
 - Optimisation: `ShaftDesign`, `load_cases`, `ShaftCases`, `SystemLife`, `Worst`,
   `PowerLoss`, `ShaftMass`.
 """
@@ -50,6 +50,7 @@ from .heat import (
     ThermalState,
     runaway_speed,
     solve_heat,
+    usual_conductance,
     warm_up,
 )
 from .line import ShaftLine
@@ -73,6 +74,7 @@ __all__ = [
     "ShaftLoad", "HousingStiffness", "solve_system", "SystemSolution", "ShaftState",
     "bearing_solutions", "power_flow", "PowerFlow", "solve_duty", "DutyResult",
     "bearing_hours", "system_life", "solve_heat", "HeatNetwork", "ThermalPaths",
-    "ThermalState", "BearingOil", "runaway_speed", "warm_up", "ShaftDesign",
-    "load_cases", "ShaftCases", "SystemLife", "Worst", "PowerLoss", "ShaftMass",
+    "ThermalState", "BearingOil", "usual_conductance", "runaway_speed", "warm_up",
+    "ShaftDesign", "load_cases", "ShaftCases", "SystemLife", "Worst", "PowerLoss",
+    "ShaftMass",
 ]  # fmt: skip

@@ -79,7 +79,7 @@ Names
 - The bearing in its oil: `SkidModel`, `Cage`, `Drag`.
 - Steady motion: `steady`, `SteadySkid`, `SteadyRollerSkid`, `Power`, `zones`, `Zone`.
 - Motion in time: `simulate`, `SkidHistory`, `SkidRollerHistory`, `SkidState`,
-  `SpeedTable`, `ramp`, `LoadHistory`, `SinusoidalLoad`.
+  `rest_state`, `SpeedTable`, `ramp`, `LoadHistory`, `SinusoidalLoad`.
 - Contacts: `conditions`, `Conditions`, `sliding_ellipse`, `Ellipse`,
   `sliding_spectrum`, `SlidingSpectrum`.
 - Optimisation: `SkiddingBearing`, `FrictionTorque`, `FrictionPower`, `CageSlip`.
@@ -89,7 +89,7 @@ Names
 from .conditions import Conditions, conditions
 from .contact_ellipse import Ellipse, sliding_ellipse
 from .model import SkidModel
-from .motion import SkidState
+from .motion import SkidState, rest_state
 from .orbits.orbit_zones import Zone, zones
 from .orbits.steady import steady
 from .orbits.steady_results import Power, SteadyRollerSkid, SteadySkid
@@ -109,7 +109,7 @@ from .warning import skid_warnings
 __all__ = [
     "SkidModel", "Cage", "Drag", "steady", "SteadySkid", "SteadyRollerSkid", "Power",
     "zones", "Zone", "simulate", "SkidHistory", "SkidRollerHistory", "SkidState",
-    "SpeedTable", "ramp", "LoadHistory", "SinusoidalLoad", "conditions", "Conditions",
-    "sliding_ellipse", "Ellipse", "sliding_spectrum", "SlidingSpectrum",
+    "rest_state", "SpeedTable", "ramp", "LoadHistory", "SinusoidalLoad", "conditions",
+    "Conditions", "sliding_ellipse", "Ellipse", "sliding_spectrum", "SlidingSpectrum",
     "SkiddingBearing", "FrictionTorque", "FrictionPower", "CageSlip", "skid_warnings",
 ]  # fmt: skip

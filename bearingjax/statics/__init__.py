@@ -60,7 +60,6 @@ from .warning import warnings
 __all__ = [
     "solve_load", "SolveOptions", "Solution", "BallSolution", "RollerSolution", "Stats",
     "failure_message", "Installed", "preload", "remaining_preload", "SetPreload",
-    "linearise",
-    "OperatingPoint", "restrained_freedoms", "refine", "Refined", "warnings",
-    "seat_warnings", "speed_warnings",
+    "linearise", "OperatingPoint", "restrained_freedoms", "refine", "Refined",
+    "warnings", "seat_warnings", "speed_warnings",
 ]  # fmt: skip

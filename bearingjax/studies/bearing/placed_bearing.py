@@ -9,8 +9,7 @@ from typing import Any
 
 from ...catalogue.entry import catalogue_entry
 from ...files.table import Table, text_of
-from ...rotor import Shaft
-from ...rotor.shaft import seat_size_warnings
+from ...rotor import Shaft, seat_size_warnings
 from .read_bearing import EXTRA_KEYS
 from .read_design import BALLS
 from .read_scene import Scene, scene_of

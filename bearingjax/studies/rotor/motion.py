@@ -15,8 +15,8 @@ from ...rotor import (
     Rotor,
     StaticEquilibrium,
     harmonic_response,
+    reduction_warnings,
 )
-from ...rotor.linear.harmonic import reduction_warnings
 from ...rotor.nonlinear import (
     Branch,
     BranchEnd,

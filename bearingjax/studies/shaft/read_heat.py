@@ -10,8 +10,7 @@ from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table
 from ...fits.fits import PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
-from ...shafts import BearingOil, HeatNetwork, ThermalPaths
-from ...shafts.heat import usual_conductance
+from ...shafts import BearingOil, HeatNetwork, ThermalPaths, usual_conductance
 from ..bearing.oil import Oil
 from ..bearing.read_scene import Scene
 

@@ -9,8 +9,7 @@ import numpy as np
 from ... import skid
 from ...files.quantity import SceneError
 from ...numerics.result import Result
-from ...skid import conditions, skid_warnings
-from ...skid.motion import rest_state
+from ...skid import conditions, rest_state, skid_warnings
 from ...statics.warning import warnings
 from .read import SkidScene
 
