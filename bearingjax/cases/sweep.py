@@ -24,10 +24,10 @@ from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.labels import make_dataset
 from ..numerics.result import Result
+from ..numerics.warning import Warning, exceeded_kinds, warnings_of_cases
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import check_held
-from ..statics.warning import exceeded_kinds, sentences_of_cases
 from .cases import Cases
 from .names_of_zeros import structural_zeros
 from .output_labels import LARGEST, label_cases, label_output
@@ -105,9 +105,9 @@ class Sweep(eqx.Module):
         }
 
     @property
-    def warnings(self) -> list[str]:
-        """A sentence for each kind of warning: in how many cases, and the worst."""
-        return sentences_of_cases(self.warned, ALL)
+    def warnings(self) -> list[Warning]:
+        """A warning of each kind: in how many cases, and the worst."""
+        return warnings_of_cases(self.warned, ALL)
 
     def warning_counts(self) -> dict[str, int]:
         """Number of cases with each kind of warning; kinds without cases left out."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..files.table_file import read_table, write_table
 from ..life.life_warning import ALL
 from ..numerics.result import Result
-from ..statics.warning import exceeded_kinds
+from ..numerics.warning import exceeded_kinds
 from .cases import Cases
 from .output_labels import label_cases, label_output
 from .sweep import Sweep

@@ -11,6 +11,7 @@ from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.quadrature import ContactMapped
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
+from ..numerics.warning import Warning
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
 from .line import EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
@@ -173,8 +174,8 @@ class Compared(eqx.Module):
 
 def compared_warnings(
     contact: RollerContact, cases: list[Compared], narrowed: str | None = None
-) -> list[str]:
-    """Warnings about solved contacts of a roller, a sentence each.
+) -> list[Warning]:
+    """Warnings about solved contacts of a roller.
 
     Args:
         contact: The roller and its raceway, concrete as all that is given.
@@ -187,8 +188,9 @@ def compared_warnings(
     solved = [case for case in cases if case.solution.converged]
     for case in solved:
         if not case.touches:
-            approach = 1e6 * float(case.solution.approach)
-            found.append(f"approach {approach:.4g} um: the bodies do not touch")
+            approach = float(case.solution.approach)
+            words = f"approach {1e6 * approach:.4g} um: the bodies do not touch"
+            found.append(Warning("no_contact", words, approach))
     held = (int(Result.CONVERGED), int(Result.GRID_MISFIT))
     narrow = [
         c for c in cases if c.solution.truncated and int(c.solution.result) in held
@@ -197,31 +199,34 @@ def compared_warnings(
         cure = "it is as wide as the roller or its raceway"
         if narrowed is not None:
             cure = f"give a larger `{narrowed}`, or none"
-        found.append(
-            f"{_loads(narrow)}: the contact reaches the sides of the grid; what it"
-            f" carries beyond them is missing; {cure}"
-        )
+        words = "the contact reaches the sides of the grid; what it carries beyond them"
+        one = Warning("narrow_grid", f"{words} is missing; {cure}")
+        found.append(one.of(_loads(narrow)))
     coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
     if coarse:
-        found.append(
-            f"{_loads(coarse)}: the contact is less than {FEW} cells wide or long; its"
-            " pressures may be off by some hundredths: take more cells"
+        words = (
+            f"the contact is less than {FEW} cells wide or long; its pressures may be"
+            " off by some hundredths: take more cells"
         )
+        found.append(Warning("coarse_grid", words, limit=FEW).of(_loads(coarse)))
     radius = 0.5 * float(contact.small_diameter)
     wide = [case for case in solved if case.half_width.max() > WIDE * radius]
     if wide:
-        found.append(
-            f"{_loads(wide)}: the contact is too wide beside the roller, more than"
-            f" {WIDE:g} of its radius to each side, for both bodies to be half-spaces"
+        words = (
+            f"the contact is too wide beside the roller, more than {WIDE:g} of its"
+            " radius to each side, for both bodies to be half-spaces"
         )
+        size = max(float(case.half_width.max()) for case in wide) / radius
+        found.append(Warning("wide_contact", words, size, WIDE).of(_loads(wide)))
     sharp = [case for case in solved if case.touches and case.peak_at_end]
     if sharp:
         length = 2e6 * float(sharp[0].solution.grid.half_y[0])
-        found.append(
-            f"{_loads(sharp)}: the peak pressure is that of an end cell, {length:.4g}"
-            " µm long; under a sharp end it grows without limit as cells shrink:"
-            " compare at fixed distances from the end"
+        words = (
+            f"the peak pressure is that of an end cell, {length:.4g} µm long; under a"
+            " sharp end it grows without limit as cells shrink: compare at fixed"
+            " distances from the end"
         )
+        found.append(Warning("sharp_ends", words).of(_loads(sharp)))
     return found
 
 

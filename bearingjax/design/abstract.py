@@ -7,6 +7,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar
+from ..numerics.warning import Warning
 from .checks import count, instance, number
 from .material import Material
 from .published import Published
@@ -49,6 +50,11 @@ class AbstractBearing(eqx.Module):
     def is_ball(self) -> bool:
         """Whether the rolling elements are balls."""
         return self.noun == "ball"
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about the design; empty where its numbers are traced."""
+        return ()
 
     @property
     @abc.abstractmethod

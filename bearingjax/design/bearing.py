@@ -1,7 +1,6 @@
 """Roller bearings as on the drawing: dimensions and their checks."""
 
 import math
-import warnings
 from typing import ClassVar
 
 import equinox as eqx
@@ -11,6 +10,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .checks import check, concrete, in_range, instance, number, positive
 from .deviation import check_deviation, check_raceways, check_spacing
@@ -317,7 +317,6 @@ class TaperedRollerBearing(AbstractRollerBearing):
         in_range(self, "roller_axis_angle", 0.0, 0.5 * jnp.pi)
         most = self.roller_axis_angle
         in_range(self, "roller_half_angle", 0.0, most, include_low=True)
-        self._warn_of_apexes()
 
     def apexes(self) -> tuple[Scalar, Scalar, Scalar]:
         """Apexes of outer raceway, roller axis and inner raceway on the bearing axis.
@@ -328,20 +327,24 @@ class TaperedRollerBearing(AbstractRollerBearing):
         """
         return _apexes(*_angles_and_size(self), jnp)
 
-    def _warn_of_apexes(self):
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """A warning if the apexes lie apart; empty where its numbers are traced."""
         numbers = concrete(*jax.tree.leaves(_angles_and_size(self)))
         if numbers is None or numbers[1] == 0.0:
-            return
+            return ()
         axis, half, pitch, diameter = numbers
         outer, roller, inner = _apexes(axis, half, pitch, diameter, math)
-        if max(abs(outer - roller), abs(inner - roller)) > 0.01 * abs(roller):
-            warnings.warn(
-                f"{type(self).__name__}: the apexes of outer raceway, roller axis and"
-                f" inner raceway lie at z = {1e3 * outer:.4g}, {1e3 * roller:.4g} and"
-                f" {1e3 * inner:.4g} mm; they differ by more than 1 %, so the rollers"
-                " cannot roll without sliding.",
-                stacklevel=4,
-            )
+        apart, limit = max(abs(outer - roller), abs(inner - roller)), 0.01 * abs(roller)
+        if not apart > limit:
+            return ()
+        words = (
+            f"{type(self).__name__}: the apexes of outer raceway, roller axis and"
+            f" inner raceway lie at z = {1e3 * outer:.4g}, {1e3 * roller:.4g} and"
+            f" {1e3 * inner:.4g} mm; they differ by more than 1 %, so the rollers"
+            " cannot roll without sliding."
+        )
+        return (Warning("apexes_apart", words, apart, limit),)
 
 
 def _angles_and_size(taper):

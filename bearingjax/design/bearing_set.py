@@ -7,6 +7,7 @@ import jax.numpy as jnp
 
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
 from .checks import concrete, instance, non_negative, number, of_class, positive
@@ -111,6 +112,12 @@ class BearingSet(eqx.Module):
     def is_ball(self) -> bool:
         """Whether the rolling elements are balls."""
         return self.rows[0].bearing.is_ball
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about the design of its rows, each once."""
+        every = (one for row in self.rows for one in row.bearing.warnings)
+        return tuple(dict.fromkeys(every))
 
     @classmethod
     def back_to_back(

@@ -16,6 +16,7 @@ from ..design.deviation import deviation_of
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Ring, Scalar
+from ..numerics.warning import Warning
 from .azimuth import azimuths, orbit_ratio
 from .balls.ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, Evaluated, RowGroup
@@ -168,11 +169,17 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         self.cage_torque = cage_torque
         self._check(None)
         if jax.dtypes.canonicalize_dtype(float) != jnp.float64:
+            # Of how Python is set up, not of a bearing: whoever forgot it must see it.
             warnings.warn(
                 "BearingElement: float64 is off; in float32 forces are good to 1e-5 at"
                 ' best. Before all else: jax.config.update("jax_enable_x64", True)',
                 stacklevel=3,
             )
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about the design of the bearing."""
+        return self.bearing.warnings
 
     def __hash__(self) -> int:
         """Hash of the structure and shapes, which `jax.jit` of a method needs.

@@ -128,8 +128,8 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
         return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
     if isinstance(bearing, AbstractBallBearing):
         return replace(bearing, radial_internal_clearance=clearance)
-    # Made again, a taper would repeat the warning of its apexes. Its clearance is along
-    # the normal, that of barrel and crossed rollers radial.
+    # The clearance of a taper is along the normal, that of barrel and crossed rollers
+    # radial.
     radial = isinstance(bearing, AbstractBarrelBearing | CrossedRollerRow)
     own = clearance if radial else clearance * _outer_cosine(bearing)
     return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)

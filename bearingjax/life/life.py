@@ -272,7 +272,7 @@ def rating_life(
         speed: Ring speeds; `None`: those of the solution. Without any the inner ring
             turns against a load fixed in space, and there is no life in hours.
         lamina_load: Load of every lamina on both raceways in place of the solution's
-            [N], such as `refined_lamina_loads` of half-spaces. Concentrations of
+            [N], such as those of `refined_lamina_loads`. Concentrations of
             stress at the ends are then in it, whatever `edge_stress`.
 
     Returns:

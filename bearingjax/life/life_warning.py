@@ -1,7 +1,7 @@
 """Warnings about rating lives: their sizes and their texts."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import jax
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.bearing_set import pitch_radius
 from ..numerics.types import array_namespace
+from ..numerics.warning import Kind, Warning
 from ..statics.warning_kinds import KINDS
 from .life_factor import KAPPA
 from .rating import Ratings
@@ -34,31 +35,6 @@ Source: rule of catalogues of rolling bearings (SKF), for want of a closer one.
 """
 
 
-class LifeKind(NamedTuple):
-    """A kind of warning about a rating life.
-
-    Attributes:
-        limit: Largest size that gives no warning.
-        text: The sentence with `{size}` and `{where}`.
-        where: (bearing, ratings, numbers) of one life -> numbers of it, in words.
-        many: Size -> the words in place of those of `where` for many cases.
-        shown: Size -> what the sentence has of it.
-        of_all: Whether it is reported only if it applies to all cases.
-    """
-
-    limit: float
-    text: str
-    where: Callable[[Any, Any, Any], str] = lambda bearing, ratings, numbers: ""
-    many: Callable[[float], str] = lambda size: ""
-    shown: Callable[[float], float] = lambda size: size
-    of_all: bool = False
-
-    def words(self, size: float, where: str) -> str:
-        """Return the sentence about a size; `where` is "" for many cases."""
-        where = where or self.many(size)
-        return self.text.format(size=self.shown(size), where=where)
-
-
 USUAL_RATINGS = {
     "dynamic_capacity": 1.0,
     "static_capacity": 1.0,
@@ -69,9 +45,8 @@ USUAL_RATINGS = {
 
 def given_rating_warnings(
     bearing: AbstractBearing | BearingSet, given: Mapping[str, Any]
-) -> list[str]:
-    """Warnings about ratings given twentyfold above or below usual ones, a sentence
-    each.
+) -> list[Warning]:
+    """Warnings about ratings given twentyfold above or below usual ones.
 
     Args:
         bearing: The design, concrete.
@@ -83,10 +58,11 @@ def given_rating_warnings(
     for name, share in USUAL_RATINGS.items():
         value = given.get(name)
         if value is not None and not 0.05 < float(value) / (share * usual) < 20.0:
-            found.append(
+            words = (
                 f"life: `{name}` is {1e-3 * float(value):.4g} kN; bearings of this size"
                 f" have some {1e-3 * share * usual:.2g} kN (another unit meant?)"
             )
+            found.append(Warning("unusual_rating", words, float(value), where=name))
     return found
 
 
@@ -100,7 +76,7 @@ def _usual_load(row: Any) -> float:
 
 def life_warnings(
     bearing: AbstractBearing | BearingSet, ratings: Ratings, numbers: Mapping[str, Any]
-) -> list[str]:
+) -> list[Warning]:
     """Warnings about one rating life, a sentence each.
 
     Of many cases see `Sweep.warnings`.
@@ -116,8 +92,8 @@ def life_warnings(
     """
     bearing, ratings, numbers = jax.device_get((bearing, ratings, dict(numbers)))
     return [
-        LIFE_KINDS[name].words(
-            float(size), LIFE_KINDS[name].where(bearing, ratings, numbers)
+        LIFE_KINDS[name].warning(
+            name, float(size), LIFE_KINDS[name].where(bearing, ratings, numbers)
         )
         for name, size in life_sizes(bearing, ratings, numbers).items()
         if size > LIFE_KINDS[name].limit
@@ -204,15 +180,15 @@ def _light_numbers(bearing, ratings, numbers):
     )
 
 
-LIFE_KINDS: dict[str, LifeKind] = {
-    "heavy_load": LifeKind(
+LIFE_KINDS: dict[str, Kind] = {
+    "heavy_load": Kind(
         1.0,
         "equivalent load {where} the lesser of C0 and C/2: ISO 281 does not vouch for"
         " lives of such loads",
         _heavy_numbers,
         "{:.4g} times".format,
     ),
-    "light_load": LifeKind(
+    "light_load": Kind(
         0.0,
         "equivalent load {where} may skid",
         _light_numbers,
@@ -222,35 +198,35 @@ LIFE_KINDS: dict[str, LifeKind] = {
             " roller bearings: the rolling elements"
         ),
     ),
-    "radial_left_out": LifeKind(
+    "radial_left_out": Kind(
         0.0,
         "radial load of {size:.4g} N, for which ISO 281 has no factor at 90°: P and P0"
         " have no part of it",
     ),
-    "axial_left_out": LifeKind(
+    "axial_left_out": Kind(
         0.0,
         "axial load of {size:.4g} N, for which ISO 281 has no factor at 0°: P and P0"
         " have no part of it",
     ),
-    "moment_left_out": LifeKind(
+    "moment_left_out": Kind(
         0.0,
         "moment of {size:.4g} N m about the pressure centre: P and P0, and with them"
         " the basic life and the static safety, have no part of it; the reference life"
         " of ISO/TS 16281 has",
     ),
-    "thin_film": LifeKind(
+    "thin_film": Kind(
         1.0,
         "viscosity ratio of {size:.3g}: ISO 281 has no a_ISO below"
         f" {KAPPA[0]:g}; the one at {KAPPA[0]:g} is taken",
         shown=lambda size: KAPPA[0] / size,
     ),
-    "thick_film": LifeKind(
+    "thick_film": Kind(
         KAPPA[1],
         "viscosity ratio of {size:.3g}: the diagrams of ISO 281 end at"
         f" {KAPPA[1]:g}; a_ISO and the e_C of a class of cleanliness are those at"
         f" {KAPPA[1]:g}",
     ),
-    "loaded_ends": LifeKind(
+    "loaded_ends": Kind(
         MOST_AT_ENDS,
         "{size:.3g} % of the fatigue is in the laminae at the ends of the rollers: at"
         " sharp ends the life depends on the number of laminae{where}; with a profile"
@@ -258,14 +234,15 @@ LIFE_KINDS: dict[str, LifeKind] = {
         lambda b, r, numbers: f", {np.shape(numbers['damage_share'])[2]} here",
         shown=lambda size: 100 * size,
     ),
-    "no_hours": LifeKind(
+    "no_hours": Kind(
         0.0,
         "the rings do not turn against each other: there is no life in hours",
         of_all=True,
     ),
 }
-"""Every kind of warning about a life, by name, in the order of the reports."""
+"""Every kind of warning about a life, by name, in the order of the reports; their
+`where` takes bearing, ratings and numbers of one life."""
 
 
-ALL: dict[str, Any] = {**KINDS, **LIFE_KINDS}
+ALL: dict[str, Kind] = {**KINDS, **LIFE_KINDS}
 """Every kind of warning about a case, by name."""

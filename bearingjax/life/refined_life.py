@@ -1,6 +1,6 @@
 """Loads of laminae from the pressures of half-spaces, for the rating life."""
 
-import warnings
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -8,9 +8,23 @@ from ..contact.halfspace import Grid
 from ..element.bearing_element import BearingElement
 from ..element.frame import RINGS
 from ..element.inertia import Speed
+from ..numerics.units import unit
+from ..numerics.warning import Warning
 from ..statics.refine import Refined, refine
 from ..statics.solution import RollerSolution
 from .reference_life import LEAST_LAMINAE, ROLLERS
+
+
+class LaminaLoads(NamedTuple):
+    """Loads of laminae from the pressures of half-spaces.
+
+    Attributes:
+        load: Of each lamina on both raceways (roller, raceway, lamina) [N].
+        warnings: A warning if the pressure is largest at the ends of contacts.
+    """
+
+    load: Annotated[np.ndarray, unit("N")]
+    warnings: tuple[Warning, ...] = ()
 
 
 def refined_lamina_loads(
@@ -20,12 +34,12 @@ def refined_lamina_loads(
     *,
     speed: Speed | None = None,
     grid: Grid | None = None,
-) -> np.ndarray:
+) -> LaminaLoads:
     """Loads of laminae whose Hertz pressure is that of half-spaces, ends included.
 
-    For `rating_life(..., lamina_load=...)` in place of the standard's concentration of
-    stress at the ends. Every loaded roller is solved on both raceways (`refine`), so
-    that it takes seconds; it is not differentiable.
+    For `rating_life(..., lamina_load=found.load)` in place of the standard's
+    concentration of stress at the ends. Every loaded roller is solved on both raceways
+    (`refine`), so that it takes seconds; it is not differentiable.
 
     Args:
         element: The bearing that was solved.
@@ -34,7 +48,7 @@ def refined_lamina_loads(
         speed, grid: As in `refine`.
 
     Returns:
-        (roller, 2, lamina) [N]: π ρ p²/E* of the largest pressure p across the contact
+        LaminaLoads; a load is π ρ p²/E* of the largest pressure p across the contact
         times the length of a lamina, ρ the relative radius; within a lamina the mean
         of the power by which it tires.
 
@@ -44,7 +58,7 @@ def refined_lamina_loads(
     Valid:  ends that carry no load or run out smoothly, as logarithmic profiles do (a
         life within 3 % of that with `edge_stress`). At a sharp end under load the
         pressure of half-spaces is infinite: the life then falls with ever finer cells,
-        by orders of magnitude, and it warns.
+        by orders of magnitude, and its `warnings` say so.
     Source: Hertz's line contact; the stress that tires is that of the pressure.
     """
     if n_laminae < LEAST_LAMINAE:
@@ -62,15 +76,16 @@ def refined_lamina_loads(
         found[roller, ring] = _of_laminae(contact, n_laminae)
         if _peaks_at_an_end(contact):
             sharp.append(f"roller {roller} on the {RINGS[ring]} raceway")
-    if sharp:
-        warnings.warn(
-            f"refined_lamina_loads: the pressure is largest at the ends of"
-            f" {len(sharp)} contacts, such as that of {sharp[0]}. At a sharp end it has"
-            " no limit: it grows, and the life falls, with ever finer cells. Give the"
-            " rollers a profile that runs out, or use the laminae of the solution.",
-            stacklevel=2,
-        )
-    return found
+    if not sharp:
+        return LaminaLoads(found)
+    words = (
+        f"refined_lamina_loads: the pressure is largest at the ends of {len(sharp)}"
+        f" contacts, such as that of {sharp[0]}. At a sharp end it has no limit: it"
+        " grows, and the life falls, with ever finer cells. Give the rollers a profile"
+        " that runs out, or use the laminae of the solution."
+    )
+    one = Warning("sharp_ends", words, float(len(sharp)), 0.0, "; ".join(sharp))
+    return LaminaLoads(found, (one,))
 
 
 def _peaks_at_an_end(found: Refined) -> bool:

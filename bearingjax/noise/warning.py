@@ -14,6 +14,7 @@ from ..element.balls.ball_inertia import ball_inertia, carried_loads
 from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
 from ..element.choices import BallChoices
 from ..numerics.result import Result
+from ..numerics.warning import Warning
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_width import contact_half_width
 from .dynamics.contact_states import contact_states
@@ -46,7 +47,7 @@ def model_warnings(
     samples: int = 2048,
     steps: int | None = None,
     tolerances: Tolerances | None = None,
-) -> list[str]:
+) -> list[Warning]:
     """Return warnings about a bearing and its requested record.
 
     Args:
@@ -56,7 +57,7 @@ def model_warnings(
         tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
-        A sentence each; empty if there are none.
+        Warnings; empty if there are none.
     """
     band_limit = bandwidth(samples, float(model.shaft_speed) / (2.0 * np.pi))
     return [
@@ -72,7 +73,7 @@ def record_warnings(
     found: Spectrum,
     bands: Bands,
     tolerances: Tolerances | None = None,
-) -> list[str]:
+) -> list[Warning]:
     """Return warnings about a record and its levels.
 
     Args:
@@ -83,7 +84,7 @@ def record_warnings(
         tolerances: Scatter of random bearings, if they are asked for.
 
     Returns:
-        A sentence each; empty if there are none.
+        Warnings; empty if there are none.
     """
     return [
         *_silent(model, record, found),
@@ -96,37 +97,42 @@ def record_warnings(
     ]
 
 
-def contribution_warnings(found: SourceContributions) -> list[str]:
+def contribution_warnings(found: SourceContributions) -> list[Warning]:
     """Return warnings about shares of sources.
 
     Args:
         found: From `source_contributions`.
 
     Returns:
-        A sentence, or none.
+        A warning, or none.
     """
     together = float(found.together)
     error = float(np.linalg.norm(found.error) / found.mean_square)
     # A single bearing has no standard error.
-    if together <= 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0):
+    limit = 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0)
+    if together <= limit:
         return []
-    return [
+    words = (
         f"parts of the sources sum to {100.0 * together:.3g} % of the mean square:"
         " they act through each other, and what goes without one of them is counted"
         " for each"
-    ]
+    )
+    return [Warning("overlapping_sources", words, together, limit)]
 
 
-def _few_steps(model, samples, steps) -> Iterator[str]:
+def _few_steps(model, samples, steps) -> Iterator[Warning]:
     least = needed_steps(model, samples)
     if steps is not None and steps < least:
-        yield (
+        yield Warning(
+            "few_steps",
             f"{steps} steps per sample are less than the {least} that the fastest"
-            " natural mode needs"
+            " natural mode needs",
+            float(steps),
+            float(least),
         )
 
 
-def _wandering_modes(model: NoiseModel) -> Iterator[str]:
+def _wandering_modes(model: NoiseModel) -> Iterator[Warning]:
     """Warn of natural modes that change as the rolling elements orbit."""
     share = np.arange(_PLACES) / _PLACES
     count = rows_of(model.element.bearing)[0].bearing.n_elements
@@ -145,13 +151,14 @@ def _wandering_modes(model: NoiseModel) -> Iterator[str]:
         if max(known) > (1.0 + _WANDERING) * min(known)
     ]
     if changes:
-        yield (
+        yield Warning(
+            "wandering_modes",
             "natural modes are those of the element positions at time zero;"
-            f" as these orbit, they change: {'; '.join(changes)}"
+            f" as these orbit, they change: {'; '.join(changes)}",
         )
 
 
-def _above(model, band_limit, tolerances) -> Iterator[str]:
+def _above(model, band_limit, tolerances) -> Iterator[Warning]:
     """Warn of modes and waves above the bandwidth of the samples."""
     cut = (
         f"above {band_limit:.5g} Hz, up to which the samples tell the vibration; raise"
@@ -159,7 +166,9 @@ def _above(model, band_limit, tolerances) -> Iterator[str]:
     )
     for name, frequency in ring_modes(jax.device_get(natural_modes(model)), model):
         if frequency > band_limit:
-            yield f"the {name} at {frequency:.5g} Hz lies {cut}"
+            words = f"the {name} at {frequency:.5g} Hz lies {cut}"
+            about = float(frequency), band_limit, name
+            yield Warning("mode_beyond_bandwidth", words, *about)
     drawn = _highest_drawn(tolerances)
     for where, bearing, errors in _rows(model):
         rolling = kinematic_frequencies(bearing, model.speed)
@@ -172,37 +181,47 @@ def _above(model, band_limit, tolerances) -> Iterator[str]:
             highest = max(_highest(given), drawn[part])
             rate = highest * passing[part]
             if rate > band_limit:
-                yield (
+                yield Warning(
+                    "waves_beyond_bandwidth",
                     f"waves of order {highest} of the {part}{where} are met at"
-                    f" {rate:.5g} Hz, {cut}"
+                    f" {rate:.5g} Hz, {cut}",
+                    rate,
+                    band_limit,
+                    f"{part}{where}",
                 )
 
 
-def _silent(model, record, found) -> Iterator[str]:
+def _silent(model, record, found) -> Iterator[Warning]:
     """Warn of a record of round-off only."""
     size = np.sqrt(np.sum(np.asarray(found.power)[1:]))
     if not size > rounding(model, record):
-        yield (
+        yield Warning(
+            "silent_record",
             f"nothing shakes the bearing: its acceleration of {size:.2g} m/s² is"
             " round-off of the forces; give it form errors, or rolling elements that"
-            " differ"
+            " differ",
+            float(size),
         )
 
 
-def _bands(record, found, bands) -> Iterator[str]:
+def _bands(record, found, bands) -> Iterator[Warning]:
     """Warn of bands that the record does not cover, with remedies."""
     duration = f"the record of {float(record.duration):.4g} s"
     centre = bands.centre
     wide, within = (np.asarray(a) for a in covers(found, bands, record.bandwidth))
     if not wide.all():
-        yield (
+        yield Warning(
+            "short_record",
             f"{duration} is too short for the bands up to {centre[~wide][-1]:g} Hz;"
-            " raise `vibration.turns`"
+            " raise `vibration.turns`",
+            where=f"up to {centre[~wide][-1]:g} Hz",
         )
     if within.any() and not within.all():
-        yield (
+        yield Warning(
+            "few_samples",
             f"{duration} has too few samples for the bands from"
-            f" {centre[~within][0]:g} Hz on; raise `vibration.samples`"
+            f" {centre[~within][0]:g} Hz on; raise `vibration.samples`",
+            where=f"from {centre[~within][0]:g} Hz",
         )
     changed, need = (np.asarray(a) for a in band_shift(found, bands))
     over = (wide & within)[:, None] & (np.abs(changed) >= LEAST_SHIFT)
@@ -212,14 +231,16 @@ def _bands(record, found, bands) -> Iterator[str]:
         # Beyond the lobe of a line its skirt falls by 18 dB for twice the turns.
         turns = max(turns, 2 * record.turns)
         named = ", ".join(f"{c:g}" for c in centre[over.any(axis=1)])
-        yield (
+        yield Warning(
+            "spread_lines",
             "the window spreads strong lines over the edges of bands, which are left"
             f" out for that: {named} Hz; raise `vibration.turns`, to {turns} for most"
-            " of them"
+            " of them",
+            where=f"{named} Hz",
         )
 
 
-def _total(model, record, found) -> Iterator[str]:
+def _total(model, record, found) -> Iterator[Warning]:
     """Warn of a total level that the window changes."""
     own = np.asarray(record.acceleration)[:, :3].std(axis=0)
     heard = own > rounding(model, record)
@@ -229,15 +250,18 @@ def _total(model, record, found) -> Iterator[str]:
     away = 20.0 * np.log10(windowed / own[heard])
     most = float(away[np.argmax(np.abs(away))])
     if abs(most) >= LEAST_SHIFT:
-        yield (
+        yield Warning(
+            "windowed_level",
             f"with its window the total level is {abs(most):.2g} dB"
             f" {'below' if most < 0 else 'above'} that of the record itself: the window"
             " leans on the middle, and takes a part of lines of few periods; raise"
-            " `vibration.turns`"
+            " `vibration.turns`",
+            abs(most),
+            LEAST_SHIFT,
         )
 
 
-def _short_waves(model, load, tolerances) -> Iterator[str]:
+def _short_waves(model, load, tolerances) -> Iterator[Warning]:
     """Warn of waves shorter than the contacts that the model does not average."""
     if model.half_width is not None:
         return
@@ -255,15 +279,19 @@ def _short_waves(model, load, tolerances) -> Iterator[str]:
             highest = max(_highest(given), drawn[part])
             most = int(float(around[part].radius) / half) if half > 0.0 else highest
             if highest > most:
-                yield (
+                yield Warning(
+                    "short_waves",
                     f"waves of the {part}{where} of order {most} and more are shorter"
                     f" than some three contacts of {2e3 * half:.2g} mm, which would"
                     " bridge them: their noise is overstated, by 10 % at that order and"
-                    " ever more above; average them with `vibration.bridging`"
+                    " ever more above; average them with `vibration.bridging`",
+                    float(highest),
+                    float(most),
+                    f"{part}{where}",
                 )
 
 
-def _gyroscopic(model, load) -> Iterator[str]:
+def _gyroscopic(model, load) -> Iterator[Warning]:
     """Warn of balls on which the omitted gyroscopic moment matters.
 
     At the free contact angle, or at that of the axial load if it is larger.
@@ -285,14 +313,16 @@ def _gyroscopic(model, load) -> Iterator[str]:
         found = carried_loads(ball, jnp.stack([normal] * 2), jnp.full(2, each))
         share = float(jnp.max(jnp.abs(found.traction))) / each
         if share > _GYROSCOPIC:
-            yield (
+            words = (
                 f"the gyroscopic moment of the balls{where} asks for tractions of"
                 f" {100.0 * share:.2g} % of their loads; noise leaves it out, whatever"
                 " the raceway control, and contact angles are not those of a load solve"
             )
+            about = share, _GYROSCOPIC, where.removeprefix(" of ")
+            yield Warning("gyroscopic_moment", words, *about)
 
 
-def _halves(record) -> Iterator[str]:
+def _halves(record) -> Iterator[Warning]:
     acceleration = np.asarray(record.acceleration)[:, :3]
     half = len(acceleration) // 2
     first, second = (
@@ -301,20 +331,26 @@ def _halves(record) -> Iterator[str]:
     )
     away = 20.0 * np.log10(first / second) if first > 0 and second > 0 else 0.0
     if abs(away) > UNEVEN:
-        yield (
+        yield Warning(
+            "uneven_record",
             f"the first half of the record is {abs(away):.3g} dB"
             f" {'louder' if away > 0 else 'quieter'} than the second: raise"
-            " `vibration.settle`, or `vibration.turns` until all beats are in it"
+            " `vibration.settle`, or `vibration.turns` until all beats are in it",
+            abs(away),
+            UNEVEN,
         )
 
 
-def _lost_contacts(record) -> Iterator[str]:
+def _lost_contacts(record) -> Iterator[Warning]:
     lost = contact_states(record).shares[0]
     if lost > 0:
-        yield (
+        yield Warning(
+            "lost_contacts",
             f"rolling elements are out of contact for {100.0 * lost:.3g} % of the time:"
             " those that are hit again make noise that depends on the damping of"
-            " contacts, `vibration.retardation`"
+            " contacts, `vibration.retardation`",
+            float(lost),
+            0.0,
         )
 
 

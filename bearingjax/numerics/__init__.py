@@ -3,7 +3,7 @@
 Names
 -----
 
-- Results of solves: `Result`, `SolveError`.
+- Results of solves: `Result`, `SolveError`, `Warning`.
 - Stored programs: `keep_programs`.
 - Minimisers: `TrustRegionNewton`, `BFGS`, `AbstractMinimiser`, `Evaluation`, `Minimum`.
 - Quadrature along rollers: `ContactMapped`, `Midpoint`, `AbstractQuadrature`.
@@ -17,9 +17,10 @@ from .power import positive_power, smooth_power
 from .quadrature import AbstractQuadrature, ContactMapped, Midpoint
 from .result import Result, SolveError
 from .types import as_real
+from .warning import Warning
 
 __all__ = [
-    "Result", "SolveError", "keep_programs", "TrustRegionNewton", "BFGS",
+    "Result", "SolveError", "Warning", "keep_programs", "TrustRegionNewton", "BFGS",
     "AbstractMinimiser", "Evaluation", "Minimum", "ContactMapped", "Midpoint",
     "AbstractQuadrature", "as_real", "positive_power", "smooth_power",
 ]  # fmt: skip

@@ -1,6 +1,5 @@
 """A design with variables: objective, constraints, gradients over its cases."""
 
-import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Annotated, Any, NamedTuple
@@ -13,8 +12,9 @@ from ..cases.cases import Cases
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 from ..statics.options import SolveOptions
-from ..statics.warning import warnings as warnings_of
+from ..statics.warning import solution_warnings
 from .constraint import Constraint
 from .life import OfLife
 from .measure import exact_of, least_size_of
@@ -57,13 +57,13 @@ class Outcome(NamedTuple):
     constraints: np.ndarray
     exact_constraints: np.ndarray
     solution: Any
-    doubts: Callable[[], list[str]] = list
+    doubts: Callable[[], list[Warning]] = list
 
     @property
-    def warnings(self) -> list[str]:
-        """A sentence for each kind of warning: in how many cases, and the worst."""
+    def warnings(self) -> list[Warning]:
+        """A warning of each kind: in how many cases, and the worst."""
         found = self.solution
-        texts = warnings_of(loads_of(found)) if has_loads(found) else []
+        texts = solution_warnings(loads_of(found)) if has_loads(found) else []
         return [*texts, *self.doubts()]
 
 
@@ -146,7 +146,7 @@ class Problem:
             self._doubts(element, found.solution),
         )
 
-    def _doubts(self, element, solution) -> Callable[[], list[str]]:
+    def _doubts(self, element, solution) -> Callable[[], list[Warning]]:
         lives = (m.warnings for m in self.measures if isinstance(m, OfLife))
         asked = [partial(judge, element, solution) for judge in lives][:1]
         if isinstance(element, AbstractSystem):
@@ -178,9 +178,7 @@ class Problem:
         nothing = np.zeros(0)
         failed = Trial(unit, np.nan, None, nothing, None)
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                with_values(self.element, self.paths, self.values(unit))
+            with_values(self.element, self.paths, self.values(unit))
         except ValueError as error:
             return failed._replace(fault=f"not a design: {error}", solved=False)
         found = self.run(unit, slopes)

@@ -12,7 +12,7 @@ from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions, life_of
 from ..life.life_warning import ALL, life_sizes
-from ..statics.warning import sentences_of_cases
+from ..numerics.warning import Warning, warnings_of_cases
 from .measure import AbstractMeasure
 from .system import element_of, loads_of
 
@@ -77,14 +77,14 @@ class OfLife(AbstractMeasure):
 
         return jax.vmap(one)(loads_of(solution))
 
-    def warnings(self, element: Any, solution: Any) -> list[str]:
+    def warnings(self, element: Any, solution: Any) -> list[Warning]:
         """Warnings about the lives of all cases, each kind once.
 
         Args:
             element, solution: As in `__call__`, concrete.
         """
         sizes = jax.device_get(self._sizes(element_of(element), solution))
-        return sentences_of_cases(sizes, ALL)
+        return warnings_of_cases(sizes, ALL)
 
     @eqx.filter_jit
     def _sizes(self, element, solution):

@@ -9,6 +9,7 @@ import equinox as eqx
 
 from ..cases.cases import Cases, case_speed, solve_case
 from ..element.bearing_element import BearingElement, check_element
+from ..numerics.warning import Warning
 from ..statics import solution as statics_solution
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
@@ -64,8 +65,8 @@ class AbstractSystem(eqx.Module):
             solved: From `solve_case`, concrete.
         """
 
-    def warnings(self, cases: Cases, solved: Any) -> list[str]:
-        """Warnings other than those of the loads, a sentence each; none by default.
+    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
+        """Warnings other than those of the loads; none by default.
 
         Args:
             cases: Operating cases.

@@ -8,7 +8,7 @@ from ..design import AbstractBearing, BearingSet
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, RollerSolution, Solution
-from ..statics.warning import warnings
+from ..statics.warning import solution_warnings
 from .balls import contact_angles, ellipses
 from .drawings.section import cross_section
 from .load import load_zone
@@ -84,7 +84,7 @@ def _results(solution):
     azimuth = degrees(solution.azimuth)[roller]
     result = Result(int(solution.result)).label.replace("_", " ")
     element = "ball" if isinstance(solution, BallSolution) else "roller"
-    count = len(warnings(solution))
+    count = len(solution_warnings(solution))
     return (
         "inner against outer ring:  "
         f"u = ({_three(1e6 * shift)}) µm,  γ = ({_three(1e3 * tilt)}) mrad",

@@ -68,13 +68,13 @@ Names
   `instability_onsets`, `Onset`, `major_axis`.
 - Response: `unbalance_response`, `harmonic_response`, `UnbalanceResponse`.
 - Matrices: `RotorMatrices`, `craig_bampton`, `reduction_error`, `reduction_warnings`.
-- Coefficients for other programs: `stiffness_table`, `to_ross`.
+- Coefficients for other programs: `stiffness_table`, `stiffness_warnings`, `to_ross`.
 """
 
 from . import nonlinear
 from .bearing_support import BearingSupport
 from .damping import AbstractDamping, ModalDamping, ProportionalDamping
-from .linear.coefficients import stiffness_table
+from .linear.coefficients import stiffness_table, stiffness_warnings
 from .linear.critical import CriticalSpeeds, critical_speeds
 from .linear.harmonic import harmonic_response, reduction_error, reduction_warnings
 from .linear.modes import Modes, campbell, major_axis, modes
@@ -107,5 +107,6 @@ __all__ = [
     "StaticEquilibriumOver", "modes", "Modes", "campbell", "critical_speeds",
     "CriticalSpeeds", "instability_onsets", "Onset", "major_axis", "unbalance_response",
     "harmonic_response", "UnbalanceResponse", "RotorMatrices", "craig_bampton",
-    "reduction_error", "reduction_warnings", "stiffness_table", "to_ross",
+    "reduction_error", "reduction_warnings", "stiffness_table",
+    "stiffness_warnings", "to_ross",
 ]  # fmt: skip

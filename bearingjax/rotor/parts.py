@@ -1,7 +1,6 @@
 """Parts of a rotor: discs, point masses, supports and their housings."""
 
 import dataclasses
-import warnings
 from abc import abstractmethod
 from typing import Any
 
@@ -15,6 +14,7 @@ from ..design.checks import check, instance, is_traced, non_negative, of_shape, 
 from ..design.material import Material
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 
 Five = Float[Array, "5"]
 """Along (ux uy uz gx gy) of a station: a motion, its rate, or a force."""
@@ -51,6 +51,11 @@ class AbstractPart(eqx.Module):
     station: eqx.AbstractVar[int]
     mass: eqx.AbstractVar[Scalar]
 
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about its numbers; empty where they are traced."""
+        return ()
+
     @abstractmethod
     def inertia(self) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Mass matrix, and gyroscopic matrix at 1 rad/s, of (ux uy uz gx gy)."""
@@ -66,10 +71,6 @@ class Disc(AbstractPart):
         diametral_inertia: Moment of inertia about a diameter [kg m²].
 
     Traced: all fields but `station`.
-
-    Warns:
-        UserWarning: If the polar moment of inertia is above twice the diametral one,
-            which no body has.
     """
 
     station: int = eqx.field(static=True, converter=as_count)
@@ -81,17 +82,23 @@ class Disc(AbstractPart):
         check_station(self, self.station)
         for name in ("mass", "polar_inertia", "diametral_inertia"):
             non_negative(self, name)
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """A warning if the polar moment of inertia is above twice the diametral one,
+        which no body has; empty where they are traced."""
         sizes = self.polar_inertia, self.diametral_inertia
         if any(is_traced(size) for size in sizes):
-            return
+            return ()
         polar, diametral = map(float, sizes)
-        if polar > _FLAT * diametral:
-            warnings.warn(
-                f"Disc: `polar_inertia` ({polar:.5g} kg m²) is above twice"
-                f" `diametral_inertia` ({diametral:.5g} kg m²); no body has that, a"
-                " flat disc has just twice as much",
-                stacklevel=3,
-            )
+        if not polar > _FLAT * diametral:
+            return ()
+        words = (
+            f"Disc: `polar_inertia` ({polar:.5g} kg m²) is above twice"
+            f" `diametral_inertia` ({diametral:.5g} kg m²); no body has that, a"
+            " flat disc has just twice as much"
+        )
+        return (Warning("polar_inertia", words, polar, 2.0 * diametral),)
 
     @classmethod
     def of_size(

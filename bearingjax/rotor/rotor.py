@@ -12,6 +12,7 @@ from jaxtyping import Array, Complex, Float
 from ..design.checks import instance
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
+from ..numerics.warning import Warning
 from .damping import AbstractDamping
 from .held import map_parts
 from .parts import AbstractPart, AbstractSupport
@@ -150,6 +151,11 @@ class Rotor(eqx.Module):
                         f"Rotor: `{name}` holds a {type(part).__name__} on station"
                         f" {part.station}; the last station of the shaft is {last}."
                     )
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about its discs; empty where their numbers are traced."""
+        return tuple(one for disc in self.discs for one in disc.warnings)
 
     @property
     def mass(self) -> Scalar:

@@ -21,6 +21,7 @@ from ..element.frame import FREEDOMS
 from ..fits import Mounting
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 
 STATION_FREEDOMS = FREEDOMS[:5]
 """Freedoms of a cross-section, and of every station."""
@@ -196,9 +197,8 @@ class Shaft(eqx.Module):
 
 def seat_size_warnings(
     shaft: Shaft, station: int, seat: Mounting | CatalogueEntry
-) -> list[str]:
-    """Warnings about a seat of other diameters than the shaft has there, a sentence
-    each.
+) -> list[Warning]:
+    """Warnings about a seat of other diameters than the shaft has there.
 
     Args:
         shaft: The shaft.
@@ -222,7 +222,8 @@ def seat_size_warnings(
         sizes = " or ".join(f"{1e3 * size:.5g}" for size in dict.fromkeys(there[:, 0]))
     if (np.abs(there - wanted) < SAME_SIZE * wanted[0]).all(axis=1).any():
         return []
-    return [f"{has}; at station {station} the shaft has {sizes} mm"]
+    words = f"{has}; at station {station} the shaft has {sizes} mm"
+    return [Warning("seat_size", words, where=f"station {station}")]
 
 
 def shear_coefficient(bore_ratio: Scalar, poisson_ratio: Scalar) -> Scalar:

@@ -5,6 +5,7 @@ balance is solved by the trust-region Newton method that solves single bearings 
 judged by forces, because supports need not have a potential.
 """
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -12,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import is_traced, number, of_class
+from ..design.checks import number, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, recall, stop_gradient, unless_failed
 from ..numerics.lapack import eigh
@@ -20,11 +21,12 @@ from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
+from ..numerics.warning import Warning
 from .condensed import Condensed, Supported, condense
 from .loads import Motions, RotorLoads
 from .parts import LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
-from .statics_words import failure_message, warn_of
+from .statics_words import describe_failure, equilibrium_warnings
 
 _FIRST_STEP = 1e-5
 """First bound of the steps [m]."""
@@ -54,6 +56,8 @@ class StaticEquilibrium(eqx.Module):
         steps: Steps of the search.
         result: `Result` code; the numbers are NaN unless it is `CONVERGED`.
         free: Motion that nothing holds (motion,), zeros if everything is held [1].
+        given: The rotor as it was given, on its own supports.
+        place: Where the search ended (motion,) [m, rad], even if it failed.
     """
 
     displacement: Float[Array, "node 5"]
@@ -68,6 +72,19 @@ class StaticEquilibrium(eqx.Module):
     steps: Int[Array, ""]
     result: Int[Array, ""]
     free: Float[Array, " motion"]
+    given: Rotor | None = None
+    place: Float[Array, " motion"] | None = None
+
+    @property
+    def failure_message(self) -> str:
+        """Why there is no equilibrium, in words; empty if there is one."""
+        return describe_failure(self)
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings of bearings without load or that lost their preload, and of a motion
+        that nothing holds; empty without equilibrium, and where numbers are traced."""
+        return equilibrium_warnings(self)
 
 
 def static_equilibrium(
@@ -87,7 +104,9 @@ def static_equilibrium(
 
     Returns:
         StaticEquilibrium, with first derivatives with respect to all numbers of rotor,
-        loads and speed.
+        loads and speed. Its `warnings` say if a bearing bears nothing or loses its
+        preload because the shaft gives way, or nothing holds the rotor along some
+        motion (which then stays what it is).
 
     Fails: `STEP_LIMIT`, `NO_LOAD_PATH`, `NON_FINITE`.
 
@@ -95,27 +114,17 @@ def static_equilibrium(
         SolveError: If it was not found and `throw`; it says where the rotor went.
         TypeError: If `rotor` or `loads` is something else.
         ValueError: If the rotor has no support, or lacks a loaded station.
-
-    Warns:
-        UserWarning: If a bearing bears nothing or loses its preload because the shaft
-            gives way, or nothing holds the rotor along some motion (which then stays
-            what it is).
     """
     loads = checked_loads("static_equilibrium", rotor, loads)
     speed = as_real(speed)
     number("static_equilibrium", "speed", speed, "rad/s")
     found, place = equilibrium_at(rotor, loads, speed)
-    if throw:
-        found = raise_unless_converged(
-            found,
-            found.result,
-            lambda: failure_message(rotor, found, place),
-            "static_equilibrium",
-        )
-    known = not is_traced(found.motion) and not is_traced(found.result)
-    if known and int(found.result) == Result.CONVERGED:
-        warn_of(rotor, found)
-    return found
+    found = dataclasses.replace(found, given=rotor, place=place)
+    if not throw:
+        return found
+    return raise_unless_converged(
+        found, found.result, lambda: found.failure_message, "static_equilibrium"
+    )
 
 
 def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:

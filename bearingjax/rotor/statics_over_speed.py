@@ -19,6 +19,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged, worst
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import rpm
+from ..numerics.warning import Warning
 from .rotor import Rotor
 from .speed_support import SpeedSupport, chebyshev_analysis
 from .statics import StaticEquilibrium, checked_loads, equilibrium_at
@@ -54,28 +55,34 @@ class StaticEquilibriumOver(eqx.Module):
         first: Any = self.rotor.supports[0]
         return first.top_speed
 
-    def warnings(self) -> list[str]:
-        """Warnings about the springs of its rotor, a sentence each."""
-        if not float(self.error) > MOST_ERROR:
-            return []
-        return [
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about the springs of its rotor; empty where they are traced."""
+        if is_traced(self.error) or not float(self.error) > MOST_ERROR:
+            return ()
+        error = float(self.error)
+        words = (
             "the stiffness of the bearings over the speed is known to"
-            f" {100.0 * float(self.error):.2g} % between rest and"
-            f" {rpm(self.top_speed)}, in critical speeds and Campbell diagram"
-        ]
+            f" {100.0 * error:.2g} % between rest and {rpm(self.top_speed)}, in"
+            " critical speeds and Campbell diagram"
+        )
+        return (Warning("coarse_stiffness", words, error, MOST_ERROR),)
 
-    def critical_speed_warnings(self, speeds: Any) -> list[str]:
-        """Warnings about critical speeds beyond the top speed, a sentence each.
+    def critical_speed_warnings(self, speeds: Any) -> list[Warning]:
+        """Warnings about critical speeds beyond the top speed.
 
         Args:
             speeds: Critical speeds of its rotor [rad/s].
         """
-        if not (np.asarray(speeds) > float(self.top_speed)).any():
+        top, speeds = float(self.top_speed), np.asarray(speeds)
+        beyond = speeds[speeds > top]
+        if not beyond.size:
             return []
-        return [
+        words = (
             f"above {rpm(self.top_speed)} critical speeds are those of the stiffness"
             " that bearings have there"
-        ]
+        )
+        return [Warning("beyond_known_stiffness", words, float(beyond.max()), top)]
 
 
 def static_equilibrium_over(

@@ -1,6 +1,5 @@
 """Messages on failed rotor equilibria, and warnings on converged ones."""
 
-import warnings
 from typing import Any
 
 import jax.numpy as jnp
@@ -9,6 +8,7 @@ import numpy as np
 from ..design.checks import is_traced
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
+from ..numerics.warning import Warning
 from .parts import LinearSupport
 from .rotor import N_STATION
 from .shaft import STATION_FREEDOMS
@@ -33,21 +33,21 @@ def _largest_freedom(rotor, motion) -> str:
     return f"{STATION_FREEDOMS[freedom]} of station {station}"
 
 
-def failure_message(rotor: Any, found: Any, place: Any) -> str:
-    """Return the message on a failed equilibrium of a rotor.
+def describe_failure(found: Any) -> str:
+    """Return the message on a failed equilibrium of a rotor; empty if it converged.
 
     Args:
-        rotor: The rotor.
         found: Result of `static_equilibrium`.
-        place: End point of its search (motion,).
     """
     result = Result(int(found.result))
+    if result is Result.CONVERGED:
+        return ""
     start = f"static_equilibrium: {result.label} at {float(found.speed):g} rad/s:"
-    if result is Result.NO_LOAD_PATH and not is_traced(place):
+    if result is Result.NO_LOAD_PATH and not is_traced(found.place):
         return (
             f"{start} nothing takes up the load along"
-            f" {_largest_freedom(rotor, np.asarray(place))}; give the rotor a"
-            " support that holds it, or less load."
+            f" {_largest_freedom(found.rotor, np.asarray(found.place))}; give the rotor"
+            " a support that holds it, or less load."
         )
     if result is Result.NON_FINITE:
         return f"{start} a force of a support is no number."
@@ -57,8 +57,9 @@ def failure_message(rotor: Any, found: Any, place: Any) -> str:
     )
 
 
-def _lost_preload(rotor, found) -> str:
+def _lost_preload(found) -> str:
     """Return which bearings lost their preload, and why; empty if none did."""
+    rotor = found.given
     moved = np.asarray(rotor.at_supports()) @ np.asarray(found.motion)
     left, slopes = (np.asarray(x) for x in (found.support_load, found.stiffness))
     preloaded = [
@@ -105,14 +106,17 @@ def _at(support, motion, speed):
     return support.force(motion, jnp.zeros_like(motion), speed)
 
 
-def warn_of(rotor: Any, found: Any) -> None:
-    """Warn of bearings without load or that lost their preload, and of an
+def equilibrium_warnings(found: Any) -> tuple[Warning, ...]:
+    """Return warnings of bearings without load or that lost their preload, and of an
     unsupported motion.
 
     Args:
-        rotor: The rotor.
         found: Result of `static_equilibrium`.
     """
+    rotor, known = found.given, (found.motion, found.result)
+    if rotor is None or any(map(is_traced, known)) or int(found.result):
+        return ()
+    warned = []
     loads, slopes = np.asarray(found.support_load), np.asarray(found.stiffness)
     idle = [
         str(support.station)
@@ -120,19 +124,22 @@ def warn_of(rotor: Any, found: Any) -> None:
         if not (load.any() or slope.any() or isinstance(support, LinearSupport))
     ]
     if idle:
-        warnings.warn(
-            f"static_equilibrium: the bearing on station {', '.join(idle)} bears"
-            " nothing: it has no stiffness here; give it a preload or a load",
-            stacklevel=3,
+        where = f"station {', '.join(idle)}"
+        words = (
+            f"static_equilibrium: the bearing on {where} bears nothing: it has no"
+            " stiffness here; give it a preload or a load"
         )
-    lost = _lost_preload(rotor, found)
+        warned.append(Warning("idle_bearing", words, where=where))
+    lost = _lost_preload(found)
     if lost:
-        warnings.warn(f"static_equilibrium: {lost}", stacklevel=3)
+        warned.append(Warning("lost_preload", f"static_equilibrium: {lost}"))
     free = np.asarray(found.free)
     springs = all(isinstance(support, LinearSupport) for support in rotor.supports)
     if free.any() and not springs:
-        warnings.warn(
-            f"static_equilibrium: nothing holds {_largest_freedom(rotor, free)}: it"
-            " stays where it is, and a mode of frequency zero goes with it",
-            stacklevel=3,
+        where = _largest_freedom(rotor, free)
+        words = (
+            f"static_equilibrium: nothing holds {where}: it stays where it is, and a"
+            " mode of frequency zero goes with it"
         )
+        warned.append(Warning("free_motion", words, where=where))
+    return tuple(warned)

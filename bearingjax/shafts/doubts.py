@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..numerics.warning import Warning
 from ..statics.support import axial_senses
 from .system import ShaftSystem
 
@@ -14,7 +15,7 @@ _LOST = 0.05
 """Axial load over the preload in the cold below which the preload is lost [1]."""
 
 
-def load_doubts(system: ShaftSystem, loads: Any) -> Iterator[str]:
+def load_doubts(system: ShaftSystem, loads: Any) -> Iterator[Warning]:
     """Yield warnings: bearings that bear nothing, lost preloads, shafts located twice.
 
     Args:
@@ -31,16 +32,19 @@ def load_doubts(system: ShaftSystem, loads: Any) -> Iterator[str]:
         idle = np.flatnonzero(forces[:, k].max(axis=1) <= _NOTHING * most)
         if idle.size:
             where = _where(idle, len(loads))
-            yield f"{seat.name}: it bears nothing{where}; it may skid"
+            words = f"it bears nothing{where}; it may skid"
+            yield Warning("idle_bearing", words).of(seat.name)
         if seat.preload is not None:
             kept = np.array([axial_load(system, k, load) for load in loads[:, k]])
             lost = np.flatnonzero(kept < _LOST * float(seat.preload))
             if lost.size:
-                yield (
-                    f"{seat.name}: adjusted with {float(seat.preload):.5g} N, it"
-                    f" keeps an axial load of {max(np.nanmin(kept), 0.0):.4g} N"
-                    f"{_where(lost, len(loads))}: the preload is lost to loads or heat"
+                least = max(float(np.nanmin(kept)), 0.0)
+                words = (
+                    f"adjusted with {float(seat.preload):.5g} N, it keeps an axial load"
+                    f" of {least:.4g} N{_where(lost, len(loads))}: the preload is lost"
+                    " to loads or heat"
                 )
+                yield Warning("lost_preload", words, least).of(seat.name)
     yield from _located_twice(system)
 
 
@@ -64,7 +68,7 @@ def _where(cases: np.ndarray, count: int) -> str:
     return f" in {len(cases)} of {count} cases (case {cases[0]})"
 
 
-def _located_twice(system: ShaftSystem) -> Iterator[str]:
+def _located_twice(system: ShaftSystem) -> Iterator[Warning]:
     """Yield a warning for each shaft that several bearings hold both ways."""
     for shaft in system.shafts:
         both = [
@@ -76,8 +80,10 @@ def _located_twice(system: ShaftSystem) -> Iterator[str]:
             and len(axial_senses(seat.installed.drawing.bearing)) == 2
         ]
         if len(both) > 1:
-            yield (
+            yield Warning(
+                "located_twice",
                 f"shaft {shaft.name} is located by {' and '.join(both)}: warmth and"
                 " tolerances of the distance press them against each other; let all but"
-                " one float (`floating`)"
+                " one float (`floating`)",
+                where=f"shaft {shaft.name}",
             )

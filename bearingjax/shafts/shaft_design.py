@@ -20,11 +20,11 @@ from ..life.life import LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.units import unit
+from ..numerics.warning import warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
-from ..statics.warning import sentences_of_cases
 from .bearing_oil import BearingOil
 from .doubts import load_doubts
 from .duty import (
@@ -168,8 +168,8 @@ class ShaftDesign(AbstractSystem):
     def warnings(self, cases, solved):
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
-            texts = sentences_of_cases(jax.device_get(sizes), ALL)
-            found += [f"{seat.name}: {text}" for text in texts]
+            every = warnings_of_cases(jax.device_get(sizes), ALL)
+            found += warnings_of(seat.name, every)
         return [*found, *load_doubts(self.system, solved.load)]
 
     def hours(self, cases: ShaftCases, solved: Any) -> Float[Array, " bearing"]:

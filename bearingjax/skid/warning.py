@@ -6,6 +6,7 @@ import jax
 import numpy as np
 
 from ..lubrication import DryFriction, Newtonian, Regime, SlipCurve
+from ..numerics.warning import Warning, in_cases
 from .conditions import Conditions
 from .model import SkidModel
 from .transients.history import SkidMotion
@@ -29,8 +30,8 @@ MIXED = 3.0
 
 def skid_warnings(
     model: SkidModel, found: Any, state: Conditions | None = None
-) -> list[str]:
-    """Return warnings about a skidding motion, a sentence each.
+) -> list[Warning]:
+    """Return warnings about a skidding motion.
 
     Args:
         model: The bearing, its oil and its surroundings. found: How its balls
@@ -45,22 +46,21 @@ def skid_warnings(
         cases = range(len(held[0].result))
         ones = (jax.tree.map(lambda leaf, k=k: leaf[k], held) for k in cases)
         kinds = zip(*(_doubts(model, *one) for one in ones), strict=True)
-        texts = [_count_cases(kind) for kind in kinds if any(kind)]
+        doubts = [_count_cases(kind) for kind in kinds if any(kind)]
     else:
-        texts = [doubt[1] for doubt in _doubts(model, *held) if doubt]
-    return [*_pockets(model), *texts]
+        doubts = [doubt for doubt in _doubts(model, *held) if doubt]
+    return [*_pockets(model), *doubts]
 
 
 def _count_cases(doubts):
-    """Return the sentence of the worst case, with the number of cases."""
+    """Return the warning of the worst case, with the number of cases."""
     doubtful = [k for k, doubt in enumerate(doubts) if doubt]
-    worst = max(doubtful, key=lambda k: doubts[k][0])
-    many = f"{len(doubtful)} of {len(doubts)}"
-    return f"{doubts[worst][1]}, in {many} cases, worst case {worst}"
+    worst = max(doubtful, key=lambda k: doubts[k].size)
+    return in_cases(doubts[worst], len(doubtful), len(doubts), worst)
 
 
 def _doubts(model, found, state):
-    """Return size and sentence of each kind of warning, or `None`."""
+    """Return the warning of each kind, or `None`."""
     loaded = found.contact_load > 1e-9 * np.nanmax(found.contact_load, initial=0.0)
     # Before the rings turn there is no film, and slip has no meaning.
     rolling = np.abs(found.rolling_orbit_speed)
@@ -83,9 +83,13 @@ def _pockets(model):
     apart = np.pi * float(bearing.pitch_diameter) / bearing.n_elements - size
     if not play > apart:
         return
-    yield (
+    yield Warning(
+        "pocket_clearance",
         f"a pocket clearance of {1e3 * play:.4g} mm is more than the"
-        f" {1e3 * apart:.3g} mm between two {bearing.noun}s: pockets would overlap"
+        f" {1e3 * apart:.3g} mm between two {bearing.noun}s: pockets would overlap",
+        play,
+        apart,
+        "cage",
     )
 
 
@@ -94,22 +98,25 @@ def _wander(model, found):
     play = float(model.cage.pocket_clearance)
     if wander is None or not wander > play:
         return None
-    return float(wander), (
+    return Warning(
+        "wander",
         f"balls wander {1e6 * float(wander):.4g} µm about even motion, and the pocket"
         f" clearance is {1e6 * play:.4g} µm: the cage takes part, which the end state"
-        " leaves out; solve the motion in time"
+        " leaves out; solve the motion in time",
+        float(wander),
+        play,
     )
 
 
 def _slip(found, turning, driven):
     slip = np.abs(found.slip)
-    largest = slip[turning].max(initial=0.0)
+    largest = float(slip[turning].max(initial=0.0))
     if not largest > GROSS:
         return None
     text = f"gross skidding, slip up to {100.0 * largest:.4g} %"
     if not driven.any():
         text += ": nothing is pressed between both raceways, and nothing drives"
-        return largest, text
+        return Warning("gross_skidding", text, largest, GROSS)
     under_load = slip[driven].max(initial=0.0)
     if under_load < largest:
         text = f"{text}, of what both raceways press {100.0 * under_load:.4g} %"
@@ -122,7 +129,7 @@ def _slip(found, turning, driven):
             "; contact loads in time have the centrifugal force of pure rolling, if no"
             " `load_speed` is given"
         )
-    return largest, text
+    return Warning("gross_skidding", text, largest, GROSS)
 
 
 def _sheared_films(model, state, load, loaded):
@@ -131,17 +138,20 @@ def _sheared_films(model, state, load, loaded):
         return None
     # Little pressure says little: oil bears some stress without any.
     counts = loaded & (load > PRESSED * np.nanmax(load, initial=0.0))
-    shear = np.where(counts, state.shear, 0.0).max(initial=0.0)
+    shear = float(np.where(counts, state.shear, 0.0).max(initial=0.0))
     if not shear > MOST_SHEAR:
         return None
     newtonian = isinstance(model.traction, Newtonian)
     law = "a Newtonian film" if newtonian else "its law of traction"
     cure = "Eyring's law or a limiting stress" if newtonian else "a limiting stress"
     pressure = float(np.where(counts, state.peak_pressure, 0.0).max(initial=0.0))
-    return shear, (
+    return Warning(
+        "shear_stress",
         f"shear stresses of {shear:.3g} times the pressure by {law}, at up to"
         f" {1e-9 * pressure:.3g} GPa: no oil bears more than some {MOST_SHEAR:g};"
-        f" {cure} is right"
+        f" {cure} is right",
+        shear,
+        MOST_SHEAR,
     )
 
 
@@ -151,9 +161,12 @@ def _glass(model, state, loaded):
         return None
     least = float(state.peak_pressure[glass].min())
     share, words = _share(glass, loaded)
-    return share, (
+    return Warning(
+        "glassy_oil",
         f"the oil is a glass from {1e-6 * least:.4g} MPa or less: beyond the range of"
-        f" its law in {words} of the contacts"
+        f" its law in {words} of the contacts",
+        share,
+        0.0,
     )
 
 
@@ -164,9 +177,12 @@ def _regimes(state, loaded):
     codes, counts = np.unique(state.regime[outside], return_counts=True)
     name = Regime(int(codes[counts.argmax()])).name.lower().replace("_", " and ")
     share, words = _share(outside, loaded)
-    return share, (
+    return Warning(
+        "film_regime",
         f"films of {words} of the contacts are {name}: the film"
-        " formula is for surfaces that flatten under oil that thickens"
+        " formula is for surfaces that flatten under oil that thickens",
+        share,
+        0.0,
     )
 
 
@@ -176,13 +192,16 @@ def _mixed_films(model, state, loaded):
     if not mixed.any():
         return None
     thinnest = float(state.least_film[mixed].min())
-    return -thinnest, (
+    return Warning(
+        "mixed_film",
         f"films down to {1e6 * thinnest:.2g} µm, less than {MIXED:g} times what remains"
         f" at rest, in {_share(mixed, loaded)[1]} of the contacts: surfaces touch, and"
-        " their friction is not in the law of traction"
+        " their friction is not in the law of traction",
+        1.0 - thinnest / least,
+        0.0,
     )
 
 
 def _share(those, loaded):
-    share = 100.0 * np.count_nonzero(those) / np.count_nonzero(loaded)
-    return share, "all" if share == 100.0 else f"{share:.3g} %"
+    share = np.count_nonzero(those) / np.count_nonzero(loaded)
+    return share, "all" if share == 1.0 else f"{100.0 * share:.3g} %"

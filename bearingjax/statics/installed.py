@@ -25,6 +25,7 @@ from ..fits import (
 from ..numerics.compiled.programs import call_stored
 from ..numerics.types import Scalar, as_array, as_real
 from ..numerics.units import rpm, unit
+from ..numerics.warning import Warning
 from .preload import SetPreload, is_opposed, preload, remaining_preload
 from .service_warning import MOST_DRIFT, preload_warnings, seat_warnings, speed_warnings
 
@@ -246,8 +247,8 @@ class Installed(eqx.Module):
             found[place] = _fitting(own, *fits)
         return found
 
-    def seat_warnings(self, load_fixed_to: str = "space") -> list[str]:
-        """Warnings about its seats, a sentence each, at the speeds of `conditions`.
+    def seat_warnings(self, load_fixed_to: str = "space") -> list[Warning]:
+        """Warnings about its seats, at the speeds of `conditions`.
 
         Args:
             load_fixed_to: As in `LifeConditions`.
@@ -263,9 +264,9 @@ class Installed(eqx.Module):
 
     def held_clearance_warnings(
         self, speed: float, others: Iterable[float]
-    ) -> list[str]:
-        """Warnings about solving other speeds with the clearance at one, a sentence
-        each: centrifugal growth of shaft and inner ring changes it.
+    ) -> list[Warning]:
+        """Warnings about solving other speeds with the clearance at one: centrifugal
+        growth of shaft and inner ring changes it.
 
         Args:
             speed: Speed of the inner ring whose clearance is taken [rad/s].
@@ -278,33 +279,35 @@ class Installed(eqx.Module):
                 return []
             left[turns] = float(states.operating.radial_clearance)
         far = max(left, key=lambda turns: abs(left[turns] - left[speed]))
-        if abs(left[far] - left[speed]) <= MOST_DRIFT:
+        drift = abs(left[far] - left[speed])
+        if drift <= MOST_DRIFT:
             return []
-        return [
+        words = (
             f"all speeds are solved with the radial clearance at {rpm(speed)},"
             f" {1e6 * left[speed]:.4g} µm; at {rpm(far)} its fits leave"
             f" {1e6 * left[far]:.4g} µm"
-        ]
+        )
+        return [Warning("held_clearance", words, drift, MOST_DRIFT)]
 
     def warnings(
         self, speed: Speed | None = None, load_fixed_to: str = "space"
-    ) -> list[str]:
-        """Warnings about its seats, its speed and the preload of its rows, a sentence
-        each; what a solution says is told by `statics.warnings`.
+    ) -> list[Warning]:
+        """Warnings about its design, its seats, its speed and the preload of its rows;
+        what a solution says is told by `statics.warnings`.
 
         Args:
             speed: Ring speeds; `None`: at rest.
             load_fixed_to: As in `LifeConditions`.
         """
         turning = self if speed is None else self.with_speed(speed)
-        texts = turning.seat_warnings(load_fixed_to)
+        found = [*self.drawing.warnings, *turning.seat_warnings(load_fixed_to)]
         if speed is not None:
-            texts += self.speed_warnings(speed.inner - speed.outer)
+            found += self.speed_warnings(speed.inner - speed.outer)
         preload = turning.set_preload(speed)
-        return texts + ([] if preload is None else preload_warnings(preload))
+        return found + ([] if preload is None else preload_warnings(preload))
 
-    def speed_warnings(self, turns: Any) -> list[str]:
-        """Warnings about speeds beyond those of its catalogue, a sentence each.
+    def speed_warnings(self, turns: Any) -> list[Warning]:
+        """Warnings about speeds beyond those of its catalogue.
 
         Args:
             turns: As in `statics.speed_warnings`, concrete.

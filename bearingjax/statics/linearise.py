@@ -1,25 +1,23 @@
 """The bearing at an operating point, for linear rotordynamics."""
 
-import warnings
 from collections.abc import Sequence
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.lapack import pseudoinverse
 from ..numerics.types import Ring, RingStiffness
+from ..numerics.warning import Warning
 from .load import raise_if_failed, solve
 from .load_case import Prescribed, Vector
 from .options import SolveOptions
 from .solution import Solution
-from .warning import loose
+from .warning import warnings
 
 _SLACK = 1e-9
 """Share of the largest stiffness below which a direction counts as free [1]."""
@@ -36,6 +34,15 @@ class OperatingPoint(eqx.Module):
     """
 
     solution: Solution
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings about its solution, such as a direction without stiffness.
+
+        Raises:
+            TypeError: As `warnings`.
+        """
+        return tuple(warnings(self.solution))
 
     @property
     def motion(self) -> Ring:
@@ -121,13 +128,11 @@ def linearise(
         element, load, prescribed, free, fixed_ring, speed, throw: As in `solve_load`.
 
     Returns:
-        OperatingPoint, differentiable with respect to design, load and speeds.
+        OperatingPoint, differentiable with respect to design, load and speeds; its
+        `warnings` say if a free direction has no stiffness there, as without load.
 
     Raises:
         TypeError, ValueError, SolveError: As `solve_load`.
-
-    Warns:
-        UserWarning: If a free direction has no stiffness there, as without load.
 
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
@@ -136,8 +141,4 @@ def linearise(
     solution = solve(element, load, options, prescribed=prescribed, speed=speed)
     if throw:
         solution = raise_if_failed(solution, "linearise")
-    if not any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
-        slack = loose(solution)
-        if slack:
-            warnings.warn(f"linearise: {slack}", stacklevel=2)
     return OperatingPoint(solution)

@@ -1,6 +1,5 @@
 """One roller of a solved bearing, its contact with a raceway cell by cell."""
 
-import warnings
 from typing import Any
 
 import equinox as eqx
@@ -156,23 +155,20 @@ def roller_contact(
     # A flat washer: a plane at any angle.
     flat = angle > 0.5 * np.pi - 1e-5
     profiles = (bearing.outer_raceway_profile, bearing.inner_raceway_profile)
-    with warnings.catch_warnings():
-        # Half angle and diameters agree: the length is that of the generatrix.
-        warnings.simplefilter("ignore")
-        return RollerContact(
-            bearing.roller_length,
-            constants.diameter - taper,
-            constants.diameter + taper,
-            half_angle=half,
-            raceway_radius=jnp.where(flat, jnp.inf, raceway),
-            raceway_half_angle=jnp.where(flat, 0.0, angle),
-            arc_radii=None if arcs is None else (arcs[0], arcs[1 + ring]),
-            roller_profile=bearing.roller_profile,
-            raceway_profile=profiles[ring],
-            material=bearing.material,
-            raceway_material=bearing.rings,
-            free_ends=free_ends,
-        )
+    return RollerContact(
+        bearing.roller_length,
+        constants.diameter - taper,
+        constants.diameter + taper,
+        half_angle=half,
+        raceway_radius=jnp.where(flat, jnp.inf, raceway),
+        raceway_half_angle=jnp.where(flat, 0.0, angle),
+        arc_radii=None if arcs is None else (arcs[0], arcs[1 + ring]),
+        roller_profile=bearing.roller_profile,
+        raceway_profile=profiles[ring],
+        material=bearing.material,
+        raceway_material=bearing.rings,
+        free_ends=free_ends,
+    )
 
 
 def _row_of(element, solution, roller, speed):

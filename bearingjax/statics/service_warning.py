@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 from ..element.inertia import Speed
 from ..fits.fits import FitState
 from ..numerics.types import as_real
+from ..numerics.warning import Warning, in_cases
 from .preload import SetPreload
 
 MOST_STRESS = 127e6
@@ -53,8 +54,8 @@ def seat_warnings(
     *,
     speed: Speed | None = None,
     load_fixed_to: str = "space",
-) -> list[str]:
-    """Warnings about the seats of a bearing, a sentence each.
+) -> list[Warning]:
+    """Warnings about the seats of a bearing.
 
     A ring that turns against the load creeps on a seat without interference, and wears
     it; one against which the load stands still may be loose.
@@ -70,42 +71,52 @@ def seat_warnings(
 
     Source: rule of catalogues of rolling bearings: rotating load, tight fit.
     """
-    texts = []
-    for words, state in (("mounted", mounted), ("in operation", operating)):
-        if state.ring_stress > MOST_STRESS:
-            texts.append(
-                f"fit: the hoop stress of the inner ring is"
-                f" {1e-6 * float(state.ring_stress):.4g} MPa {words}, above"
-                f" {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears for long"
+    found = []
+    for when, state in (("mounted", mounted), ("in operation", operating)):
+        stress = float(state.ring_stress)
+        if stress > MOST_STRESS:
+            words = (
+                f"fit: the hoop stress of the inner ring is {1e-6 * stress:.4g} MPa"
+                f" {when}, above {1e-6 * MOST_STRESS:g} MPa, which bearing steel bears"
+                " for long"
             )
+            about = stress, MOST_STRESS, "inner ring"
+            found.append(Warning("hoop_stress", words, *about))
             break
     turning = (False, False)
     if speed is not None and float(speed.inner) != float(speed.outer):
         turning = np.asarray(turns_against_load(speed, load_fixed_to)) > 0
-    for (seat, words), turns in zip(_SEATS.items(), turning, strict=True):
+    for (seat, ring), turns in zip(_SEATS.items(), turning, strict=True):
         before, after = (
-            1e6 * float(getattr(state, f"{seat}_interference"))
+            float(getattr(state, f"{seat}_interference"))
             for state in (mounted, operating)
         )
+        kind, words, lost = "", "", abs(after)
         if turns and after <= 0.0:
             once = ", though tight when mounted" if before > 0.0 else ""
-            texts.append(
-                f"fit: {words} turns against the load and is loose by"
-                f" {abs(after):.3g} µm in operation{once}: it creeps and wears its seat"
+            kind = "creeping_ring"
+            words = (
+                f"turns against the load and is loose by {1e6 * lost:.3g} µm in"
+                f" operation{once}: it creeps and wears its seat"
             )
         elif before > 0.0 >= after:
-            texts.append(
-                f"fit: {words} is tight when mounted, but loose by"
-                f" {abs(after):.3g} µm in operation: its seat has no pressure"
+            kind = "loose_ring"
+            words = (
+                f"is tight when mounted, but loose by {1e6 * lost:.3g} µm in"
+                " operation: its seat has no pressure"
             )
         elif loosest is not None and (turns or seat == "shaft"):
-            left = 1e6 * float(getattr(loosest, f"{seat}_interference"))
+            left = float(getattr(loosest, f"{seat}_interference"))
             if left <= 0.0 < after:
-                texts.append(
-                    f"fit: {words} is loose in operation, by {abs(left):.3g} µm, at the"
-                    " loosest sizes of the tolerances"
+                lost = abs(left)
+                kind = "loose_within_tolerances"
+                words = (
+                    f"is loose in operation, by {1e6 * lost:.3g} µm, at the loosest"
+                    " sizes of the tolerances"
                 )
-    return texts
+        if kind:
+            found.append(Warning(kind, f"fit: {ring} {words}", lost, 0.0, seat))
+    return found
 
 
 def speed_warnings(
@@ -113,8 +124,8 @@ def speed_warnings(
     *,
     limiting_speed: Any = None,
     reference_speed: Any = None,
-) -> list[str]:
-    """Warnings about a speed beyond those that a catalogue names, a sentence each.
+) -> list[Warning]:
+    """Warnings about a speed beyond those that a catalogue names.
 
     Args:
         turns: Speed of one ring against the other, of one or many cases [rad/s].
@@ -123,14 +134,16 @@ def speed_warnings(
 
     Source: ISO 15312 of the reference speed.
     """
-    size, texts = np.abs(np.asarray(turns)), []
-    for limit, words in (
+    size, found = np.abs(np.asarray(turns)), []
+    for kind, limit, words in (
         (
+            "limiting_speed",
             limiting_speed,
             "the limiting speed of the catalogue, {} rpm: cage, accuracy and"
             " lubrication for it are needed",
         ),
         (
+            "reference_speed",
             reference_speed,
             "the reference speed of the catalogue, {} rpm: without cooling it runs"
             " warmer than the 70 °C of ISO 15312, or its load must be less",
@@ -138,20 +151,21 @@ def speed_warnings(
     ):
         if limit is None:
             continue
-        above = size > float(limit) * (1.0 + 1e-9)  # by more than round-off
+        most, limit = float(size.max()), float(limit)
+        above = size > limit * (1.0 + 1e-9)  # by more than round-off
         if not above.any():
             continue
-        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (size.max(), float(limit)))
-        many = ""
+        top, allowed = (f"{x * 30 / np.pi:.5g}" for x in (most, limit))
+        words = f"speed of {top} rpm, above {words.format(allowed)}"
+        one = Warning(kind, words, most, limit)
         if above.ndim:
-            many = f", in {above.sum()} of {above.size} cases, worst case"
-            many += f" {np.argmax(size)}"
-        texts.append(f"speed of {top} rpm, above {words.format(allowed)}{many}")
-    return texts
+            one = in_cases(one, int(above.sum()), above.size, int(np.argmax(size)))
+        found.append(one)
+    return found
 
 
-def preload_warnings(found: SetPreload) -> list[str]:
-    """Warnings about the preload of a set on its seats, a sentence each.
+def preload_warnings(found: SetPreload) -> list[Warning]:
+    """Warnings about the preload of a set on its seats.
 
     Args:
         found: From `Installed.set_preload`.
@@ -162,40 +176,47 @@ def preload_warnings(found: SetPreload) -> list[str]:
     if found.operating_range is not None:
         ends = f" ({shown_preload(least)} to {shown_preload(most)} over the tolerances)"
     if operating == 0.0 < ground:
-        return [
+        words = (
             f"preload: the set, ground to {shown_preload(ground)}, has none left in"
             f" operation{ends}: fits, warmth and speed take it"
-        ]
+        )
+        return [Warning("lost_preload", words, operating)]
     if ground > 0.0 and not 1.0 / MOST_CHANGE < operating / ground < MOST_CHANGE:
-        return [
+        words = (
             f"preload: {shown_preload(ground)} as ground are {shown_preload(operating)}"
             f" in operation{ends}, by fits, warmth and speed"
-        ]
+        )
+        return [Warning("changed_preload", words, operating)]
     if least == 0.0 < ground:
-        return [
+        words = (
             "preload: at the loosest sizes of the tolerances the set has none left in"
             " operation"
-        ]
+        )
+        return [Warning("lost_preload", words, least, where="loosest sizes")]
     return []
 
 
-def preload_range_warnings(ground: float, least: float, most: float) -> list[str]:
-    """Warnings about the preload of a set over many cases, a sentence each.
+def preload_range_warnings(ground: float, least: float, most: float) -> list[Warning]:
+    """Warnings about the preload of a set over many cases.
 
     Args:
         ground: Preload as ground, before mounting [N].
         least, most: Preload in operation, over the cases [N].
     """
     if least == 0.0:
-        words = "has none left in operation in some of the cases"
-        return [f"preload: the set, ground to {shown_preload(ground)}, {words}"]
+        words = (
+            f"preload: the set, ground to {shown_preload(ground)}, has none left in"
+            " operation in some of the cases"
+        )
+        return [Warning("lost_preload", words, least)]
     if ground / MOST_CHANGE < least and most < MOST_CHANGE * ground:
         return []
     ends = " to ".join(dict.fromkeys(map(shown_preload, (least, most))))
-    return [
+    words = (
         f"preload: {shown_preload(ground)} as ground are {ends} in operation over the"
         " cases, by fits, warmth and speed"
-    ]
+    )
+    return [Warning("changed_preload", words, most)]
 
 
 def shown_preload(force: float) -> str:

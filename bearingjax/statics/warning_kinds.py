@@ -1,7 +1,8 @@
 """Every kind of warning: a value of the solution, its limit and the text."""
 
+import dataclasses
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,48 +20,25 @@ from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
 from ..numerics.units import shown_count
+from ..numerics.warning import Kind
 from . import warning_sizes as sizes
 from .rollers import EDGE_PRESSURE
 from .solution import Solution
 
 
-class Kind(NamedTuple):
-    """A kind of warning.
+@dataclasses.dataclass(frozen=True)
+class SolutionKind(Kind):
+    """A kind of warning about a solution; its `where` takes the solution.
 
     Attributes:
-        applies: (element, speed) -> whether it can arise at all. Static.
         size: Solution -> size of the warning, a scalar.
-        limit: Largest size that gives no warning, in the unit of `size`.
-        text: The sentence with `{size}`, `{limit}` and `{where}`.
-        where: Concrete solution -> the rows, elements or numbers concerned, in words.
-        many: Size -> the words in place of those of `where` for many cases.
-        factor: Factor of size and limit in the text.
-        of_all: Whether it is reported only if it applies to all cases.
+        applies: (element, speed) -> whether it can arise at all. Static.
     """
 
-    applies: Callable[[BearingElement, Speed | None], bool]
-    size: Callable[[Solution], Any]
-    limit: float
-    text: str
-    where: Callable[[Solution], str] = lambda solution: ""
-    many: Callable[[float], str] = lambda size: ""
-    factor: float = 1.0
-    of_all: bool = False
-
-    def words(self, size: float, where: str) -> str:
-        """Return the sentence about a size.
-
-        Args:
-            size: Size of the warning.
-            where: From `where`; "" for many cases.
-        """
-        size, limit = self.factor * size, self.factor * self.limit
-        where = where or self.many(size)
-        return self.text.format(size=size, limit=limit, where=where)
-
-
-def _always(element, speed):
-    return True
+    size: Callable[[Solution], Any] = dataclasses.field(kw_only=True)
+    applies: Callable[[BearingElement, Speed | None], bool] = dataclasses.field(
+        kw_only=True, default=lambda element, speed: True
+    )
 
 
 def _of_balls(element, speed):
@@ -111,81 +89,77 @@ def _of_raceways(solution: Solution, concerned: Any) -> str:
     return f" ({where})" if where else ""
 
 
-KINDS: dict[str, Kind] = {
-    "implausible_number": Kind(
-        _always,
-        sizes.implausible_dimensions,
+KINDS: dict[str, SolutionKind] = {
+    "implausible_number": SolutionKind(
         0.0,
         "far outside the sizes of rolling bearings: {where}; are these SI units?",
         sizes.odd_names,
         "{:.0f} numbers of the design".format,
+        size=sizes.implausible_dimensions,
     ),
-    "no_stiffness": Kind(
-        _always,
-        sizes.unrestrained_directions,
+    "no_stiffness": SolutionKind(
         0.0,
         "no stiffness in {where}: nothing holds it there, and its place is arbitrary",
         sizes.loose_names,
         "{:.0f} free directions".format,
+        size=sizes.unrestrained_directions,
     ),
-    "unloaded_row": Kind(
-        lambda element, _: len(rows_of(element.bearing)) > 1,
-        sizes.unloaded_rows,
+    "unloaded_row": SolutionKind(
         0.0,
         "{where} is unloaded: the other rows or their springs hold all",
         sizes.idle_numbers,
         "{:.0f} of the rows".format,
+        applies=lambda element, _: len(rows_of(element.bearing)) > 1,
+        size=sizes.unloaded_rows,
     ),
-    "slack_spring": Kind(
-        lambda element, _: any(r.spring is not None for r in rows_of(element.bearing)),
-        sizes.slack_springs,
+    "slack_spring": SolutionKind(
         0.0,
         "the spring of {where} is slack",
         sizes.slack_numbers,
         "{:.0f} of the rows".format,
+        applies=lambda element, _: any(
+            r.spring is not None for r in rows_of(element.bearing)
+        ),
+        size=sizes.slack_springs,
     ),
-    "contact_pressure": Kind(
-        _always,
-        lambda solution: solution.roller_pressure.max(),
+    "contact_pressure": SolutionKind(
         sizes.LARGEST_PRESSURE,
         "contact pressure of {size:.5g} MPa: beyond {limit:.0f} MPa steel is no longer"
         " elastic{where}",
         lambda s: _of_raceways(s, s.roller_pressure > sizes.LARGEST_PRESSURE),
-        factor=1e-6,
+        shown=lambda size: 1e-6 * size,
+        size=lambda solution: solution.roller_pressure.max(),
     ),
-    "static_limit": Kind(
-        _always,
-        lambda s: s.roller_pressure.max() / sizes.static_limit(s.element.bearing),
+    "static_limit": SolutionKind(
         1.0,
         "contact pressure {size:.4g} times that of the static load rating of ISO 76"
         "{where}",
         lambda s: f" ({1e-6 * sizes.static_limit(s.element.bearing):.0f} MPa)",
+        size=lambda s: s.roller_pressure.max() / sizes.static_limit(s.element.bearing),
     ),
-    "contact_width": Kind(
-        _of_rollers,
-        sizes.widths,
+    "contact_width": SolutionKind(
         sizes.LARGEST_WIDTH,
         "half width of a contact {size:.2g} of its radius: Hertz's theory is for small"
         " strains, up to about {limit:g}",
+        applies=_of_rollers,
+        size=sizes.widths,
     ),
-    "contact_ellipse": Kind(
-        _of_balls,
-        sizes.ellipses,
+    "contact_ellipse": SolutionKind(
         sizes.LARGEST_ELLIPSE,
         "semi-axis of a contact ellipse {size:.2g} of the ball's radius: beyond"
         " {limit:g} Hertz's parabolas are a tenth off ball and groove",
+        applies=_of_balls,
+        size=sizes.ellipses,
     ),
-    "contact_angle": Kind(
-        _of_balls,
-        sizes.groove_angles,
+    "contact_angle": SolutionKind(
         sizes.LARGEST_ANGLE,
         "contact angle {size:.3g} deg from the middle of the raceway: no groove goes so"
         " far; the ball would ride on the edge of its shoulder",
-        factor=180.0 / np.pi,
+        shown=lambda size: 180.0 / np.pi * size,
+        applies=_of_balls,
+        size=sizes.groove_angles,
     ),
-    "tilt": Kind(
-        _is_linearised,
-        sizes.tilt_error,
+    "tilt": SolutionKind(
         sizes.LARGEST_TILT_ERROR,
         "tilt beyond small rotations: linearised kinematics leave out {size:.2g} % of"
         " {where} (Finite() kinematics do not)",
@@ -195,81 +169,76 @@ KINDS: dict[str, Kind] = {
             else "the approach of the contacts, and loads err by about as much"
         ),
         lambda size: "the approach of the contacts, or of free motion",
-        factor=100.0,
+        shown=lambda size: 100.0 * size,
+        applies=_is_linearised,
+        size=sizes.tilt_error,
     ),
-    "arc_travel": Kind(
-        _is_linearised_barrel,
-        sizes.travel_error,
+    "arc_travel": SolutionKind(
         sizes.LARGEST_TILT_ERROR,
         "travel along barrel rollers: linearised kinematics leave out {size:.2g} % of"
         " the axial force (Finite() kinematics do not)",
-        factor=100.0,
+        shown=lambda size: 100.0 * size,
+        applies=_is_linearised_barrel,
+        size=sizes.travel_error,
     ),
-    "free_tilt": Kind(
-        _always,
-        sizes.free_tilt,
+    "free_tilt": SolutionKind(
         1.0,
         "the ring tilts freely, {where}: if shaft and housing hold it straighter,"
         " prescribe gx and gy (in a scene's [operating]: prescribed = {{ gx ="
         ' "0 mrad", gy = "0 mrad" }}), or leave them out of `free`',
         lambda s: sizes.tilt_in_words(s, sizes.free_tilt(s)),
         "{:.3g} times what makers allow for".format,
+        size=sizes.free_tilt,
     ),
-    "prescribed_tilt": Kind(
-        _always,
-        sizes.prescribed_tilt,
+    "prescribed_tilt": SolutionKind(
         1.0,
         "tilt of {where}",
         lambda s: sizes.tilt_in_words(s, sizes.prescribed_tilt(s)),
         "{:.3g} times what makers allow for".format,
+        size=sizes.prescribed_tilt,
     ),
-    "speed": Kind(
-        lambda _, speed: speed is not None,
-        sizes.speed_factor,
+    "speed": SolutionKind(
         sizes.LARGEST_SPEED,
         "n·dm of {size:.3g} mm/min: most greases and oil baths end at {limit:.0e}"
         " mm/min; it takes oil jet or oil-air, and a cage made for it",
+        applies=lambda _, speed: speed is not None,
+        size=sizes.speed_factor,
     ),
-    "negative_clearance": Kind(
-        lambda element, speed: (
-            speed is not None and sizes.has_clearance(element.bearing)
-        ),
-        sizes.clearance_lost,
+    "negative_clearance": SolutionKind(
         0.0,
         "runs with a radial clearance of {size:.3g} µm: its rolling elements are"
         " pressed whatever the load, and harder as the inner ring warms",
-        factor=-1e6,
+        shown=lambda size: -1e6 * size,
+        applies=lambda element, speed: (
+            speed is not None and sizes.has_clearance(element.bearing)
+        ),
+        size=sizes.clearance_lost,
     ),
-    "radial_share": Kind(
-        _is_spherical_thrust,
-        sizes.radial_share,
+    "radial_share": SolutionKind(
         sizes.LARGEST_RADIAL_SHARE,
         "radial load of {size:.3g} times the axial one: beyond {limit:g} makers of"
         " spherical roller thrust bearings ask for another bearing that carries it",
+        applies=_is_spherical_thrust,
+        size=sizes.radial_share,
     ),
-    "rib_interference": Kind(
-        _has_ribs,
-        sizes.interference,
+    "rib_interference": SolutionKind(
         0.0,
         "ribs press on the roller ends: {size:.4g} µm of interference, unloaded and"
         " centred",
-        factor=1e6,
+        shown=lambda size: 1e6 * size,
+        applies=_has_ribs,
+        size=sizes.interference,
     ),
-    "truncated_ellipse": Kind(
-        _has_shoulder,
-        sizes.truncation,
+    "truncated_ellipse": SolutionKind(
         0.0,
         "truncated contact ellipse: it reaches over the shoulder by up to {size:.4g}"
         " µm; pressure and stiffness there are not Hertz's{where}",
         lambda s: f" ({sizes.truncated_balls(s)})",
-        factor=1e6,
+        shown=lambda size: 1e6 * size,
+        applies=_has_shoulder,
+        size=sizes.truncation,
     ),
-    "beyond_groove": Kind(
-        lambda element, _: any(
-            isinstance(row.bearing, AngularContactBallBearing)
-            for row in rows_of(element.bearing)
-        ),
-        sizes.on_land_count,
+    "beyond_groove": SolutionKind(
         0.0,
         "balls beyond the bottom of the groove, on the cylindrical land beside it, with"
         f" more than {100.0 * sizes.LAND_SHARE:g} % of"
@@ -277,10 +246,13 @@ KINDS: dict[str, Kind] = {
         " the curvature of the groove, a land presses harder and is softer",
         lambda s: sizes.of_raceways(s, sizes.load_beyond_groove(s)),
         _balls,
+        applies=lambda element, _: any(
+            isinstance(row.bearing, AngularContactBallBearing)
+            for row in rows_of(element.bearing)
+        ),
+        size=sizes.on_land_count,
     ),
-    "lifted_ball": Kind(
-        lambda element, speed: _of_balls(element, speed) and speed is not None,
-        sizes.lifted_count,
+    "lifted_ball": SolutionKind(
         0.0,
         "lifted off the inner raceway by centrifugal force, more than"
         f" {100.0 * sizes.SMALLEST_LOAD:g} %"
@@ -289,15 +261,17 @@ KINDS: dict[str, Kind] = {
             "ball", np.flatnonzero(sizes.balls_off_inner_ring(s))
         ),
         _balls,
+        applies=lambda element, speed: _of_balls(element, speed) and speed is not None,
+        size=sizes.lifted_count,
     ),
-    "edge_loaded": Kind(
-        _of_rollers,
-        sizes.edge_pressure,
+    "edge_loaded": SolutionKind(
         EDGE_PRESSURE,
         "edge-loaded roller: {size:.4g} MPa at the roller end, where the line-contact"
         " laws know no pressure peak{where}",
         lambda s: _of_raceways(s, sizes.ends_over(s).any(axis=2)),
-        factor=1e-6,
+        shown=lambda size: 1e-6 * size,
+        applies=_of_rollers,
+        size=sizes.edge_pressure,
     ),
 }
 """Every kind of warning, by name, in the order in which they are reported."""

@@ -2,7 +2,6 @@
 """What a constructor refuses, and in which words; what it lets through."""
 
 import dataclasses
-import warnings
 from math import atan, pi, sin
 
 import jax
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 from tolerances import ROUNDING
 
+import bearingjax as bj
 from bearingjax.design import (
     CircularCrown,
     CrownedEnds,
@@ -171,16 +171,23 @@ def test_angles():
 
 def test_apexes_meet():
     """tan(half angle) = (D/2) sin(axis angle)/(pitch radius): one point, no warning."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        bearing = tapered()
+    bearing = tapered()
+    assert bearing.warnings == ()
     roller = 0.5 * PITCH / np.tan(AXIS)
     np.testing.assert_allclose(bearing.apexes(), roller, rtol=ROUNDING)
 
 
 def test_apexes_apart():
-    with pytest.warns(UserWarning, match="TaperedRollerBearing: the apexes"):
-        bearing = tapered(half=1.1 * HALF)
+    bearing = tapered(half=1.1 * HALF)
+    (told,) = bearing.warnings
+    assert told.startswith("TaperedRollerBearing: the apexes of outer raceway")
+    assert told.kind == "apexes_apart" and told.size > 2.0 * told.limit
+    # Sets, elements and solutions have the warnings of the design, each once.
+    pair = bj.BearingSet.back_to_back(bearing, 0.02)
+    element = bj.BearingElement(pair)
+    assert pair.warnings == element.warnings == (told,)
+    assert bj.warnings(bearing) == bj.warnings(element) == [told]
+    assert jax.jit(lambda b: jnp.asarray(len(b.warnings)))(bearing) == 0
     # The raceways by hand: tangent lines of the roller's mid circle.
     z, r = 0.5 * DIAMETER * np.array([np.sin(AXIS), np.cos(AXIS)])
     outer = z + (0.5 * PITCH + r) / np.tan(AXIS + 1.1 * HALF)
@@ -191,9 +198,7 @@ def test_apexes_apart():
 
 def test_cylinders_between_cones_do_not_warn():
     """Rollers without a cone angle cannot roll on apexes at all."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        tapered(half=0.0)
+    assert tapered(half=0.0).warnings == ()
 
 
 def test_traced_construction():

@@ -59,8 +59,8 @@ from bearingjax.life.refined_life import (
     _peaks_at_an_end,
     refined_lamina_loads,
 )
+from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.optimise.design_problem import Problem
-from bearingjax.statics.warning import sentences_of_cases
 
 ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
@@ -832,7 +832,7 @@ def test_optimise_life_warnings_match_rating_life():
         one = jax.tree.map(lambda leaf, k=k: leaf[k], solutions)
         life = bj.rating_life(element, one)
         found = life_sizes(element.bearing, life.ratings, vars(life))
-        (alone,) = sentences_of_cases(
+        (alone,) = warnings_of_cases(
             {name: np.atleast_1d(x) for name, x in found.items()}, ALL
         )
         words, _, case = alone.partition(", in 1 of 1 cases, worst case ")
@@ -969,18 +969,18 @@ def test_life_warnings_of_each_kind(untyped):
     cases = {name: np.array([x, x, x, np.nan]) for name, x in sound.items()}
     cases["reference_load"][1] = 15e3
     cases["viscosity_ratio"][:] = [0.08, 4.5, 0.02, np.nan]
-    heavy, thin, thick = sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)  # pyright: ignore[reportArgumentType]
+    heavy, thin, thick = warnings_of_cases(life_sizes(bearing, ratings, cases), ALL)  # pyright: ignore[reportArgumentType]
     assert "1.5 times the lesser" in heavy and "in 1 of 4 cases, worst" in heavy
     assert heavy.endswith("case 1")
     assert "of 0.02:" in thin and "in 2 of 4 cases, worst case 2" in thin
     assert "of 4.5:" in thick and "in 1 of 4 cases, worst case 1" in thick
     # A standstill among other cases has no life in hours, and needs none.
     cases["life_hours"][2] = np.inf
-    assert len(sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)) == 3  # pyright: ignore[reportArgumentType]
+    assert len(warnings_of_cases(life_sizes(bearing, ratings, cases), ALL)) == 3  # pyright: ignore[reportArgumentType]
     cases["life_hours"][:] = np.inf
     assert (
         "no life in hours"
-        in sentences_of_cases(life_sizes(bearing, ratings, cases), ALL)[-1]
+        in warnings_of_cases(life_sizes(bearing, ratings, cases), ALL)[-1]
     )  # pyright: ignore[reportArgumentType]
 
 

@@ -1,5 +1,8 @@
 """Critical speeds and unbalance response: the paper's table, ROSS, closed forms."""
 
+import dataclasses
+import re
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -63,10 +66,16 @@ def test_critical_speeds_lie_on_campbell_diagram():
         np.testing.assert_allclose(2 * np.pi * at.frequency[k], speed, rtol=SOLVER)
         np.testing.assert_allclose(at.damping_ratio[k], ratio, rtol=DIFFERENCE)
     assert critical.damping_ratio.min() > 1e-3
-    near = "^critical_speeds: -.* rpm lies within 10 % of the forward critical speed of"
-    with pytest.warns(match=near):
-        speed = -1.05 * float(critical.speed[1])
-        bj.rotor.critical_speeds(rotor, count=4, operating_speed=speed)
+    near = "critical_speeds: -.* rpm lies within 10 % of the forward critical speed of"
+    speed = -1.05 * float(critical.speed[1])
+    at = bj.rotor.critical_speeds(rotor, count=4, operating_speed=speed)
+    (told,) = at.warnings
+    assert re.match(near, told) and told.size == pytest.approx(0.05)
+    assert critical.warnings == ()
+    (told,) = dataclasses.replace(
+        at, missed=jnp.asarray(2), operating_speed=None
+    ).warnings
+    assert "2 may be missing below" in told
     # A search that misses the second one has a wrong count.
     rate = -critical.damping_ratio * critical.speed
     point = jnp.stack([rate, critical.speed], axis=1)

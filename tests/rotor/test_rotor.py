@@ -1,6 +1,9 @@
 """The assembly: the paper's rigid rotor, discs, supports, housings, damping."""
 
+import re
+
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -96,9 +99,14 @@ def test_disc_of_size_inertia_and_gyroscopic_moment():
 
 
 def test_disc_warns_of_impossible_inertia():
-    with pytest.warns(UserWarning, match="is above twice `diametral_inertia`"):
-        bj.rotor.Disc(0, 6.0, 0.0201, 0.01)
-    bj.rotor.Disc(0, 6.0, 0.02, 0.01)  # flat
+    disc = bj.rotor.Disc(0, 6.0, 0.0201, 0.01)
+    (told,) = bj.warnings(disc)
+    assert "is above twice `diametral_inertia`" in told
+    assert (told.kind, told.size, told.limit) == ("polar_inertia", 0.0201, 0.02)
+    rotor = bj.rotor.Rotor(bj.rotor.Shaft([0.0, 0.2], 0.03), disc)
+    assert rotor.warnings == (told,)
+    assert bj.rotor.Disc(0, 6.0, 0.02, 0.01).warnings == ()  # flat
+    assert jax.jit(lambda d: jnp.asarray(len(d.warnings)))(disc) == 0
 
 
 def test_a_housing_is_in_series():
@@ -208,6 +216,6 @@ def test_bad_input_is_named(make, error, shown):
 
 
 def test_a_disc_of_impossible_inertia_is_odd():
-    bj.rotor.Disc(0, 1.0, 0.2, 0.1)  # flat
-    with pytest.warns(UserWarning, match="0.21 kg m².* above twice .*0.1 kg m²"):
-        bj.rotor.Disc(0, 1.0, 0.21, 0.1)
+    assert bj.rotor.Disc(0, 1.0, 0.2, 0.1).warnings == ()  # flat
+    (told,) = bj.rotor.Disc(0, 1.0, 0.21, 0.1).warnings
+    assert re.search("0.21 kg m².* above twice .*0.1 kg m²", told)

@@ -16,9 +16,11 @@ from tolerances import DIFFERENCE, SOLVER
 import bearingjax as bj
 from bearingjax.element import azimuths
 from bearingjax.lubrication import iso_vg
+from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.statics import load_result, warnings
 from bearingjax.statics.solution import failure_message
-from bearingjax.statics.warning import sentences_of_cases, sizes
+from bearingjax.statics.warning import sizes
+from bearingjax.statics.warning_kinds import KINDS
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -272,8 +274,8 @@ def test_solve_load_batch_equals_single_solutions(bearing):
             size = np.abs(np.where(np.isfinite(stacked), stacked, 0.0)).max()
             close = np.allclose(value, stacked, 1e-6, 1e-7 * size, equal_nan=True)
             assert close, (what, name)
-    assert warnings(batch) == sentences_of_cases(
-        jax.tree.map(np.asarray, together["warnings"])
+    assert warnings(batch) == warnings_of_cases(
+        jax.tree.map(np.asarray, together["warnings"]), KINDS
     )
     for function in (
         lambda s: bj.friction_torque(s, 2e-5),

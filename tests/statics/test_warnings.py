@@ -13,9 +13,10 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax.cases import sweep_table
+from bearingjax.numerics.warning import Kind, exceeded_kinds
 from bearingjax.statics import seat_warnings, speed_warnings
 from bearingjax.statics.rollers import distribution
-from bearingjax.statics.warning import exceeded_kinds, sizes
+from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
 from bearingjax.statics.warning_sizes import (
     idle_numbers,
@@ -490,8 +491,8 @@ def test_numbers_in_a_row_are_listed_by_their_ends():
 def test_kinds_that_cases_exceed():
     """One `of_all` is left out where a case is below; failed cases do not count."""
     kinds = {
-        "every": SimpleNamespace(limit=1.0, of_all=True),
-        "some": SimpleNamespace(limit=4.0, of_all=False),
+        "every": Kind(1.0, "", of_all=True),
+        "some": Kind(4.0, ""),
     }
     sizes = {"some": np.array([4.0, 5.0, np.nan]), "every": np.array([2.0, 0.0, 3.0])}
     (told,) = exceeded_kinds(sizes, kinds).items()

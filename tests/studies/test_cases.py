@@ -12,6 +12,7 @@ from pages import missing_on_page
 from bearingjax.cases import Sweep, sweep_table
 from bearingjax.files import SceneError, table_file
 from bearingjax.files import column_list as cases_list
+from bearingjax.numerics.warning import Warning
 from bearingjax.studies.bearing.read_scene import read_scene
 from bearingjax.studies.cases import read_cases as cases_table
 from bearingjax.studies.cases.read_cases import read_cases
@@ -465,9 +466,9 @@ def test_wrong_outputs(run, scene):
 
 
 def test_warnings_of_designs_merge_if_alike_but_for_numbers():
-    told = cases_table._alike(
-        ["loose by 0.42 µm"], ["loose by 0.42 µm", "loose by 3e-1 µm", "x"]
-    )
+    texts = "loose by 0.42 µm", "loose by 3e-1 µm", "x"
+    said = [Warning("loose_ring", text) for text in texts]
+    told = cases_table._alike(said[:1], said)
     assert told == ("loose by 0.42 µm (2 designs alike)", "x")
 
 

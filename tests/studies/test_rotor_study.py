@@ -3,7 +3,6 @@
 import csv
 import dataclasses
 import json
-import warnings
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +16,7 @@ from tolerances import PUBLISHED, ROUNDING, SOLVER
 import bearingjax as bj
 from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.files.output_files import scene_files
+from bearingjax.numerics.warning import Warning
 from bearingjax.rotor import harmonic_response
 from bearingjax.rotor.nonlinear import BranchEnd
 from bearingjax.studies.rotor import run as rotor_run
@@ -552,13 +552,9 @@ def test_a_motion_in_time_settles_into_the_linear_response(run, tmp_path):
 
 
 def test_run_rotor_linear_response_and_warnings(monkeypatch):
-    def idle(*given):
-        warnings.warn(
-            "static_equilibrium: the bearing on station 0 bears nothing", stacklevel=2
-        )
-        return bj.rotor.static_equilibrium(*given)
-
-    monkeypatch.setattr(rotor_run, "static_equilibrium", idle)
+    words = "static_equilibrium: the bearing on station 0 bears nothing"
+    told = (Warning("idle_bearing", words, where="station 0"),)
+    monkeypatch.setattr(bj.rotor.StaticEquilibrium, "warnings", told)
     task = read_rotor(
         "rotor_paper_12",
         settings(FEW, ON_SPRINGS, LINEAR, {"rotor.speed": "43000 rpm"}),

@@ -8,7 +8,8 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.life.life_warning import ALL, LIFE_KINDS, life_sizes
-from bearingjax.statics.warning import sentences_of_cases, sizes
+from bearingjax.numerics.warning import warnings_of_cases
+from bearingjax.statics.warning import sizes
 from bearingjax.studies.bearing.solved import SolvedScene, scene_life
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.cases.sweep_run import all_warnings, run_cases
@@ -67,7 +68,7 @@ def solved(path, settings=()):
     kinds = {name for name, size in found.items() if size > ALL[name].limit}
     told = solution_json(SolvedScene(scene, solution))["warnings"]
     assert len(told) == len(scene.warnings) + len(kinds)
-    of_one = sentences_of_cases(
+    of_one = warnings_of_cases(
         {name: np.atleast_1d(size) for name, size in found.items()}, ALL
     )
     return alone((*scene.warnings, *of_one)), kinds

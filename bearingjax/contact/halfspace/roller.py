@@ -1,6 +1,5 @@
 """One roller on one raceway, as the contact of two half-spaces."""
 
-import warnings
 from typing import Any
 
 import equinox as eqx
@@ -14,6 +13,7 @@ from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight, between_arcs, sagitta
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
+from ...numerics.warning import Warning
 from .ends import FreeEnds
 from .gradients import AbstractPressureSolver, ConjugateGradients
 from .grid import Grid, even_grid, graded_grid
@@ -102,7 +102,7 @@ class RollerContact(eqx.Module):
         self.raceway_profile.check(length, diameter)
 
     def _check_against(self, numbers, radius):
-        length, small, large, angle = numbers
+        _, small, large, angle = numbers
         check(
             self,
             "large_diameter",
@@ -116,14 +116,26 @@ class RollerContact(eqx.Module):
                 -radius[0] > 0.5 * large / np.cos(angle),
                 "larger in size than the roller's own radius, if it is hollow",
             )
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """A warning if the half angle is not that of the diameters; none if traced."""
+        numbers = concrete(
+            self.roller_length, self.small_diameter, self.large_diameter, self.angle
+        )
+        if numbers is None:
+            return ()
+        length, small, large, angle = numbers
         taper = np.arctan((large - small) / (2.0 * length))
-        if abs(angle - taper) > 0.01 * max(abs(angle), abs(taper)):
-            warnings.warn(
-                f"RollerContact: `half_angle` is {np.rad2deg(angle):.4g} deg, but"
-                f" diameters of {small:g} and {large:g} m over {length:g} m make"
-                f" {np.rad2deg(taper):.4g} deg; both are used as they are.",
-                stacklevel=4,
-            )
+        apart, limit = abs(angle - taper), 0.01 * max(abs(angle), abs(taper))
+        if not apart > limit:
+            return ()
+        words = (
+            f"RollerContact: `half_angle` is {np.rad2deg(angle):.4g} deg, but"
+            f" diameters of {small:g} and {large:g} m over {length:g} m make"
+            f" {np.rad2deg(taper):.4g} deg; both are used as they are."
+        )
+        return (Warning("half_angle", words, float(apart), float(limit)),)
 
     @property
     def diameter(self) -> Scalar:

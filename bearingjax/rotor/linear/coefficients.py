@@ -1,6 +1,5 @@
 """Stiffness over rotor speed, for programs of linear rotordynamics."""
 
-import warnings
 from typing import Any
 
 import jax
@@ -15,6 +14,7 @@ from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import as_real
+from ...numerics.warning import Warning
 from ...statics.linearise import OperatingPoint, linearise
 from ...statics.options import SolveOptions
 from ...statics.solution import failure_message
@@ -52,14 +52,13 @@ def stiffness_table(
     Returns:
         d(Fx, Fy, Fz)/d(ux, uy, uz) (speed, 3, 3) [N/m], differentiable with respect
         to design, speeds and load. uz stays zero where the bearing cannot hold it.
+        `stiffness_warnings` says if nothing holds a direction at some speed, as without
+        load.
 
     Raises:
         ValueError: For wrong shapes, names or non-finite numbers, or moments about
             tilts that are held.
         SolveError: If a solve fails; the message names the first such speed.
-
-    Warns:
-        UserWarning: If nothing holds a direction at some speed, as without load.
     """
     speeds, load = _check(element, speeds, load, tilts, fixed_ring)
     stiffness, result = _sweep(element, speeds, load, tilts, fixed_ring)
@@ -74,30 +73,34 @@ def stiffness_table(
             f" {failure_message(point.solution, point.solution.moving_ring)}"
         )
 
-    stiffness = raise_unless_converged(
-        stiffness, result, first_failure, "stiffness_table"
-    )
-    if not (is_traced(stiffness) or is_traced(speeds)):
-        _warn_of_slack(element, speeds, stiffness)
-    return stiffness
+    return raise_unless_converged(stiffness, result, first_failure, "stiffness_table")
 
 
-def _warn_of_slack(element, speeds, stiffness):
-    """Warn where the ring has no stiffness: about 0 N/m is useless further on."""
+def stiffness_warnings(
+    element: BearingElement, speeds: Any, stiffness: Any
+) -> list[Warning]:
+    """Return a warning where the ring has no stiffness: it is useless further on.
+
+    Args:
+        element: The bearing, concrete.
+        speeds: Speeds of the moving ring (speed,) [rad/s].
+        stiffness: From `stiffness_table` (speed, 3, 3) [N/m].
+    """
     nothing = SOFTEST_SHIFT * float(stiffness_scale(element.bearing))
     own = np.diagonal(np.asarray(stiffness), axis1=1, axis2=2)
     held = [name in restrained_freedoms(element.bearing) for name in FREEDOMS[:3]]
     slack = (own <= nothing) & np.array(held)
     if not slack.any():
-        return
+        return []
     index = int(slack.any(axis=1).argmax())
     names = [FREEDOMS[k] for k in np.flatnonzero(slack[index])]
-    warnings.warn(
+    words = (
         f"stiffness_table: no stiffness in {', '.join(names)} at"
         f" {float(speeds[index]):g} rad/s: nothing holds the ring there; give the load"
-        " that it runs with",
-        stacklevel=3,
+        " that it runs with"
     )
+    size = float(own[index, slack[index]].min())
+    return [Warning("no_stiffness", words, size, nothing, ", ".join(names))]
 
 
 @program(quick=True)

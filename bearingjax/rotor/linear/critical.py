@@ -1,6 +1,7 @@
 """Critical speeds, at which a natural frequency equals the speed."""
 
-import warnings
+import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import equinox as eqx
@@ -15,7 +16,8 @@ from ...design.checks import is_traced, number
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.lapack import cholesky, congruent, eigh, solve_any
-from ...numerics.types import as_count
+from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.warning import Warning
 from ..rotor import Rotor, RotorMatrices
 from .modes import (
     direction,
@@ -53,6 +55,7 @@ class CriticalSpeeds(eqx.Module):
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad], as in `Modes`.
         missed: Number of further ones below the last one found, of a damping ratio
             below √½; 0 unless the search failed.
+        operating_speed: Speed of the rotor that was asked about [rad/s], or `None`.
     """
 
     speed: Float[Array, " mode"]
@@ -60,6 +63,15 @@ class CriticalSpeeds(eqx.Module):
     damping_ratio: Float[Array, " mode"]
     shape: Complex[Array, "mode node 5"]
     missed: Int[Array, ""]
+    operating_speed: Scalar | None = None
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings of speeds that may be missing, and of an operating speed within 10 %
+        of one of forward whirl; empty where numbers are traced."""
+        if any(is_traced(leaf) for leaf in jax.tree.leaves(self)):
+            return ()
+        return (*_missing(self), *_near(self))
 
 
 def critical_speeds(
@@ -77,42 +89,51 @@ def critical_speeds(
     Args:
         rotor: The rotor.
         count: Number of speeds, the lowest.
-        operating_speed: Speed of the rotor [rad/s], for the warning; `None`: none.
+        operating_speed: Speed of the rotor [rad/s], for a warning; `None`: none.
 
     Returns:
         CriticalSpeeds; speeds and damping ratios have first derivatives with respect
-        to all numbers of the rotor.
-
-    Warns:
-        UserWarning: If one may be missing, and if the operating speed lies within 10 %
-            of one of forward whirl.
+        to all numbers of the rotor. Its `warnings` say if one may be missing, and if
+        the operating speed lies within 10 % of one of forward whirl.
     """
     count = as_count(count)
     whole("critical_speeds", "count", count)
     found = _critical(rotor, count)
-    if not is_traced(found.missed) and int(found.missed) > 0:
-        warnings.warn(
-            f"critical_speeds: {int(found.missed)} may be missing below"
-            f" {float(jnp.nanmax(found.speed)):g} rad/s: see a Campbell diagram; strong"
-            " dampers, or supports that follow the speed, led the search away",
-            stacklevel=2,
+    if operating_speed is None:
+        return found
+    number("critical_speeds", "operating_speed", operating_speed, "rad/s")
+    return dataclasses.replace(found, operating_speed=as_real(operating_speed))
+
+
+def _missing(found) -> Iterator[Warning]:
+    """Yield a warning of critical speeds that the search may have missed."""
+    missed = int(found.missed)
+    if missed > 0:
+        last = float(np.nanmax(np.asarray(found.speed)))
+        yield Warning(
+            "missed_critical_speeds",
+            f"critical_speeds: {missed} may be missing below {last:g} rad/s: see a"
+            " Campbell diagram; strong dampers, or supports that follow the speed, led"
+            " the search away",
+            float(missed),
+            0.0,
         )
-    if operating_speed is not None and not is_traced(found.speed):
-        number("critical_speeds", "operating_speed", operating_speed, "rad/s")
-        if not is_traced(operating_speed):
-            _warn_if_near(found, float(operating_speed))
-    return found
 
 
-def _warn_if_near(found, speed):
-    """Warn of a forward critical speed close to that of the rotor [rad/s]."""
-    critical = np.asarray(found.speed)
-    near = (np.asarray(found.whirl) > 0) & (abs(abs(speed) / critical - 1.0) < _NEAR)
+def _near(found) -> Iterator[Warning]:
+    """Yield a warning of a forward critical speed close to that of the rotor."""
+    if found.operating_speed is None:
+        return
+    speed, critical = float(found.operating_speed), np.asarray(found.speed)
+    away = abs(abs(speed) / critical - 1.0)
+    near = (np.asarray(found.whirl) > 0) & (away < _NEAR)
     if near.any():
-        warnings.warn(
+        yield Warning(
+            "near_critical_speed",
             f"critical_speeds: {speed * _RPM:.5g} rpm lies within 10 % of the forward"
             f" critical speed of {critical[near][0] * _RPM:.5g} rpm",
-            stacklevel=3,
+            float(away[near][0]),
+            _NEAR,
         )
 
 

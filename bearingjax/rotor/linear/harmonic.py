@@ -11,6 +11,7 @@ from ...design.checks import number
 from ...numerics.compiled.programs import program
 from ...numerics.lapack import solve_any
 from ...numerics.types import Scalar, as_real
+from ...numerics.warning import Warning
 from ..loads import RotorLoads
 from ..rotor import Rotor
 from .modes import speed_list, to_complex
@@ -96,8 +97,8 @@ def reduction_warnings(
     frequencies: Iterable[float],
     speed: Any,
     modes: int,
-) -> list[str]:
-    """Warnings about a reduction that changes the linear response, a sentence each.
+) -> list[Warning]:
+    """Warnings about a reduction that changes the linear response.
 
     Args:
         rotor, loads, modes: As in `reduction_error`.
@@ -110,9 +111,10 @@ def reduction_warnings(
         turning = at if speed is None else as_real(speed)
         error = float(reduction_error(rotor, loads, at, turning, modes))
         if error > MOST_REDUCTION_ERROR:
-            return [
+            words = (
                 f"a reduction to {modes} modes changes the linear response at"
                 f" {float(frequency) / (2.0 * np.pi):.5g} Hz by {100.0 * error:.2g} %;"
                 " keep more modes"
-            ]
+            )
+            return [Warning("reduction", words, error, MOST_REDUCTION_ERROR)]
     return []

@@ -10,7 +10,8 @@ Source: Lancaster, On eigenvalues of matrices dependent on a parameter, Numer. M
     (1964) 377-387.
 """
 
-import warnings
+import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import equinox as eqx
@@ -26,6 +27,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
 from ...numerics.types import array_namespace, as_count, as_real
+from ...numerics.warning import Warning
 from ..rotor import Rotor, RotorMatrices
 
 _COINCIDENT = 1e-7
@@ -86,12 +88,28 @@ class Modes(eqx.Module):
         shape: (ux uy uz gx gy) of every node (mode, node, 5) [m, rad]; the largest
             motion is real and 1 m, tilts counted as those of the shaft's length.
         housing: (ux uy uz) of every housing (mode, housing, 3) [m].
+        speed: Speed of the rotor, from x towards y [rad/s].
+        driven: Part of Re λ by the unsymmetric part of the stiffness of supports
+            (mode,) [rad/s]; `None` from `campbell`.
+        overlap: Least overlap of each mode on the way from the speed before (speed,
+            mode) [1]; `None` from `modes`.
     """
 
     eigenvalue: Complex[Array, "*speed mode"]
     whirl: Int[Array, "*speed mode"]
     shape: Complex[Array, "*speed mode node 5"]
     housing: Complex[Array, "*speed mode housing 3"]
+    speed: Float[Array, "*speed"] | None = None
+    driven: Float[Array, " mode"] | None = None
+    overlap: Float[Array, "speed mode"] | None = None
+
+    @property
+    def warnings(self) -> tuple[Warning, ...]:
+        """Warnings of the first unstable mode, of `modes`, and of modes that were not
+        followed for certain, of `campbell`; empty where numbers are traced."""
+        if any(is_traced(leaf) for leaf in jax.tree.leaves(self)):
+            return ()
+        return (*_growing(self), *_swapping(self))
 
     @property
     def oscillates(self) -> Any:
@@ -132,18 +150,14 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
     Returns:
         Modes, with first derivatives with respect to all numbers of the rotor and to
         the speed. Where modes coincide the derivative of each is that of a mixture;
-        their sum is right, and each is if they stay together.
-
-    Warns:
-        UserWarning: If a mode grows, and whether the unsymmetric part of the stiffness
-            of supports does it.
+        their sum is right, and each is if they stay together. Its `warnings` say if a
+        mode grows, and whether the unsymmetric part of the stiffness of supports does
+        it.
     """
     speed = as_real(speed)
     number("modes", "speed", speed, "rad/s")
     found, driven = _modes(rotor, speed, _count("modes", count))
-    if not is_traced(driven) and not is_traced(found.eigenvalue):
-        _warn_of_growth(found, float(speed), np.asarray(driven))
-    return found
+    return dataclasses.replace(found, speed=speed, driven=driven)
 
 
 @program(quick=True)
@@ -159,14 +173,11 @@ def _modes(rotor, speed, count):
     return modes_of(pairs, matrices, speed), driven
 
 
-def _warn_of_growth(found, speed, driven):
-    """Warn of the first unstable mode.
-
-    Args:
-        found: Modes at the speed.
-        speed: [rad/s].
-        driven: Growth by unsymmetric stiffness (mode,) [rad/s].
-    """
+def _growing(found) -> Iterator[Warning]:
+    """Yield a warning of the first unstable mode."""
+    if found.driven is None:
+        return
+    speed, driven = float(found.speed), np.asarray(found.driven)
     value = np.asarray(found.eigenvalue)
     rate, angular = np.real(value), np.imag(value)
     grows = np.flatnonzero((angular > 0) & (rate > _GROWS * np.abs(value)))
@@ -180,11 +191,14 @@ def _warn_of_growth(found, speed, driven):
             "; what drives it is the unsymmetric part of the stiffness of supports, and"
             f" a damping ratio above {ratio:.2g} more holds it"
         )
-    warnings.warn(
+    yield Warning(
+        "unstable_mode",
         f"modes: unstable at {speed:.5g} rad/s ({speed * 30.0 / np.pi:.5g} rpm): the"
         f" mode of {angular[k] / (2.0 * np.pi):.5g} Hz grows, its damping ratio is"
         f" {-ratio:.2g}{cause}",
-        stacklevel=3,
+        float(ratio),
+        _GROWS,
+        f"mode {k + 1}",
     )
 
 
@@ -203,26 +217,20 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
         count: Number of modes.
 
     Returns:
-        Modes with `speed` as first axis.
-
-    Warns:
-        UserWarning: If a mode is not clearly the same at the next speed, however small
-            the step; it may then change places with another one.
+        Modes with `speed` as first axis. Its `warnings` say if a mode is not clearly
+        the same at the next speed, however small the step; it may then change places
+        with another one.
     """
     speeds = speed_list("campbell", speeds)
     found, overlap = follow_modes(rotor, speeds, _count("campbell", count))
-    if not is_traced(overlap):
-        _warn_of_swaps(np.asarray(speeds), np.asarray(overlap))
-    return found
+    return dataclasses.replace(found, speed=speeds, overlap=overlap)
 
 
-def _warn_of_swaps(speeds, overlap):
-    """Warn of modes that were not followed reliably.
-
-    Args:
-        speeds: (speed,) [rad/s].
-        overlap: Least one on the way to each of them (speed, mode) [1].
-    """
+def _swapping(found) -> Iterator[Warning]:
+    """Yield a warning of modes that were not followed reliably."""
+    if found.overlap is None:
+        return
+    speeds, overlap = np.asarray(found.speed), np.asarray(found.overlap)
     poor = ~(overlap >= _ALIKE)
     steps = np.flatnonzero(poor.any(axis=1))
     if not len(steps):
@@ -233,10 +241,13 @@ def _warn_of_swaps(speeds, overlap):
         for k in steps[:3]
     ]
     more = f" and in {len(steps) - 3} steps more" if len(steps) > 3 else ""
-    warnings.warn(
+    yield Warning(
+        "swapping_modes",
         f"campbell: not followed for certain: {'; '.join(where)}{more}; there modes may"
         " change places",
-        stacklevel=3,
+        float(overlap.min()),
+        _ALIKE,
+        "; ".join(where),
     )
 
 

@@ -13,6 +13,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import mixed, unit
+from ...numerics.warning import Warning
 from .continuation import (
     Arclength,
     BranchEnd,
@@ -86,13 +87,16 @@ class Branch(NamedTuple):
     ending: BranchEnd
 
     @property
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Warning, ...]:
         """Warnings: orbits that are unstable."""
         lost = int((~self.stable).sum())
         if not lost:
             return ()
-        words = f"{lost} of {len(self.stable)} periodic vibrations are unstable"
-        return (f"{words}: the system does not stay there",)
+        words = (
+            f"{lost} of {len(self.stable)} periodic vibrations are unstable: the system"
+            " does not stay there"
+        )
+        return (Warning("unstable_vibration", words, float(lost), 0.0),)
 
 
 def follow(

@@ -6,6 +6,7 @@ from typing import Any
 from ...catalogue.entry import CLEARANCE, CLEARANCES, CatalogueEntry, catalogue_entries
 from ...files.quantity import SceneError, to_si
 from ...fits.fit_limits import CLEARANCE_CLASSES
+from ...numerics.warning import Warning
 from .catalogue_keys import FromCatalogue, same_key
 
 _FAR = 0.05
@@ -15,8 +16,8 @@ bearing; neighbours of a series differ by more [1]."""
 
 def leftover_warnings(
     keys: Mapping[str, Any], taken: FromCatalogue, varied: Iterable[str] = ()
-) -> tuple[str, ...]:
-    """Warn of lines that belong to another designation, one sentence each.
+) -> tuple[Warning, ...]:
+    """Return a warning of lines that belong to another designation.
 
     A scene written by `new` has every line. If only the designation is then changed,
     the old dimensions below it remain and are solved. One or two dimensions changed
@@ -32,11 +33,12 @@ def leftover_warnings(
     meant = [k for k in varied if k.startswith("bearing.") and "designation" not in k]
     if meant or not taken.overridden:
         return ()
-    return _of_another(keys, taken) or _other_class(keys, taken)
+    words = _of_another(keys, taken) or _other_class(keys, taken)
+    return (Warning("leftover_keys", f"bearing: {words}"),) if words else ()
 
 
-def _of_another(keys, taken) -> tuple[str, ...]:
-    """Warn that the internal geometry is that of another bearing."""
+def _of_another(keys, taken) -> str:
+    """Say that the internal geometry is that of another bearing."""
     entry, changed = taken.entry, set(taken.overridden) - {CLEARANCE}
     others = [e for e in catalogue_entries() if e.type == entry.type]
     cure = "leave out the lines that are not meant"
@@ -45,18 +47,18 @@ def _of_another(keys, taken) -> tuple[str, ...]:
     ]
     if whole:
         words = f"the lines beside `designation` are those of {_names(whole)}"
-        return (f"bearing: {words}, not of {entry.designation}; {cure}",)
+        return f"{words}, not of {entry.designation}; {cure}"
     main = [k for k in taken.overridden if k in _MAIN]
     if len(main) < 2:
-        return ()
+        return ""
     alike = [e for e in others if _agrees(keys, e, main)]
     pitch, own = _length(keys, "pitch_diameter"), entry.design.get("pitch_diameter")
     if not alike and (pitch is None or own is None or abs(pitch / own - 1.0) < _FAR):
-        return ()
+        return ""
     shown = " and ".join(f"`{key}`" for key in main)
     words = f"{shown} are {'far from those' if not alike else 'not those'} of"
     whose = f", but those of {_names(alike)}" if alike else ""
-    return (f"bearing: {words} {entry.designation}{whose}; {cure}",)
+    return f"{words} {entry.designation}{whose}; {cure}"
 
 
 _MAIN = ("pitch_diameter", "ball_diameter", "roller_diameter")
@@ -72,11 +74,11 @@ def _names(entries) -> str:
     return " or ".join(entry.designation for entry in entries)
 
 
-def _other_class(keys, taken) -> tuple[str, ...]:
-    """Warn of a clearance that differs from the named clearance class."""
+def _other_class(keys, taken) -> str:
+    """Say that there is a clearance that differs from the named clearance class."""
     entry, given = taken.entry, _length(keys, CLEARANCE)
     if entry.type not in CLEARANCES or CLEARANCE not in taken.overridden:
-        return ()
+        return ""
     limits = {name: _limits(entry, name) for name in CLEARANCE_CLASSES}
     middles = [
         name
@@ -89,12 +91,12 @@ def _other_class(keys, taken) -> tuple[str, ...]:
     named = entry.designation.endswith(f"/{own}")
     ends = None if own is None else _limits(entry, own)
     if ends is None or not (named or middles):
-        return ()
+        return ""
     is_of = f", the middle of class {middles[0]}," if middles else ""
     return (
-        f"bearing: `{CLEARANCE}` ({keys[CLEARANCE]}){is_of} counts in place of class"
+        f"`{CLEARANCE}` ({keys[CLEARANCE]}){is_of} counts in place of class"
         f" {own} of {entry.designation} ({1e6 * ends[0]:.3g} to {1e6 * ends[1]:.3g} µm)"
-        "; a [fit] takes it as exact, without the limits of a class",
+        "; a [fit] takes it as exact, without the limits of a class"
     )
 
 

@@ -2,13 +2,13 @@
 
 import contextlib
 import dataclasses
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ...catalogue.entry import catalogue_entry
 from ...files.table import Table, text_of
+from ...numerics.warning import Warning
 from ...rotor import Shaft, seat_size_warnings
 from .read_bearing import EXTRA_KEYS
 from .read_design import BALLS
@@ -104,11 +104,11 @@ def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
     return {**inputs["bearing"], **tables, **chosen}
 
 
-def check_seat(name: str, scene: Scene, shaft: Shaft, station: int) -> None:
-    """Warn if the shaft of a bearing or its fit differs from that at its station.
+def seat_misfits(scene: Scene, shaft: Shaft, station: int) -> list[Warning]:
+    """Return a warning if the shaft of a bearing or of its fit differs from that at its
+    station.
 
     Args:
-        name: Name of the bearing.
         scene: The bearing.
         shaft: The shaft.
         station: Its station with the bearing.
@@ -116,8 +116,8 @@ def check_seat(name: str, scene: Scene, shaft: Shaft, station: int) -> None:
     entry = None if scene.catalogue is None else scene.catalogue.entry
     seat = scene.installed.mounting or entry
     if seat is not None:
-        for text in seat_size_warnings(shaft, station, seat):
-            warnings.warn(f"{name}: {text}", stacklevel=2)
+        return seat_size_warnings(shaft, station, seat)
+    return []
 
 
 def _is_ball(own: Mapping[str, Any]) -> bool:

@@ -10,6 +10,7 @@ from ...life.life import FRAMES, LifeConditions
 from ...life.life_factor import CLEANLINESS
 from ...life.rating import rated_axially
 from ...life.reference_life import LEAST_LAMINAE
+from ...numerics.warning import Warning
 from .oil import Oil, read_oil
 
 _RATED = "published for the `designation`, else from the geometry"
@@ -116,8 +117,8 @@ def _viscosity(top: Table, keys: LifeKeys) -> float:
     return float(oil.lubricant.kinematic_viscosity(oil.temperature))
 
 
-def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
-    """Warn if one of contamination and supply is for grease, the other for oil.
+def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[Warning, ...]:
+    """Return a warning if contamination and supply are not both for grease or for oil.
 
     Args:
         top: The scene.
@@ -133,10 +134,11 @@ def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[str, ...]:
         if greased
         else "choose a class of grease, or another supply"
     )
-    return (
+    words = (
         f'life: `contamination` is "{dirt}", but `lubricant.supply` is "{oil.supply}"'
-        f"{given}: {cure}",
+        f"{given}: {cure}"
     )
+    return (Warning("contamination", words),)
 
 
 def _check_points(

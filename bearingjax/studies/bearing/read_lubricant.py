@@ -25,6 +25,7 @@ from ...lubrication import (
     Walther,
 )
 from ...numerics.units import CELSIUS, unit_of
+from ...numerics.warning import Warning
 
 LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
 """Laws of viscosity over pressure; the first includes the temperature."""
@@ -125,12 +126,13 @@ class LubricantKeys(Keys):
         return str(self.name or self.law)
 
     @property
-    def assumed(self) -> tuple[str, ...]:
-        """Assumptions made about the oil, in words."""
+    def assumed(self) -> tuple[Warning, ...]:
+        """Assumptions made about the oil."""
         if self.law is None or self.density is not None:
             return ()
         density = f"{DENSITY:g} kg/m³ is taken at 15 °C"
-        return (f"the oil's density is not given: {density}",)
+        words = f"the oil's density is not given: {density}"
+        return (Warning("assumed_density", words, DENSITY),)
 
     def check(self) -> None:
         if self.law is None and self.name is None:

@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from ...fits import FitStates
 from ...life.life import LifeConditions
 from ...life.life_warning import given_rating_warnings
 from ...numerics.compiled.programs import call_stored
+from ...numerics.warning import Warning
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE
 from ...statics.preload import SetPreload
@@ -75,7 +75,7 @@ class Scene:
     tolerance: float | None
     points: int
     life: LifeConditions | None
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
     preload_of_set: SetPreload | None = None
@@ -200,16 +200,14 @@ def scene_of(
     # Tables of other commands.
     top.skip("cases", "optimise", "cage", "dynamics")
     top.skip("deviations", "vibration")
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        table = top.table("bearing", required=True)
-        table.know(*other_keys)
-        found = read_designation(table)
-        if found is not None:
-            found = found[0], found[1].varied(varied)
-        bearing, preload = read_bearing(table, top, found)
+    table = top.table("bearing", required=True)
+    table.know(*other_keys)
+    found = read_designation(table)
+    if found is not None:
+        found = found[0], found[1].varied(varied)
+    bearing, preload = read_bearing(table, top, found)
     catalogue = None if found is None else found[1]
-    warned = tuple(str(w.message) for w in caught)
+    warned = bearing.warnings
     if found is not None:
         warned += leftover_warnings(*found, varied)
     scene = _scene(top, path.stem, bearing, preload, catalogue, warned)

@@ -8,8 +8,9 @@ import jax
 from ...files.quantity import SceneError
 from ...life.life import Life, life_of
 from ...life.life_warning import life_warnings
+from ...numerics.warning import Warning
 from ...statics.solution import Solution
-from ...statics.warning import warnings
+from ...statics.warning import solution_warnings
 from .life_ratings import life_conditions
 from .oil import OilFacts, oil_facts
 from .read_scene import Scene
@@ -57,7 +58,7 @@ class SolvedScene:
         return oil_facts(scene.oil, self.numbers, scene.catalogue)
 
     @functools.cached_property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[Warning]:
         """Warnings about the scene, its solution and its life."""
         return solved_warnings(self.scene, self.numbers, self.life)
 
@@ -86,7 +87,7 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
 
 def solved_warnings(
     scene: Scene, solution: Solution, life: Life | None = None
-) -> list[str]:
+) -> list[Warning]:
     """Return the warnings of a solved scene, its solution and its life.
 
     Args:
@@ -96,7 +97,7 @@ def solved_warnings(
     """
     found = list(scene.warnings)
     if solution.converged:
-        found += warnings(solution)
+        found += solution_warnings(solution)
     if life is not None:
         bearing = scene.element.bearing
         found += life_warnings(bearing, life.ratings, vars(life))

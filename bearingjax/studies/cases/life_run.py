@@ -17,6 +17,7 @@ from ...life.life import LIFE_OUTPUTS, turns_against_load
 from ...life.rating import Ratings, ratings
 from ...numerics.result import Result
 from ...numerics.units import shown_count
+from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Part, Report
 from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published
@@ -62,7 +63,7 @@ class LifeRun:
         return bool(self.solved.converged.all())
 
     @functools.cached_property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[Warning]:
         """Warnings of the scene, of its cases and of their lives."""
         return all_warnings(self.table, self.solved)
 

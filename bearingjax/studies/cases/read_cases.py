@@ -30,6 +30,7 @@ from ...files.table import Table, text_of
 from ...life.life import LIFE_OUTPUTS, Life
 from ...numerics.labels import stated_axes
 from ...numerics.units import unit_of
+from ...numerics.warning import Warning
 from ...statics.solution import Solution
 from ..bearing.read_scene import Scene, scene_of
 
@@ -109,7 +110,7 @@ class CaseTable:
     varied: tuple[str, ...]
     settings: tuple[dict[str, Any], ...]
     outputs: tuple[str, ...] | None
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
 
@@ -251,9 +252,9 @@ def _makes_design(key: str) -> bool:
 
 def speed_warnings(
     design_groups: Sequence[DesignGroup], cases: Cases
-) -> tuple[str, ...]:
-    """Warn of case speeds above the catalogue speeds of each bearing."""
-    turns, texts = turns_of(cases), []
+) -> tuple[Warning, ...]:
+    """Return warnings of case speeds above the catalogue speeds of each bearing."""
+    turns, found = turns_of(cases), []
     for name in dict.fromkeys(part.designation for part in design_groups):
         mine = [part.of(cases) for part in design_groups if part.designation == name]
         own = np.zeros(cases.count)
@@ -261,8 +262,8 @@ def speed_warnings(
         bearing = next(
             p.scene for p in design_groups if p.designation == name
         ).installed
-        texts += bearing.speed_warnings(own)
-    return tuple(texts)
+        found += bearing.speed_warnings(own)
+    return tuple(found)
 
 
 def turns_of(cases: Cases) -> np.ndarray:
@@ -275,15 +276,15 @@ def turns_of(cases: Cases) -> np.ndarray:
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
-def _alike(first: Iterable[str], warned: Sequence[str]) -> tuple[str, ...]:
+def _alike(first: Iterable[Warning], warned: Sequence[Warning]) -> tuple[Warning, ...]:
     """Merge the warnings of a scene and of its designs; of those that differ only in
     their numbers the first is kept."""
-    kinds: dict[str, list[str]] = {}
-    for text in dict.fromkeys((*first, *warned)):
-        kinds.setdefault(re.sub(r"\d[\d.e+-]*", "#", text), []).append(text)
+    found: dict[str, list[Warning]] = {}
+    for one in dict.fromkeys((*first, *warned)):
+        found.setdefault(re.sub(r"\d[\d.e+-]*", "#", one), []).append(one)
     return tuple(
-        texts[0] + (f" ({len(texts)} designs alike)" if len(texts) > 1 else "")
-        for texts in kinds.values()
+        one.followed_by(f" ({1 + len(more)} designs alike)") if more else one
+        for one, *more in found.values()
     )
 
 

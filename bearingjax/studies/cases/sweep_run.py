@@ -17,6 +17,7 @@ from ...files.quantity import SceneError
 from ...fits import radial_clearance
 from ...life.life import LIFE_OUTPUTS, LifeConditions
 from ...numerics.units import display_unit, shown_count
+from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
 from ...statics.preload import is_opposed, row_preload_force
@@ -231,13 +232,13 @@ def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:
     return spans
 
 
-def all_warnings(table: CaseTable, solved: Sweep) -> list[str]:
+def all_warnings(table: CaseTable, solved: Sweep) -> list[Warning]:
     """Return the warnings of the scene, of the preload of its set and of its cases."""
     return [*table.warnings, *set_warnings(table, solved), *solved.warnings]
 
 
-def set_warnings(table: CaseTable, solved: Sweep) -> list[str]:
-    """Return warnings about the preload of a set in the cases, one sentence each."""
+def set_warnings(table: CaseTable, solved: Sweep) -> list[Warning]:
+    """Return warnings about the preload of a set in the cases."""
     if table.scene.preload_of_set is not None:
         return preload_warnings(table.scene.preload_of_set)
     preload = solved.outputs.get(OPERATING_PRELOAD)

@@ -1,7 +1,6 @@
 """Scenes of one roller on one raceway: [roller], [raceway] and their loading."""
 
 import dataclasses
-import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from ...design import AbstractProfile, Material
 from ...files.scene_file import find_scene, parse_scene
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, written_numbers
+from ...numerics.warning import Warning
 from ..bearing.read_choices import LineContactKeys
 from ..bearing.read_design import read_material, read_profile
 
@@ -250,7 +250,7 @@ class ContactScene:
     along: int
     grading: float
     max_steps: int
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     loads: tuple[float, ...] = ()
     approach: float | None = None
     moment: float | None = None
@@ -299,10 +299,7 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
         raise top.error("bearing", problem)
     roller = read_keys(RollerKeys, top.table("roller", required=True))
     raceway = read_keys(RacewayKeys, top.table("raceway"))
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        contact = _contact(roller, raceway)
-    scene = _scene(top, path.stem, contact, tuple(str(w.message) for w in caught))
+    scene = _scene(top, path.stem, _contact(roller, raceway))
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())
 
@@ -332,7 +329,7 @@ def _contact(roller: RollerKeys, raceway: RacewayKeys) -> RollerContact:
         )
 
 
-def _scene(top: Table, name, contact: RollerContact, warned) -> ContactScene:
+def _scene(top: Table, name, contact: RollerContact) -> ContactScene:
     operating = read_keys(ContactOperatingKeys, top.table("operating", required=True))
     numerics = read_keys(ContactNumericsKeys, top.table("numerics"))
     _check_grid(numerics, contact, len(operating.loads))
@@ -346,7 +343,7 @@ def _scene(top: Table, name, contact: RollerContact, warned) -> ContactScene:
         listed=isinstance(operating.load, tuple),
         law=read_keys(SliceLawKeys, top.table("contact")).law,
         field=read_keys(ContactOutputKeys, top.table("output")).field,
-        warnings=warned,
+        warnings=contact.warnings,
         **numerics.given,
     )
 

@@ -8,6 +8,7 @@ from ...contact.halfspace.pressure import failure_message
 from ...contact.slices import Compared, compared_warnings
 from ...numerics.result import Result
 from ...numerics.units import shown_count
+from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Report
 from .read import ContactScene
@@ -16,7 +17,7 @@ PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 """Positions at which the report gives the pressure: from the small end, over length."""
 
 
-def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[str]:
+def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[Warning]:
     """Return the warnings of a solved contact.
 
     Args:

@@ -14,7 +14,7 @@ from ...files.quantity import SceneError
 from ...numerics.compiled.programs import program
 from ...statics.refine import refine
 from ...statics.solution import Solution
-from ...statics.warning import warnings
+from ...statics.warning import solution_warnings
 from ..bearing.read_scene import Scene
 from .read import ContactScene
 
@@ -90,7 +90,7 @@ def run_refined(
         along=along,
         grading=2.0,
         max_steps=ConjugateGradients().max_steps,
-        warnings=(*scene.warnings, *warnings(solution)),
+        warnings=(*scene.warnings, *solution_warnings(solution)),
         inputs=scene.inputs,
     )
     return contact, [found]

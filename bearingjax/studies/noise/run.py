@@ -36,6 +36,7 @@ from ...noise import (
 from ...noise.static_start import failure_message
 from ...noise.vibration import rounding
 from ...numerics.result import Result
+from ...numerics.warning import Warning
 from .scene import AXES, NoiseScene
 
 LARGEST_LINES = 12
@@ -111,7 +112,7 @@ class NoiseRun:
     steps: int = 0
     analysis: NoiseAnalysis | None = None
     many: RandomBearings | None = None
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def converged(self) -> bool:
@@ -165,9 +166,9 @@ def run_noise(
     warned += tuple(doubtful)
     many = _many(task, steps, on_stage) if task.bearings else None
     if many is not None and many.levels.failed:
-        warned += (
-            f"{many.levels.failed} of {task.bearings} random bearings were not solved",
-        )
+        failed = many.levels.failed
+        words = f"{failed} of {task.bearings} random bearings were not solved"
+        warned += (Warning("unsolved_bearings", words, failed, 0),)
     if many is not None and many.contributions is not None:
         warned += tuple(contribution_warnings(many.contributions))
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)

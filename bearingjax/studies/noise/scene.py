@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...noise import AbstractWindow, Bands, NoiseModel, Tolerances
+from ...numerics.warning import Warning
 from ..bearing.read_scene import Scene
 
 AXES = ("x", "y", "z")
@@ -55,7 +56,7 @@ class NoiseScene:
     tighter: tuple[tuple[str, dict[str, float]], ...]
     seed: int
     bearings: int
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...numerics.units import CELSIUS, display_unit, shown_count, unit_of
+from ...numerics.warning import Warning, warnings_of
 from ...optimise.design_problem import Outcome
 from ...optimise.measure import AbstractMeasure, EdgeLoad, label_of
 from ...optimise.optimise import Optimised
@@ -37,9 +38,10 @@ def optimisation_report(task: Task, found: Optimised, best: Any = None) -> Repor
         f"{shown_count(found.n_evaluations, 'design')} evaluated,"
         f" {found.n_gradients} with gradient, {len(found.rejected)} rejected"
     )
-    warned = [f"rejected: {why}" for why in dict.fromkeys(found.rejected)]
+    every = dict.fromkeys(found.rejected)
+    warned = [Warning("rejected_step", f"rejected: {why}") for why in every]
     warned += [*best.warnings, *found.after.warnings]
-    warned += [f"before: {text}" for text in _warned_before(task, found)]
+    warned += warnings_of("before", _warned_before(task, found))
     left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
     sections = {
         "Search": [head],
@@ -101,7 +103,7 @@ def bearing_facts(found: Optimised) -> dict[str, dict[str, np.ndarray]]:
     return facts
 
 
-def _warned_before(task, found) -> list[str]:
+def _warned_before(task, found) -> list[Warning]:
     """Return the warnings of the start that the best design does not have."""
     first = scene_of_design(task, found.initial)
     kept = set(scene_of_design(task, found.element).warnings)

@@ -1,7 +1,6 @@
 """Vibration of the rotor of a scene, over frequency and in time."""
 
 import dataclasses
-import warnings
 
 import jax
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import as_array
+from ...numerics.warning import Warning, warnings_of
 from ...rotor import (
     LinearSupport,
     Modes,
@@ -74,6 +74,7 @@ class RotorResponse:
         event_amplitude: Amplitude at each of its events (event, station, 5) [m,
             rad].
         stopped: Code and message, if it ends before the end of the range.
+        warnings: Warnings of a reduction, and of unstable vibration.
     """
 
     method: str
@@ -83,6 +84,7 @@ class RotorResponse:
     branch: Branch | None
     event_amplitude: np.ndarray
     stopped: Stopped | None
+    warnings: tuple[Warning, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -133,12 +135,12 @@ def respond(
     if asked.method == "linear":
         assert linear is not None  # callers check it
         return _linear(task, linear)
+    warned: list[Warning] = []
     if (modes_kept := asked.reduction) is not None:
         ends = asked.begin, asked.end
-        for text in reduction_warnings(
-            settled.rotor, task.loads, ends, asked.speed, modes_kept
-        ):
-            warnings.warn(f"`rotor.response.reduction`: {text}", stacklevel=2)
+        asked_for = settled.rotor, task.loads, ends, asked.speed, modes_kept
+        found = reduction_warnings(*asked_for)
+        warned += warnings_of("`rotor.response.reduction`", found)
     scale = asked.scale
     if scale is None and all(isinstance(s, LinearSupport) for s in rotor.supports):
         scale = _largest(task, settled.rotor)
@@ -160,8 +162,6 @@ def respond(
         steps=Steps(frequency=abs(asked.end - asked.begin) / (_PARTS * unit)),
         points=asked.points,
     )
-    for text in branch.warnings:
-        warnings.warn(text, stacklevel=2)
     moved = _at_stations(task, system, branch.displacement)
     stopped = None
     if branch.ending in _ENDINGS:
@@ -179,6 +179,7 @@ def respond(
         branch,
         _half_ranges(marked),
         stopped,
+        (*warned, *branch.warnings),
     )
 
 

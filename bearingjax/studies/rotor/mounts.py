@@ -1,7 +1,6 @@
 """The [[rotor.bearings]] and [bearings.NAME] tables of a scene: shaft supports."""
 
 import dataclasses
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,10 +12,11 @@ from ...files.scene_file import bearing_place, find_scene, parse_bearing, shippe
 from ...files.schema import Keys, scene_key
 from ...files.schema_text import number_schema, object_schema
 from ...files.table import Table, not_among
+from ...numerics.warning import Warning, warnings_of
 from ...rotor import Housing, Shaft
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
-from ..bearing.placed_bearing import check_seat, echoed, read_machine_bearing
+from ..bearing.placed_bearing import echoed, read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene, scene_of
 from .scene import Mount
 
@@ -153,8 +153,8 @@ class MountKeys(Keys):
 
 def read_mounts(
     top: Table, holds: tuple[MountKeys, ...], shaft: Shaft, speed: float, path: Path
-) -> tuple[Mount, ...]:
-    """Read the supports of the shaft of a rotor.
+) -> tuple[tuple[Mount, ...], list[Warning]]:
+    """Read the supports of the shaft of a rotor, and return warnings about them.
 
     Args:
         top: The whole scene.
@@ -171,27 +171,24 @@ def read_mounts(
             problem = "belongs to one of the bearings: write"
             raise top.error(key, f"{problem} [bearings.NAME.{key}]")
     tables = top.table("bearings")
-    named = {
-        name: _own(top, tables.table(name), name, speed, path) for name in tables.keys()
-    }
-    mounts = []
+    named: dict[str, Scene] = {}
+    mounts, warned = [], []
+    for name in tables.keys():
+        scene = read_machine_bearing(top, tables.table(name), name, path, speed=speed)
+        named[name] = _in_rotor(scene, speed)
+        warned += warnings_of(name, scene.warnings)
     for keys in holds:
         bearing = _bearing(keys, top, named, speed, path)
         if bearing is not None:
-            check_seat(bearing.name, bearing, shaft, keys.station)
+            found = seat_misfits(bearing, shaft, keys.station)
+            if keys.bearing not in named:
+                found = [*bearing.installed.seat_warnings(), *found]
+            warned += warnings_of(bearing.name, found)
         mounts.append(_mount(keys, bearing))
     for name in named:
         if name not in [keys.bearing for keys in holds]:
             raise tables.error(name, "is in no [[rotor.bearings]]; leave it out")
-    return tuple(mounts)
-
-
-def _own(top: Table, table: Table, name: str, speed: float, path: Path) -> Scene:
-    """Read a bearing of [bearings.NAME]."""
-    scene = read_machine_bearing(top, table, name, path, speed=speed)
-    for text in scene.warnings:
-        warnings.warn(f"{name}: {text}", stacklevel=2)
-    return _in_rotor(scene, speed)
+    return tuple(mounts), warned
 
 
 def _in_rotor(scene: Scene, speed: float) -> Scene:
@@ -226,10 +223,7 @@ def _bearing(
     tables.fill(own, inputs)
     inside = Table(inputs, path.name, f"bearings.{own}")
     placed = read_machine_bearing(top, inside, scene.name, path, speed=speed)
-    turning = _in_rotor(placed, speed)
-    for text in turning.installed.seat_warnings():
-        warnings.warn(f"{scene.name}: {text}", stacklevel=2)
-    return turning
+    return _in_rotor(placed, speed)
 
 
 def _mount(keys: MountKeys, bearing: Scene | None) -> Mount:

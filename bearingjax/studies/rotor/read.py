@@ -1,8 +1,7 @@
 """Read the scene of a rotor: shaft, discs, loads, bearings and analyses."""
 
 import dataclasses
-import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from ...files.scene_file import find_scene, is_rotor, parse_scene
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, written_numbers
 from ...numerics.gravity import GRAVITY
+from ...numerics.warning import Warning
 from ...rotor import (
     AbstractDamping,
     AbstractPart,
@@ -279,24 +279,21 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         key = "bearing" if "bearing" in data else "rotor"
         problem = "the scene of a rotor has a [rotor], and its bearings as [bearings.…]"
         raise top.error(key, problem)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        scene = _scene(top, path)
+    scene = _scene(top, path)
     top.finish()
-    warned = tuple(dict.fromkeys(str(w.message) for w in caught))
-    return dataclasses.replace(scene, warnings=warned, inputs=top.echo())
+    return dataclasses.replace(scene, inputs=top.echo())
 
 
 def _scene(top: Table, path: Path) -> RotorScene:
     keys = read_keys(RotorKeys, top.table("rotor"))
     shaft = _shaft(keys)
     discs = tuple(disc.part for disc in keys.discs)
-    mounts = read_mounts(top, keys.bearings, shaft, keys.speed, path)
+    mounts, warned = read_mounts(top, keys.bearings, shaft, keys.speed, path)
     loads = keys.excitation.loads(AXES[keys.axis])
     response, transient = keys.response, keys.transient
     if response is not None:
         response = response.with_defaults(station=keys.shown)
-        _warn_of_speeds(keys.speed, response.speed, bool(loads.unbalances))
+        warned += _speed_warnings(keys.speed, response.speed, bool(loads.unbalances))
     if transient is not None:
         transient = transient.with_defaults(station=keys.shown)
     return RotorScene(
@@ -313,6 +310,9 @@ def _scene(top: Table, path: Path) -> RotorScene:
         campbell=None if keys.campbell is None else keys.campbell.speeds,
         response=response,
         transient=transient,
+        warnings=tuple(
+            dict.fromkeys([*(one for d in discs for one in d.warnings), *warned])
+        ),
     )
 
 
@@ -323,17 +323,20 @@ def _shaft(keys: RotorKeys) -> Shaft:
         return Shaft(stations, *zip(*rows, strict=True))
 
 
-def _warn_of_speeds(rotor: float, response: float | None, unbalanced: bool) -> None:
+def _speed_warnings(
+    rotor: float, response: float | None, unbalanced: bool
+) -> Iterator[Warning]:
+    """Yield warnings of speeds of the response that may not be those meant."""
     if response is not None and unbalanced:
-        warnings.warn(
+        words = (
             "`rotor.response.speed` is fixed, so that its unbalance turns at another"
-            " speed, that of the excitation",
-            stacklevel=2,
+            " speed, that of the excitation"
         )
+        yield Warning("response_speed", words, response)
     if response is None and rotor < 0.0:
-        warnings.warn(
+        words = (
             "`rotor.speed` is negative, but in the response the rotor turns with its"
             " excitation, from x towards y; give `rotor.response.speed` for the other"
-            " sense",
-            stacklevel=2,
+            " sense"
         )
+        yield Warning("negative_speed", words, rotor, 0.0)

@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,6 +15,7 @@ from ...life.life import Life, life_of
 from ...life.life_warning import life_warnings
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array
+from ...numerics.warning import Warning, warnings_of
 from ...rotor import (
     BearingSupport,
     CriticalSpeeds,
@@ -84,7 +84,7 @@ class RotorRun:
     response: RotorResponse | None = None
     transient: RotorTransient | None = None
     failures: tuple[Failure, ...] = ()
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def converged(self) -> bool:
@@ -109,7 +109,7 @@ class _Parts:
     def __init__(self, on_stage: Callable[[str], None] | None):
         self.found: dict[str, Any] = {}
         self.failures: list[Failure] = []
-        self.warnings: list[str] = []
+        self.warnings: list[Warning] = []
         self._on_stage = on_stage
 
     @contextlib.contextmanager
@@ -117,13 +117,10 @@ class _Parts:
         """Context that records a SolveError as the failure of this part."""
         if self._on_stage is not None:
             self._on_stage(_STAGES[name])
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UserWarning)
-            try:
-                yield
-            except SolveError as error:
-                self.failed(name, error.result or Result.STEP_LIMIT, str(error))
-        self.warnings += dict.fromkeys(str(w.message) for w in caught)
+        try:
+            yield
+        except SolveError as error:
+            self.failed(name, error.result or Result.STEP_LIMIT, str(error))
 
     def failed(self, part: str, result: Result, message: str) -> None:
         """Record a failure."""
@@ -181,9 +178,9 @@ def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:
 
 def _static(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
     with parts.part("static"):
-        parts.found["settled"] = static_equilibrium(
-            rotor, task.loads, as_array(task.speed, float)
-        )
+        settled = static_equilibrium(rotor, task.loads, as_array(task.speed, float))
+        parts.found["settled"] = settled
+        parts.warnings += settled.warnings
 
 
 def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
@@ -195,7 +192,8 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
         if scene is None or scene.life is None:
             continue
         if not isinstance(support, BearingSupport):
-            parts.warnings.append(f"{mount.name}: a `law` has no life; leave it out")
+            words = "a `law` has no life; leave it out"
+            parts.warnings.append(Warning("no_life", words).of(mount.name))
             continue
         turns = -task.speed if mount.turned else task.speed
         speed = Speed(as_array(turns, float)) if task.speed else None
@@ -209,8 +207,8 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
         life = life_of(support.element, solution, conditions, speed=speed)
         found.append((mount, jax.device_get(life)))
         bearing = support.element.bearing
-        for text in life_warnings(bearing, found[-1][1].ratings, vars(found[-1][1])):
-            parts.warnings.append(f"{mount.name}: {text}")
+        doubts = life_warnings(bearing, found[-1][1].ratings, vars(found[-1][1]))
+        parts.warnings += warnings_of(mount.name, doubts)
     parts.found["lives"] = tuple(found)
 
 
@@ -220,12 +218,13 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     settled = found["settled"]
     with parts.part("modes"):
         found["modes"] = jax.device_get(modes(settled.rotor, task.speed, count=count))
+        parts.warnings += found["modes"].warnings
     follows, over = settled.rotor, None
     if any(mount.inertia for mount in task.mounts):
         with parts.part("static"):
             top = as_array(top_speed(task), float)
             over = static_equilibrium_over(rotor, task.loads, top)
-            parts.warnings += over.warnings()
+            parts.warnings += over.warnings
         if over is None:
             return None
         follows = over.rotor
@@ -233,16 +232,17 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
         found["critical"] = jax.device_get(
             critical_speeds(follows, count=count, operating_speed=task.speed)
         )
+        parts.warnings += found["critical"].warnings
     if over is not None:
         known = "[rotor.campbell] and [rotor.response], or to twice the speed"
-        for text in over.critical_speed_warnings(found["critical"].speed):
-            parts.warnings.append(
-                f"{text}; it is known to the highest speed of {known}"
-            )
+        for one in over.critical_speed_warnings(found["critical"].speed):
+            more = one.followed_by(f"; it is known to the highest speed of {known}")
+            parts.warnings.append(more)
     if task.campbell is not None:
         with parts.part("campbell"):
             lines = campbell(follows, task.campbell, count=count)
             found["campbell"] = jax.device_get(lines)
+            parts.warnings += found["campbell"].warnings
             found["onsets"] = instability_onsets(
                 follows, task.campbell, found["campbell"]
             )
@@ -265,7 +265,7 @@ def top_speed(task: RotorScene) -> float:
     return max(*speeds, 1.0)
 
 
-def task_warnings(task: RotorScene) -> Iterator[str]:
+def task_warnings(task: RotorScene) -> Iterator[Warning]:
     """Yield warnings about the bearings at the speeds of the scene.
 
     Args:
@@ -274,14 +274,11 @@ def task_warnings(task: RotorScene) -> Iterator[str]:
     top = max(map(abs, (task.speed, *_run_to(task))))
     for mount in {mount.name: mount for mount in task.mounts}.values():
         if mount.installed is not None:
-            for text in mount.installed.speed_warnings(top):
-                yield f"{mount.name}: {text}"
+            yield from warnings_of(mount.name, mount.installed.speed_warnings(top))
     for mount, _ in task.seats:
         if mount.installed is not None:
-            for text in mount.installed.held_clearance_warnings(
-                task.speed, _ends(task)
-            ):
-                yield f"{mount.name}: {text}"
+            held = mount.installed.held_clearance_warnings(task.speed, _ends(task))
+            yield from warnings_of(mount.name, held)
 
 
 def _ends(task: RotorScene) -> list[float]:
@@ -310,6 +307,7 @@ def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> No
             response = respond(task, rotor, linear, found["settled"], found["modes"])
             if len(response.frequency):
                 found["response"] = response
+            parts.warnings += response.warnings
             if response.stopped is not None:
                 parts.failed("response", *response.stopped)
     if task.transient is not None:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...element import BearingElement
+from ...numerics.warning import Warning
 from ...rotor import AbstractDamping, AbstractPart, Housing, Shaft
 from ...statics.installed import Installed
 from ..bearing.read_scene import Scene
@@ -89,7 +90,7 @@ class RotorScene:
     campbell: np.ndarray | None
     response: ResponseKeys | None
     transient: TransientKeys | None
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property

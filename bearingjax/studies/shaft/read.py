@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from ...files.schema import Keys, direction_json, read_keys, scene_key
 from ...files.table import Table
 from ...life.life import LifeConditions
 from ...numerics.gravity import GRAVITY
+from ...numerics.warning import Warning, warnings_of
 from ...shafts import (
     Coupling,
     Drive,
@@ -34,12 +34,12 @@ from ...shafts import (
 from ...shafts.duty import alike
 from ...shafts.parts import APEXES, HANDS
 from ..bearing.life_ratings import life_conditions
-from ..bearing.placed_bearing import check_seat, read_machine_bearing
+from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
 from ..cases.read_cases import CasesKeys, Varied
 from ..rotor.mounts import SpringKeys
 from ..rotor.read import MATERIAL
-from .read_heat import read_heat
+from .read_heat import heat_warnings, read_heat
 
 AXES = {
     sign + name: tuple(factor * np.eye(3)[k])
@@ -302,7 +302,7 @@ class ShaftScene:
     heat: HeatNetwork | None
     times: np.ndarray | None
     pauses: str
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     lives: tuple[LifeConditions | None, ...] = ()
     hours: float | None = None
     cases: tuple["ShaftScene", ...] = ()
@@ -412,12 +412,9 @@ def _hours(value: Any) -> float | None:
 
 def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene:
     top = Table(data, path.name)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        scene = _scene(top, path, known)
+    scene = _scene(top, path, known)
     top.finish()
-    warned = dict.fromkeys((*(str(w.message) for w in caught), *scene.warnings))
-    return dataclasses.replace(scene, warnings=tuple(warned), inputs=top.echo())
+    return dataclasses.replace(scene, inputs=top.echo())
 
 
 def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
@@ -458,11 +455,18 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
             housing,
             pull,
         )
+    warned: list[Warning] = []
     for seat, scene in zip(made, alone.values(), strict=True):
         if scene is not None:
             index, station = whole.station(seat)
-            check_seat(seat.name, scene, whole.beam(index), station)
+            misfits = seat_misfits(scene, whole.beam(index), station)
+            warned += warnings_of(seat.name, misfits)
     heat, keys = read_heat(top, own, alone)
+    if heat is not None:
+        warned += heat_warnings(alone)
+    for name, scene in alone.items():
+        if scene is not None:
+            warned += warnings_of(name, scene.warnings)
     return ShaftScene(
         name=path.stem,
         system=whole,
@@ -470,12 +474,7 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
         heat=heat,
         times=None if keys is None else keys.instants,
         pauses="ambient" if keys is None else keys.pauses,
-        warnings=tuple(
-            f"{name}: {text}"
-            for name, scene in alone.items()
-            if scene is not None
-            for text in scene.warnings
-        ),
+        warnings=tuple(dict.fromkeys(warned)),
     )
 
 

@@ -1,7 +1,6 @@
 """The [heat] table of a system of shafts: where friction heat goes."""
 
-import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table
 from ...fits.fits import PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
+from ...numerics.warning import Warning
 from ...shafts import BearingOil, HeatNetwork, ThermalPaths, usual_conductance
 from ..bearing.oil import Oil
 from ..bearing.read_scene import Scene
@@ -76,24 +76,33 @@ def read_heat(
         return None, None
     keys = read_keys(HeatKeys, top.table("heat"))
     paths = [_path(own[name], scene) for name, scene in bearings.items()]
-    loose = [
-        name for name, one in bearings.items() if one is not None and one.fits is None
-    ]
-    if loose:
-        text = "temperatures change the viscosity of the oil alone, neither clearance"
-        text = f"{text} nor preload, without the seats of a `fit`"
-        warnings.warn(f"{', '.join(loose)}: {text}", stacklevel=2)
-    for name, one in bearings.items():
-        given = None if one is None else one.installed.conditions
-        if given is not None and any(
-            float(getattr(given, part)) != float(given.reference) for part in PARTS
-        ):
-            text = "its `temperature` is not used: [heat] finds temperatures"
-            warnings.warn(f"{name}: {text}", stacklevel=2)
     with keys.table.building():
         more = keys.table.fields(HeatNetwork, left_out=("ambient",))
         network = HeatNetwork(**more | {"ambient": keys.ambient}, paths=paths)
     return network, keys
+
+
+def heat_warnings(bearings: Mapping[str, Scene | None]) -> Iterator[Warning]:
+    """Yield warnings about bearings of which [heat] finds the temperatures.
+
+    Args:
+        bearings: As in `read_heat`.
+    """
+    scenes = {name: one for name, one in bearings.items() if one is not None}
+    loose = [name for name, one in scenes.items() if one.fits is None]
+    if loose:
+        words = (
+            "temperatures change the viscosity of the oil alone, neither clearance nor"
+            " preload, without the seats of a `fit`"
+        )
+        yield Warning("no_seats", words).of(", ".join(loose))
+    for name, one in scenes.items():
+        given = one.installed.conditions
+        if given is not None and any(
+            float(getattr(given, part)) != float(given.reference) for part in PARTS
+        ):
+            words = "its `temperature` is not used: [heat] finds temperatures"
+            yield Warning("unused_temperature", words).of(name)
 
 
 def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:

@@ -17,6 +17,7 @@ from ...life.life import Life, life_of
 from ...life.life_warning import ALL
 from ...numerics.compiled.programs import call_stored
 from ...numerics.result import Result
+from ...numerics.warning import Warning, warnings_of, warnings_of_cases
 from ...shafts import (
     DutyResult,
     SystemSolution,
@@ -37,7 +38,6 @@ from ...shafts.heat import with_temperatures
 from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving
 from ...statics.solution import Solution
-from ...statics.warning import sentences_of_cases
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
 from ..bearing.solved import solved_warnings
@@ -108,7 +108,7 @@ class ShaftRun:
     duty: DutyResult | None
     rings: np.ndarray | None
     problem: str
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     @property
     def converged(self) -> bool:
@@ -376,28 +376,30 @@ def _in_place(
         yield InPlace(seat.name, with_set_preload(scene), solution, life, oil)
 
 
-def _warnings(run: ShaftRun) -> Iterator[str]:
+def _warnings(run: ShaftRun) -> Iterator[Warning]:
     """Yield warnings about the equilibrium and each bearing."""
     system, found = run.task.system, run.solution
     if run.problem and run.duty is None:
         return
     if np.any(found.free):
-        yield (
-            f"nothing holds {moving(system, found.free)}: it stays where it is; locate"
-            " the shaft by a bearing"
+        where = moving(system, found.free)
+        yield Warning(
+            "free_motion",
+            f"nothing holds {where}: it stays where it is; locate the shaft by a"
+            " bearing",
+            where=where,
         )
     loads = found.load[None] if run.duty is None else run.duty.load
     for k, bearing in enumerate(run.bearings):
         if bearing.scene is None or bearing.solution is None:
             continue
         # With cases each kind once, with the worst case.
-        texts = (
+        yield from warnings_of(
+            bearing.name,
             solved_warnings(bearing.scene, bearing.solution, bearing.life)
             if run.duty is None
-            else [*bearing.scene.warnings, *sentences_of_cases(run.duty.warned[k], ALL)]
+            else [*bearing.scene.warnings, *warnings_of_cases(run.duty.warned[k], ALL)],
         )
-        for text in texts:
-            yield f"{bearing.name}: {text}"
     yield from load_doubts(system, loads)
 
 

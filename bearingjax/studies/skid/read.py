@@ -18,6 +18,7 @@ from ...element import Speed
 from ...files.scene_file import find_scene, parse_bearing
 from ...files.schema import read_keys
 from ...files.table import Table
+from ...numerics.warning import Warning
 from ...skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from ..bearing.read_lubricant import LubricantKeys
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
@@ -59,7 +60,7 @@ class SkidScene:
     places: int | None
     tolerance: float
     max_steps: int
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
@@ -103,12 +104,12 @@ def read_skid(
     _check_dynamics(dynamics, scene, steady)
     warned = lubricant.assumed
     if lubricant.supply != "oil_bath":
-        warned = (
-            *warned,
+        words = (
             f"`lubricant.supply` {lubricant.supply!r} counts for the friction torque of"
             " `solve` alone; what skids has films of plenty of oil, and the drag of"
-            " `dynamics.fill`",
+            " `dynamics.fill`"
         )
+        warned = (*warned, Warning("unused_supply", words))
     oil, surrounding = lubricant.oil(), cage.built(Cage)
     with dynamics.table.building():
         model = SkidModel(

@@ -9,8 +9,9 @@ import numpy as np
 from ... import skid
 from ...files.quantity import SceneError
 from ...numerics.result import Result
+from ...numerics.warning import Warning
 from ...skid import conditions, rest_state, skid_warnings
-from ...statics.warning import warnings
+from ...statics.warning import solution_warnings
 from .read import SkidScene
 
 
@@ -29,7 +30,7 @@ class SkidRun:
     task: SkidScene
     found: Any
     state: Any
-    warnings: tuple[str, ...]
+    warnings: tuple[Warning, ...]
 
     @property
     def result(self) -> Result:
@@ -82,16 +83,18 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
     warned = (*task.warnings, *(_left_out(task) if task.steady else ()))
     if Result(int(held.result)) is Result.CONVERGED:
         doubtful = skid_warnings(task.model, held, state)
-        warned = (*warned, *warnings(found.solution), *doubtful)
+        warned = (*warned, *solution_warnings(found.solution), *doubtful)
     return SkidRun(task, held, state, warned)
 
 
 def _left_out(task):
     """Yield warnings of scene contents that the steady state neglects."""
     if task.axis == "horizontal":
-        yield "the end state leaves out gravity along the orbits; solve in time"
+        words = "the end state leaves out gravity along the orbits; solve in time"
+        yield Warning("left_out_gravity", words)
     if task.loads is not None:
-        yield "the end state is that of [operating], not of a load over time"
+        words = "the end state is that of [operating], not of a load over time"
+        yield Warning("left_out_loads", words)
 
 
 def _supports(task):

@@ -150,9 +150,9 @@ def compare_report(found: Comparison) -> Report:
     be = "is" if same == 1 else "are"
     parts += [f"{shown_count(same, 'result')} {be} the same"] if same else []
     warned = [
-        f"{name}: {text}"
+        warning.of(name)
         for name, one in zip(found.names, found.solved, strict=True)
-        for text in one.warnings
+        for warning in one.warnings
     ]
     return Report({"Scenes": [_inputs(found)], "Results": parts}, warned)
 
