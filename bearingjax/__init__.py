@@ -35,7 +35,7 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
 - Catalogue: `catalogue_entry`, `catalogue_entries`.
 - The bearing as an element: `BearingElement`, `Speed`, `FREEDOMS`.
 - Installation: `Installed`, `Mounting`, `FitConditions`, `preload`.
-- Under a load: `solve_load`, `linearise`, `refine`.
+- Under a load: `solve_load`, `Support`, `linearise`, `refine`.
 - Under many loads: `sweep`, `Cases`, `stack_designs`, `spectrum_life`.
 - Ratings and life: `ratings`, `dynamic_capacity`, `static_capacity`, `rating_life`,
   `LifeConditions`.
@@ -152,7 +152,15 @@ from .life import (
 )
 from .lubrication import Lubricant
 from .numerics import Result, SolveError, keep_programs
-from .statics import Installed, linearise, preload, refine, solve_load, warnings
+from .statics import (
+    Installed,
+    Support,
+    linearise,
+    preload,
+    refine,
+    solve_load,
+    warnings,
+)
 
 if _TYPE_CHECKING:
     from . import files, noise, optimise, plot, report, rotor, shafts, skid, studies
@@ -173,6 +181,7 @@ __all__ = [
     "CrownedEnds", "Logarithmic", "Lundberg", "JohnsGohar", "FujiwaraKawase",
     "Tabulated", "catalogue_entry", "catalogue_entries", "BearingElement", "Speed",
     "FREEDOMS", "Installed", "Mounting", "FitConditions", "preload", "solve_load",
+    "Support",
     "linearise", "refine", "sweep", "Cases", "stack_designs", "spectrum_life",
     "ratings", "dynamic_capacity", "static_capacity", "rating_life", "LifeConditions",
     "Lubricant", "films", "friction_torque", "Result", "SolveError", "warnings", "run",

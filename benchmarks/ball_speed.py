@@ -183,7 +183,9 @@ def beside_ross(rounds, block):
     if call is None:
         return None
     solution = bj.solve_load(
-        el, [0.0, -radial, 0, 0, 0, 0], free=["ux", "uy"], prescribed={"uz": 0.0}
+        el,
+        [0.0, -radial, 0, 0, 0, 0],
+        support=bj.Support(free=["ux", "uy"], prescribed={"uz": 0.0}),
     )
     ours = float(solution.stiffness[7, 7])
     model = el.model()
@@ -191,7 +193,10 @@ def beside_ross(rounds, block):
     load = jax.jit(
         lambda f: (
             bj.solve_load(
-                el, f, free=["ux", "uy"], prescribed={"uz": 0.0}, throw=False
+                el,
+                f,
+                support=bj.Support(free=["ux", "uy"], prescribed={"uz": 0.0}),
+                throw=False,
             ).stiffness
         )
     )
@@ -239,7 +244,9 @@ def main(smoke):
         library = single_call.needed(compile_c(folder))
         results, calls, batch = {}, {}, single_call.batch_call(el)
         for name, (load, tilt) in list(LOADS.items())[: 2 if smoke else None]:
-            q = bj.solve_load(el, load, prescribed=tilt).displacement
+            q = bj.solve_load(
+                el, load, support=bj.Support(prescribed=tilt)
+            ).displacement
             calls = calls or calls_of(el, q, smoke)
             c = CBall(library, el)
             results[name] = single_call.study(c, el, q, rounds, block, calls, batch)

@@ -100,9 +100,10 @@ def solve(element, load, travel, tilt):
     return bj.solve_load(
         element,
         [0.0, -load, 0.0, 0.0, 0.0, 0.0],
-        free=("ux", "uy", "uz")[: 2 + (travel is None)],
-        prescribed=held,
-        points=3,
+        support=bj.Support(
+            free=("ux", "uy", "uz")[: 2 + (travel is None)], prescribed=held
+        ),
+        options=bj.statics.SolveOptions(points=3),
         throw=False,
     )
 

@@ -162,9 +162,8 @@ scene = bj.read_scene(sys.argv[1])
 
 def program(element, load):
     return bj.solve_load(
-        element, load, prescribed=scene.prescribed, free=scene.free,
-        fixed_ring=scene.fixed_ring, speed=scene.speed, points=scene.points,
-        tolerance=scene.tolerance, throw=False,
+        element, load, speed=scene.speed, support=scene.support,
+        options=scene.solve_options, throw=False,
     )
 
 given = scene.element, jax.numpy.asarray(scene.load)

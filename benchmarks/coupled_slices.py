@@ -168,7 +168,13 @@ def times(smoke):
         solve = jax.jit(
             jax.vmap(
                 lambda f, e=element: (lambda s: (s.displacement, s.result))(
-                    bj.solve_load(e, f, free=free, points=2, throw=False)
+                    bj.solve_load(
+                        e,
+                        f,
+                        support=bj.Support(free=free),
+                        options=bj.statics.SolveOptions(points=2),
+                        throw=False,
+                    )
                 )
             )
         )

@@ -204,7 +204,13 @@ class CLoad:
 def ours(element, loads, **choices):
     """As `CLoad`."""
     here = jax.devices()[:1]
-    s = bj.sweep(element, loads, outputs=OUTPUTS, devices=here, **choices)
+    s = bj.sweep(
+        element,
+        loads,
+        outputs=OUTPUTS,
+        batches=bj.cases.Batches(devices=here),
+        **choices,
+    )
     return s.displacement, s.iterations, int(np.sum(~s.converged))
 
 

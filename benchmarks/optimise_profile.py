@@ -168,9 +168,11 @@ def run(method, element, cases, start, size_of, points):
         variables(start),
         objective,
         kept,
-        rosenbrock if method == "rosenbrock" else method,
-        max_steps=STEPS[method],
-        points=points,
+        search=bj.optimise.SearchOptions(
+            rosenbrock if method == "rosenbrock" else method,
+            max_steps=STEPS[method],
+            solve=SolveOptions(points=points),
+        ),
     )
     seconds = time.perf_counter() - begin
     solution = found.after.solution

@@ -195,7 +195,9 @@ def modes():
     )
     four = natural_modes(dataclasses.replace(still, element=four))
     load = bj.solve_load(
-        deep, [0, -250.0, 0, 0, 0, 0], fixed_ring="inner", free=("ux", "uy", "uz")
+        deep,
+        [0, -250.0, 0, 0, 0, 0],
+        support=bj.Support(fixed_ring="inner", free=("ux", "uy", "uz")),
     )
     angular = bj.AngularContactBallBearing(
         *SIZE, contact_angle=np.radians(23.6), **COMMON

@@ -108,7 +108,9 @@ def uncarried_loads(rng, name, decade, count):
 @eqx.filter_jit
 def solve(element, loads):
     def one(load):
-        s = bj.solve_load(element, load, throw=False, points=3)
+        s = bj.solve_load(
+            element, load, throw=False, options=bj.statics.SolveOptions(points=3)
+        )
         free = jnp.asarray(
             [n in bj.statics.restrained_freedoms(element.bearing) for n in bj.FREEDOMS]
         )

@@ -122,7 +122,8 @@ def main(smoke, first=0, runs=300):
         one = model(rng, laws[0] if smoke else laws[k % 3])
         load, speed, duration = given(rng, kind, float(one.bearing.pitch_diameter))
         found = skid.simulate(
-            one, load, speed=speed, duration=duration, free=FREE, n_times=21,
+            one, load, speed=speed, duration=duration, n_times=21,
+            support=bj.Support(free=FREE),
             tolerance=1e-4, max_steps=5_000, throw=False,
             places=None if kind == "balanced" else 48,
         )  # fmt: skip

@@ -151,11 +151,15 @@ def cases(few=False):
     return radial | {
         "misaligned": (
             plain,
-            bj.solve_load(plain, load, prescribed=tilted).displacement,
+            bj.solve_load(
+                plain, load, support=bj.Support(prescribed=tilted)
+            ).displacement,
         ),
         "misaligned, raceways unlike": (
             uneven,
-            bj.solve_load(uneven, load, prescribed=tilted).displacement,
+            bj.solve_load(
+                uneven, load, support=bj.Support(prescribed=tilted)
+            ).displacement,
         ),
     }
 

@@ -124,7 +124,7 @@ def solver(law, places):
             model,
             load,
             speed=bj.Speed(inner=speed),
-            free=["ux", "uy", "uz", "gx", "gy"],
+            support=bj.Support(free=["ux", "uy", "uz", "gx", "gy"]),
             places=places,
             throw=False,
         )

@@ -42,7 +42,7 @@ import numpy as np
 from bench import benchmark, slopes_beside
 from han_chu import FREE, MODEL
 
-from bearingjax import Speed, skid
+from bearingjax import Speed, Support, skid
 
 WHAT = "slip", "torque", "sliding"
 STEPS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
@@ -77,7 +77,12 @@ def of_results(found, orbit, rolling):
 def end_state(numbers, _):
     load, speed = given(numbers)
     found = skid.steady(
-        numbers["model"], load, speed=speed, free=FREE, places=1, throw=False
+        numbers["model"],
+        load,
+        speed=speed,
+        support=Support(free=FREE),
+        places=1,
+        throw=False,
     )
     return of_results(found, found.cage_speed, found.rolling_orbit_speed[0])
 
@@ -90,7 +95,7 @@ def in_time(numbers, derivatives):
         speed=speed,
         duration=0.003,
         tolerance=1e-8,
-        free=FREE,
+        support=Support(free=FREE),
         n_times=2,
         places=1,
         max_steps=512,

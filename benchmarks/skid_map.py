@@ -35,7 +35,7 @@ import numpy as np
 from bench import benchmark, subplots, timed
 from han_chu import FREE, MODEL
 
-from bearingjax import Speed, skid
+from bearingjax import Speed, Support, skid
 
 RADIAL = 2.0 / 3.0
 
@@ -44,7 +44,12 @@ def end_state(places, share, load, speed):
     """Mean slip, friction torque, result of one point."""
     force = jnp.zeros(6).at[0].set(share * load).at[2].set(load)
     found = skid.steady(
-        MODEL, force, speed=Speed(inner=speed), free=FREE, places=places, throw=False
+        MODEL,
+        force,
+        speed=Speed(inner=speed),
+        support=Support(free=FREE),
+        places=places,
+        throw=False,
     )
     slip = 1.0 - found.cage_speed / jnp.mean(found.rolling_orbit_speed)
     return slip, found.friction_torque, found.result

@@ -85,7 +85,7 @@ def solver(places):
             jnp.zeros(6).at[0].set(load),
             speed=Speed(inner=inner),
             places=places,
-            free=["ux", "uy"],
+            support=bj.Support(free=["ux", "uy"]),
             throw=False,
         )
 

@@ -173,7 +173,7 @@ def in_time(model, varying, begin, duration, rate):
         speed=SPEED,
         duration=duration,
         n_times=round(duration * rate) + 1,
-        free=FREE,
+        support=bj.Support(free=FREE),
         tolerance=1e-5,
         max_steps=2_000_000,
         derivatives="forward",

@@ -61,7 +61,7 @@ from bench import benchmark, shuffled, subplots, timed
 from han_chu import ELEMENT, FREE, MODEL, SPEED
 from scipy.integrate import solve_ivp
 
-from bearingjax import skid
+from bearingjax import Support, skid
 from bearingjax.numerics.types import as_real
 from bearingjax.skid.load_table import _as_row, _pieces
 from bearingjax.skid.ring_speed import as_table
@@ -77,7 +77,7 @@ CASES = {
 
 def prepared(load, places):
     """What the balls move in, and their start: of both, and not timed."""
-    solution = solve_load(ELEMENT, load, speed=SPEED, free=FREE)
+    solution = solve_load(ELEMENT, load, speed=SPEED, support=Support(free=FREE))
     given = solution, SPEED, as_table(SPEED), as_real(0.0), places
     return surroundings(MODEL, *given)
 
@@ -199,7 +199,7 @@ def many(loads, duration, places, tolerance):
                 load,
                 speed=SPEED,
                 duration=duration,
-                free=FREE,
+                support=Support(free=FREE),
                 places=places,
                 n_times=21,
                 tolerance=tolerance,

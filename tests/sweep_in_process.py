@@ -35,7 +35,12 @@ def loads(count=50):
 def main(out, devices, port, count, rank):
     jax.config.update("jax_num_cpu_devices", int(devices))
     jax.distributed.initialize(f"127.0.0.1:{port}", int(count), int(rank))
-    solved = bj.sweep(small_element(), loads(), outputs=["displacement"], chunk=4)
+    solved = bj.sweep(
+        small_element(),
+        loads(),
+        outputs=["displacement"],
+        batches=bj.cases.Batches(chunk=4),
+    )
     np.savez(
         out,
         devices=len(jax.devices()),

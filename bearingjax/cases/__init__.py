@@ -4,10 +4,11 @@
 fit the cache, over all devices and processes of JAX; each case has its own result code,
 and a bad one spoils no other. `outputs` are fields of a solution, or `peak_pressure`,
 `largest_load`, `n_loaded`, `iterations`, `residual`; outputs that are not named are not
-computed. Each case starts from the nearest one that is solved by then (`near`).
+computed. Each case starts from the nearest one that is solved by then
+(`Batches(near=True)`).
 Designs: `stack_designs([...])`, or an element made under `jax.vmap`.
 `jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
-`sweep(..., stop=...)` is asked between blocks.
+`Batches(stop=...)` is asked between blocks.
 
 Many devices in a program of your own
 -------------------------------------
@@ -32,15 +33,16 @@ not).
 Names
 -----
 
-- Sweeps: `sweep`, `Sweep`, `Cases`, `solve_case`, `stack_designs`.
+- Sweeps: `sweep`, `Sweep`, `Cases`, `Batches`, `solve_case`, `stack_designs`.
 - Load spectra: `spectrum_life`, `SpectrumLife`.
 """
 
+from .batches import Batches
 from .cases import Cases, solve_case
 from .spectrum import SpectrumLife, spectrum_life
 from .sweep import Sweep, stack_designs, sweep
 
 __all__ = [
-    "sweep", "Sweep", "Cases", "solve_case", "stack_designs", "spectrum_life",
+    "sweep", "Sweep", "Cases", "Batches", "solve_case", "stack_designs", "spectrum_life",
     "SpectrumLife",
 ]  # fmt: skip

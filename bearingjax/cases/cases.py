@@ -1,5 +1,6 @@
 """Many operating cases of one bearing: loads, displacements, speeds, hours."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,6 +18,7 @@ from ..numerics.units import unit
 from ..statics.load import solve
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
+from ..statics.support import RESTRAINED, Support
 
 
 class Cases(eqx.Module):
@@ -185,6 +187,7 @@ def check_hours(hours: Any) -> None:
 def solve_case(
     element: BearingElement[Any],
     case: Cases,
+    support: Support = RESTRAINED,
     options: SolveOptions | None = None,
     start: Float[Array, "6"] | None = None,
 ) -> Solution:
@@ -193,20 +196,28 @@ def solve_case(
     Args:
         element: The bearing of this case.
         case: Cases without their leading axis, as `vmap` hands them out.
-        options: Settings; `None`: the defaults of `solve_load`.
-        start: As in `solve_load`.
+        support: What holds the rings; displacements are those of the case.
+        options, start: As in `solve_load`.
 
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
     """
-    return solve(
-        element,
-        case.load,
-        SolveOptions() if options is None else options,
+    held = case_support(case, support)
+    speed = case_speed(case)
+    return solve(element, case.load, held, options, speed=speed, start=start)
+
+
+def case_support(case: Cases, support: Support) -> Support:
+    """The support of all cases, with the displacements of one.
+
+    Args:
+        case: Cases without their leading axis.
+        support: The free freedoms and the fixed ring.
+    """
+    return dataclasses.replace(
+        support,
         prescribed=case.prescribed,
         fixed_displacement=case.fixed_displacement,
-        speed=case_speed(case),
-        start=start,
     )
 
 

@@ -5,13 +5,12 @@ from ..design.bearing_set import bearings_of
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
-from ..statics.options import SolveOptions
-from ..statics.support import restrained_freedoms
+from ..statics.support import Support
 from .cases import Cases
 
 
 def structural_zeros(
-    element: BearingElement, cases: Cases, options: SolveOptions
+    element: BearingElement, cases: Cases, support: Support
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Names along the last axis of outputs whose numbers are zero by construction.
 
@@ -22,17 +21,14 @@ def structural_zeros(
     Args:
         element: Solved element.
         cases: Its operating cases.
-        options: Settings.
+        support: What holds the rings.
 
     Returns:
         (output, names such as "outer_ux", as the columns of a table have them), each.
     """
-    free = options.free
-    if free is None:
-        free = restrained_freedoms(element.bearing)
-    moving = {*free, *cases.prescribed}
+    moving = {*support.freedoms(element.bearing), *cases.prescribed}
     fixed = FREEDOMS if cases.fixed_displacement is not None else ()
-    moves = {options.moving_ring: moving, options.fixed_ring: fixed}
+    moves = {support.moving_ring: moving, support.fixed_ring: fixed}
     still = tuple(
         f"{ring}_{f}" for ring in RINGS for f in FREEDOMS if f not in moves[ring]
     )

@@ -19,9 +19,8 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
 from ..numerics.units import mixed, unit
-from ..statics.options import SolveOptions
 from ..statics.solution import Solution
-from ..statics.support import restrained_freedoms
+from ..statics.support import Support
 from ..statics.warning_sizes import unrestrained_directions
 from .cases import Cases
 
@@ -91,19 +90,17 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
 
 
 def common_properties(
-    element: BearingElement[Any], cases: Cases, options: SolveOptions
+    element: BearingElement[Any], cases: Cases, support: Support
 ) -> Likeness:
     """Return the properties that the cases of a sweep have in common.
 
     Args:
         element: The bearing or designs.
         cases: Cases of the sweep.
-        options: Settings.
+        support: What holds the rings.
     """
-    restrained = restrained_freedoms(element.bearing)
-    free = options.free
-    if free is None:
-        free = [name for name in restrained if name not in cases.prescribed]
+    may_move = support.freedoms(element.bearing)
+    free = [name for name in may_move if name not in cases.prescribed]
     counts = {row.bearing.n_elements for row in rows_of(element.bearing)}
     round_z = all((a in free) == (b in free) for a, b in (("ux", "uy"), ("gx", "gy")))
     round_z = round_z and len(counts) == 1 and not cases.prescribed

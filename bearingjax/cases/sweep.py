@@ -27,16 +27,12 @@ from ..numerics.result import Result
 from ..numerics.warning import Warning, exceeded_kinds, warnings_of_cases
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
-from ..statics.support import check_held
+from ..statics.support import RESTRAINED, Support, check_held
+from .batches import Batches
 from .cases import Cases
 from .names_of_zeros import structural_zeros
 from .output_labels import LARGEST, label_cases, label_output
 from .sweep_program import WARNED, Program, Task
-
-CHUNK = 512
-"""Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
-batch has no solved cases to start from: an eighth of a sweep at most, or 64; smaller
-ones end in slots that wait (benchmarks/load_solve_throughput.py)."""
 
 
 def _largest(field: str, solution: Solution) -> Array:
@@ -164,18 +160,11 @@ def sweep(
     cases: Cases | Float[Array | np.ndarray, "case 6"],
     *,
     outputs: Sequence[str] | Callable[[Solution], dict[str, Array]] | None = None,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
-    points: int = 101,
-    tolerance: float | None = None,
-    max_steps: int = 200,
-    near: bool = True,
-    warn: bool = True,
-    chunk: int | None = None,
-    progress: bool = False,
-    devices: Sequence[Any] | None = None,
-    stop: Callable[[], bool] | None = None,
+    support: Support = RESTRAINED,
+    options: SolveOptions | None = None,
     life: LifeConditions | None = None,
+    warn: bool = True,
+    batches: Batches | None = None,
 ) -> Sweep:
     """Solve many cases. One bad case never spoils another: each has its own code.
 
@@ -186,29 +175,13 @@ def sweep(
         outputs: Fields of `Solution` and names of `SUMMARIES` and `LIFE_OUTPUTS` to be
             kept, or a function of one Solution; what is not kept is not computed.
             `None`: all fields of `Solution`.
-        free, fixed_ring, points, max_steps: As in `solve_load`.
-        tolerance: As in `solve_load`. Displacements are off by up to thirty times as
-            much, relative to the largest: 1e-6 takes a fifth less time than the
-            default, 1e-4 a quarter (benchmarks/load_solve_throughput.py).
-        near: Start each case from the nearest one that is solved by then, moved by
-            its stiffness. Cases that fail so, or that have a direction which nothing
-            holds, are solved again from first contact; so answers and result codes are
-            the same to the tolerance, in fewer steps. False, and in float32: start all
-            cases from first contact.
-        warn: Look for warnings (`bj.warnings`) in every case.
-        chunk: Cases of a batch, the first of which start from first contact; default
-            64 to `CHUNK`, by the number of cases.
-        progress: Show a bar.
-        devices: Over which the cases are spread; default all of `jax.devices()`, of
-            all processes. (`jax.config.update("jax_num_cpu_devices", 2)` before
-            anything else makes a processor with two cores two devices.)
-        stop: Called between blocks. Once it returns true no further block is begun,
-            and the remaining cases have the code `NOT_RUN`. It must return the same in
-            all processes. (A KeyboardInterrupt loses what was solved; a signal handler
-            whose flag `stop` returns does not.)
+        support, options: As in `solve_load`; displacements are those of the cases.
         life: Conditions of rating lives among `outputs`, and of warnings about lives
             even if none is kept; `None`: lives are not looked at, or if `outputs` name
             one `LifeConditions()`.
+        warn: Look for warnings (`bj.warnings`) in every case.
+        batches: How the cases are worked off: sizes of batches, devices, starts, a bar
+            of progress, an early end. `None`: `Batches()`.
 
     Returns:
         Sweep with all cases, in every process.
@@ -228,30 +201,24 @@ def sweep(
             " jax.vmap instead, or many at a time with jax.lax.map."
         )
     every = cases if isinstance(cases, Cases) else Cases(cases)
-    options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
-    options.check("sweep")
+    options = SolveOptions() if options is None else options
+    batches = Batches() if batches is None else batches
     every = _with_designs(element, every)
-    places = np.array(jax.devices() if devices is None else list(devices))
-    share = max(1, every.count // (8 * places.size))
-    size = (
-        min(CHUNK, max(64, 2 ** (share.bit_length() - 1))) if chunk is None else chunk
-    )
-    if not isinstance(size, int) or size < 1:
-        raise ValueError(f"sweep: `chunk` is {chunk!r}; a whole number of at least 1.")
-    check_held("sweep", every.load, every.prescribed, options.free)
+    support.check_for_cases("sweep")
+    check_held("sweep", every.load, support, every.prescribed)
     of_class("sweep", "life", life, LifeConditions | None, "LifeConditions")
     keep, lives = _output_function(outputs)
     life = LifeConditions() if lives and life is None else life
     if life is not None:
         check_alike(element.bearing)
-    task = Task(options, keep, warn, lives, life)
-    program = Program(element, task, size, places)
+    task = Task(support, options, keep, warn, lives, life)
+    places = batches.places()
+    program = Program(element, task, batches.size(every.count), places)
     # The looser tolerance of float32 would leave near starts a digit less.
-    near = near and jax.config.read("jax_enable_x64")
-    found = program.run(every, near, progress, stop)
-    return Sweep(
-        every, found, options.moving_ring, structural_zeros(element, every, options)
-    )
+    near = batches.near and jax.config.read("jax_enable_x64")
+    found = program.run(every, near, batches.progress, batches.stop)
+    zeros = structural_zeros(element, every, support)
+    return Sweep(every, found, support.moving_ring, zeros)
 
 
 class Keep(eqx.Module):

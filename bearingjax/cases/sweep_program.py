@@ -21,6 +21,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
+from ..statics.support import Support
 from ..statics.warning import sizes
 from .cases import solve_case
 from .near_starts import (
@@ -54,7 +55,8 @@ class Task(eqx.Module):
     """Operations that a sweep performs on every case.
 
     Attributes:
-        options: Settings of the load solve.
+        support: What holds the rings.
+        options: Numerics of the load solve.
         keep: Function Solution -> outputs by name.
         warn: Whether to look for warnings.
         lives: Names of the `LIFE_OUTPUTS` that are also kept.
@@ -63,6 +65,7 @@ class Task(eqx.Module):
     Traced: the numbers of `options` and `life`. Static: all else.
     """
 
+    support: Support
     options: SolveOptions
     keep: Callable[[Solution], dict[str, jax.Array]] = eqx.field(static=True)
     warn: bool = eqx.field(static=True)
@@ -73,7 +76,7 @@ class Task(eqx.Module):
         """Solve a case, with the design that it selects."""
         if case.design is not None:
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
-        return solve_case(element, case, self.options, start)
+        return solve_case(element, case, self.support, self.options, start)
 
     def outputs(self, solution) -> dict[str, jax.Array]:
         """Outputs of a solution by name; floats of a failed solve are NaN."""
@@ -163,7 +166,7 @@ class Program:
         chunks = min(max(1, BLOCK // lanes), math.ceil(like / (devices * lanes)))
         block = devices * lanes * chunks
         shard = NamedSharding(self.mesh, Spec("case"))
-        alike = common_properties(self.element, held[0], self.task.options)
+        alike = common_properties(self.element, held[0], self.task.support)
         known = nothing_known(lanes, devices, held[1].shape[1])
         known = jax.tree.map(lambda a: _spread_over_devices(a, shard), known)
         found: dict[str, np.ndarray] = {}

@@ -30,7 +30,10 @@ from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
+from ..statics.load import solve
 from ..statics.options import SolveOptions
+from ..statics.solution import Solution
+from ..statics.support import Support
 from .dynamics.cage import GuidedCage
 from .dynamics.dynamic_row import DynamicRow, of_small_motions
 from .dynamics.system import NoiseSystem
@@ -207,9 +210,25 @@ class NoiseModel(eqx.Module):
         return jnp.maximum(jnp.abs(self.speed.outer), jnp.abs(self.speed.inner))
 
     @property
-    def solve_options(self) -> SolveOptions:
-        """Settings of the load solve for the equilibrium of the ring."""
-        return SolveOptions(free=self.freedoms, fixed_ring=self.fixed_ring, points=2)
+    def support(self) -> Support:
+        """What holds the rings in the equilibrium under the load."""
+        return Support(free=self.freedoms, fixed_ring=self.fixed_ring)
+
+    def solve(
+        self,
+        element: BearingElement[Any],
+        speed: Speed | None = None,
+        start: Float[Array, "6"] | None = None,
+    ) -> Solution:
+        """Solve a bearing under the load of the model; never raises for a failure.
+
+        Args:
+            element: The bearing, such as that of the model at an instant.
+            speed, start: As in `solve_load`.
+        """
+        options = SolveOptions(points=2)
+        given = self.load, self.support, options
+        return solve(element, *given, speed=speed, start=start)
 
     def system(self, points: int = 4096) -> NoiseSystem:
         """Return the equations of motion, with all constants evaluated.

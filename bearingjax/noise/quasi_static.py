@@ -23,7 +23,6 @@ from ..element.rolling_element import split_rings
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
-from ..statics.load import solve
 from .dynamics.dynamic_row import of_rows
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -142,9 +141,8 @@ def at_instant(
 @program(quick=True)
 def _excitation(model, turns, samples, held) -> Excitation:
     system = dataclasses.replace(model, cage=None).system()
-    options = model.solve_options
     whole = model.small
-    standing = solve(whole, model.load, options)
+    standing = model.solve(whole)
     start = split_rings(standing.displacement)[system.moving]
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     time = jnp.arange(turns * samples, dtype=frequency.dtype) / (frequency * samples)
@@ -155,7 +153,7 @@ def _excitation(model, turns, samples, held) -> Excitation:
             found = element.evaluate(standing.displacement)
             force, moved = found.force, jnp.zeros_like(start)
         else:
-            found = solve(element, model.load, options, start=start)
+            found = model.solve(element, start=start)
             force = found.force
             moved = split_rings(found.displacement)[system.moving] - start
         # The contacts push the ring with what would have to hold it, reversed.

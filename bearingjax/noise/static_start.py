@@ -12,7 +12,6 @@ from ..numerics.linear import combine_rows
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..statics import solution as statics_solution
-from ..statics.load import solve
 from .dynamics.element_positions import ElementPositions
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -49,7 +48,7 @@ def static_start(
         )
         element = dataclasses.replace(element, choices=choices)
     speed = model.speed if orbits else None
-    solution = solve(element, model.load, model.solve_options, speed=speed)
+    solution = model.solve(element, speed)
     q = solution.displacement
     rows = element.rows(q, speed)
     u, v, tilt = jnp.concatenate([found.motions() for found in rows]).T
@@ -89,7 +88,7 @@ def failure_message(model: NoiseModel) -> str:
     Args:
         model: The bearing; concrete.
     """
-    solution = solve(model.small, model.load, model.solve_options)
+    solution = model.solve(model.small)
     if int(solution.result) == Result.CONVERGED:
         return (
             "nothing presses the rolling elements between the rings, and the"

@@ -24,7 +24,7 @@ several bearings: `bearingjax.shafts.ShaftDesign`. Worked: the notebook roller_b
 Names
 -----
 
-- The search: `optimise`, `Variable`, `Constraint`, `design_numbers`.
+- The search: `optimise`, `SearchOptions`, `Variable`, `Constraint`, `design_numbers`.
 - Measures of load and pressure: `PeakPressure`, `MeanPressure`, `EdgeLoad`.
 - Measures of stiffness: `Displacement`, `Stiffness`, `StiffnessTarget`.
 - Measures of life: `RatingLife`, `Damage`.
@@ -42,11 +42,11 @@ from .measure import (
     Stiffness,
     StiffnessTarget,
 )
-from .optimise import History, Optimised, optimise
+from .optimise import History, Optimised, SearchOptions, optimise
 from .variable import Variable, design_numbers
 
 __all__ = [
-    "optimise", "Variable", "Constraint", "design_numbers", "PeakPressure",
+    "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers", "PeakPressure",
     "MeanPressure", "EdgeLoad", "Displacement", "Stiffness", "StiffnessTarget",
     "RatingLife", "Damage", "Optimised", "Outcome", "History",
 ]  # fmt: skip

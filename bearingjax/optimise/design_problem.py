@@ -14,6 +14,7 @@ from ..numerics.result import Result, SolveError
 from ..numerics.units import unit
 from ..numerics.warning import Warning
 from ..statics.options import SolveOptions
+from ..statics.support import RESTRAINED, Support
 from ..statics.warning import solution_warnings
 from .constraint import Constraint
 from .life import OfLife
@@ -81,7 +82,8 @@ class Problem:
 
     Args:
         element, cases, variables, objective, constraints: As in `optimise`, checked.
-        options: Settings of the solves.
+        options: Numerics of the solves.
+        support: What holds the rings.
         build: As in `optimise`.
     """
 
@@ -93,13 +95,14 @@ class Problem:
         objective: Measure,
         constraints: Sequence[Constraint],
         options: SolveOptions,
+        support: Support = RESTRAINED,
         build: Build | None = None,
     ):
         self.element, self.variables = element, variables
         self.constraints = constraints
         self.cases = jax.tree.map(jnp.asarray, cases)
         self.measures = (objective, *(c.measure for c in constraints))
-        self.options, self.build = options, build
+        self.solves, self.build = (support, options), build
         self.paths = tuple(variable.path for variable in variables)
         self.lower = np.array([v.lower for v in variables])
         self.upper = np.array([v.upper for v in variables])
@@ -159,12 +162,10 @@ class Problem:
             self.element,
             self.cases,
             self.measures,
-            self.paths,
-            self.options,
+            (self.paths, jnp.asarray(self.lower), jnp.asarray(self.width)),
+            self.solves,
             self.build,
             jnp.asarray(unit),
-            jnp.asarray(self.lower),
-            jnp.asarray(self.width),
             slopes,
         )
 
@@ -215,15 +216,14 @@ class Run(NamedTuple):
 
 
 @program
-def _program(
-    element, cases, measures, paths, options, build, unit, lower, width, slopes
-) -> Run:
+def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
+    paths, lower, width = box
 
     def outputs(unit):
         design = ready(with_values(element, paths, lower + width * unit), build)
 
         def one(case):
-            return solved_case(design, case, options)
+            return solved_case(design, case, *solves)
 
         if cases.count <= CHUNK:
             solution = jax.vmap(one)(cases)

@@ -17,12 +17,12 @@ from ..life.rating import check_alike
 from ..numerics.units import shown_number, unit
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
-from ..statics.support import check_held
+from ..statics.support import RESTRAINED, Support, check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
 from .life import OfLife
 from .measure import AbstractMeasure, label_of
-from .search import METHODS, SearchOutcome, search, takes_gradients
+from .search import METHODS, SearchOutcome, search_least, takes_gradients
 from .system import AbstractSystem, Design, check_design
 from .trials import Trial, Trials, optimality
 from .variable import Variable, check_variables
@@ -101,22 +101,48 @@ class Optimised:
         return self.result == "converged"
 
 
+@dataclasses.dataclass(frozen=True)
+class SearchOptions:
+    """Numerics of an optimisation.
+
+    Attributes:
+        method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
+            "adam" or any Optax gradient transformation, projected onto the bounds;
+            "nelder-mead", without gradients, for comparison; or a search function of
+            your own (see `search_least` in `bearingjax/optimise/search.py`). Only
+            "slsqp" keeps constraints.
+        max_steps: Step limit of the search.
+        tolerance: `optimality` at which the search ends. Constraints are kept to this
+            share of their bound, and count as active within it. With 1e-5 the gradient
+            left changes the objective by at most 1e-5 of its size over the whole range
+            of a variable. Gradients are exact to 1e-9, but p-norms with a large
+            exponent curve sharply near a minimax. In float32 use 1e-3. For
+            "nelder-mead" it is the size of the simplex; as that method sees only the
+            objective, it counts as converged with an `optimality` of up to the square
+            root of this.
+        solve: Numerics of the load solves; at its `points` along the rollers smooth
+            maxima sample the pressure, in addition to the peaks, which do not depend on
+            them. `None`: `SolveOptions()`.
+        progress: Whether a progress bar is shown on standard error.
+    """
+
+    method: Any = None
+    max_steps: int = 200
+    tolerance: float = 1e-5
+    solve: SolveOptions | None = None
+    progress: bool = False
+
+
 def optimise(
     element: Design,
     cases: Any,
     variables: Sequence[Variable],
     objective: Measure,
     constraints: Sequence[Constraint] = (),
-    method: Any = None,
     *,
-    max_steps: int = 200,
-    tolerance: float = 1e-5,
-    points: int = 101,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
-    solve_tolerance: float | None = None,
+    search: SearchOptions | None = None,
+    support: Support = RESTRAINED,
     build: Build | None = None,
-    progress: bool = False,
 ) -> Optimised:
     """Find the design within bounds that minimises an objective over operating cases.
 
@@ -140,27 +166,11 @@ def optimise(
             smooth function (element, cases, solution) -> scalar. Of a `RatingLife` its
             inverse is minimised.
         constraints: Bounds on measures.
-        method: "l-bfgs-b" (the default without constraints), "slsqp" (with them),
-            "adam" or any Optax gradient transformation, projected onto the bounds;
-            "nelder-mead", without gradients, for comparison; or a search function of
-            your own (see `search` in `bearingjax/optimise/search.py`). Only "slsqp"
-            keeps constraints.
-        max_steps: Step limit of the search.
-        tolerance: `optimality` at which the search ends. Constraints are kept to this
-            share of their bound, and count as active within it. With 1e-5 the gradient
-            left changes the objective by at most 1e-5 of its size over the whole range
-            of a variable. Gradients are exact to 1e-9, but p-norms with a large
-            exponent curve sharply near a minimax. In float32 use 1e-3. For
-            "nelder-mead" it is the size of the simplex; as that method sees only the
-            objective, it counts as converged with an `optimality` of up to the square
-            root of this.
-        points: Positions along the rollers at which smooth maxima sample the pressure,
-            in addition to the peaks, which do not depend on them.
-        free, fixed_ring: As in `solve_load`.
-        solve_tolerance: `tolerance` of `solve_load`.
+        search: Method, step limit and tolerance of the search, and numerics of the
+            load solves; `None`: `SearchOptions()`.
+        support: As in `solve_load`; displacements are those of the cases.
         build: Function applied to each changed design before it is solved, for example
             `lambda e: bj.preload(e, 400.0, throw=False)`.
-        progress: Show a progress bar on standard error.
 
     Returns:
         The best design and the steps to it; check `result`.
@@ -172,7 +182,10 @@ def optimise(
     variables, constraints = tuple(variables), tuple(constraints)
     if isinstance(objective, AbstractMeasure):
         objective = objective.as_objective
-    method = _check_method(method, constraints)
+    given = SearchOptions() if search is None else search
+    method = _check_method(given.method, constraints)
+    max_steps, tolerance = given.max_steps, given.tolerance
+    options = SolveOptions() if given.solve is None else given.solve
     kind = element.of_cases if isinstance(element, AbstractSystem) else Cases
     _check_cases(cases, kind)
     _check_call(objective, constraints, max_steps, tolerance)
@@ -182,19 +195,21 @@ def optimise(
         if not isinstance(element, AbstractSystem):
             drawing = element.drawing if isinstance(element, Installed) else element
             check_alike(drawing.bearing)
-    options = SolveOptions(free, fixed_ring, points, solve_tolerance)
-    options.check("optimise", "solve_tolerance")
+    support.check_for_cases("optimise")
     if isinstance(cases, Cases):
-        check_held("optimise", cases.load, cases.prescribed, options.free)
+        check_held("optimise", cases.load, support, cases.prescribed)
     start = check_variables(element, variables)
-    problem = Problem(element, cases, variables, objective, constraints, options, build)
+    asked = variables, objective, constraints
+    problem = Problem(element, cases, *asked, options, support, build)
     slopes = takes_gradients(method)
     first = problem.begin(problem.scaled(start), slopes)
     trials = Trials(problem.evaluate, first)
 
     from tqdm import tqdm
 
-    bar = tqdm(total=max_steps, disable=not progress, desc="optimise", unit="step")
+    bar = tqdm(
+        total=max_steps, disable=not given.progress, desc="optimise", unit="step"
+    )
     with bar:
 
         def advance():
@@ -202,7 +217,7 @@ def optimise(
             bar.update()
 
         n_bounds = len(problem.bounds)
-        ending = search(method, trials, n_bounds, max_steps, tolerance, advance)
+        ending = search_least(method, trials, n_bounds, max_steps, tolerance, advance)
     return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
 
 

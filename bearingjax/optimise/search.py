@@ -66,7 +66,7 @@ class _Stuck(Exception):
     """A method has tried too many designs that were rejected."""
 
 
-def search(
+def search_least(
     method: Any,
     trials: Trials,
     n_bounds: int,

@@ -14,6 +14,7 @@ from ..statics import solution as statics_solution
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
+from ..statics.support import Support
 
 
 class AbstractSystem(eqx.Module):
@@ -45,12 +46,13 @@ class AbstractSystem(eqx.Module):
         """
 
     @abc.abstractmethod
-    def solve_case(self, case: Cases, options: SolveOptions) -> Any:
+    def solve_case(self, case: Cases, support: Support, options: SolveOptions) -> Any:
         """Solve one case; nothing is raised for a failed solve.
 
         Args:
             case: Cases without their leading axis.
-            options: Settings of the load solve.
+            support: What holds the rings.
+            options: Numerics of the load solve.
 
         Returns:
             A Module with the load solve of the bearing as `solution`, if there is one
@@ -96,19 +98,21 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
         check_element(owner, design)
 
 
-def solved_case(design: Design, case: Any, options: SolveOptions) -> Any:
+def solved_case(
+    design: Design, case: Any, support: Support, options: SolveOptions
+) -> Any:
     """Solve one case of a design; for an element the load solve.
 
     An installed bearing is mounted at the speeds of the case, if it has any.
 
     Args:
-        design, case, options: As in `AbstractSystem.solve_case`.
+        design, case, support, options: As in `AbstractSystem.solve_case`.
     """
     if isinstance(design, AbstractSystem):
-        return design.solve_case(case, options)
+        return design.solve_case(case, support, options)
     if isinstance(design, Installed):
         design = design.at(case_speed(case), throw=False)
-    return solve_case(design, case, options)
+    return solve_case(design, case, support, options)
 
 
 def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:

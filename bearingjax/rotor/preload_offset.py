@@ -7,6 +7,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
 from ..statics.load import solve_load
+from ..statics.support import Support
 
 
 def preload_offset(
@@ -34,6 +35,6 @@ def preload_offset(
     pushing = as_real(force)
     positive("preload_offset", "force", pushing, "N")
     load = jnp.zeros(6, pushing.dtype).at[2].set(pushing)
-    found = solve_load(element, load, free=["uz"], throw=throw)
+    found = solve_load(element, load, support=Support(free=["uz"]), throw=throw)
     held = found.result == Result.CONVERGED
     return jnp.where(held, found.displacement[8], jnp.nan)

@@ -119,7 +119,7 @@ class ShaftDesign(AbstractSystem):
     def check(self, cases):
         pass
 
-    def solve_case(self, case: Any, options: Any) -> DutyResult:
+    def solve_case(self, case: Any, support: Any, options: Any) -> DutyResult:
         leaves, tree = jax.tree.flatten(self)
         for place, value in zip(case.places, case.values, strict=True):
             leaves[place] = value

@@ -6,7 +6,7 @@ least_film=..., inlet_heating=...)` is a bearing with its oil.
 The state in the end
 --------------------
 
-`skid.steady(model, load, speed=..., free=...)` finds the steady state of the balls
+`skid.steady(model, load, speed=..., support=...)` finds the steady state of the balls
 without integrating in time: orbit and spin relative to pure rolling (`slip`), film,
 sliding and heat of every contact, friction torque and power balance. The torque is that
 of sliding and of drag: resistance to rolling, hysteresis and seals, most of what a

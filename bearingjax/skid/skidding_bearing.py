@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..cases.cases import Cases, solve_case
+from ..cases.cases import Cases, case_support, solve_case
 from ..design.checks import instance, number
 from ..element.inertia import Speed
 from ..numerics.result import Result
@@ -18,6 +18,7 @@ from ..optimise.smooth import EXPONENT
 from ..optimise.system import AbstractSystem
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
+from ..statics.support import Support
 from .conditions import conditions
 from .model import SkidModel
 from .orbits.steady import check_places, end_state, enough_places, failure_message
@@ -61,24 +62,18 @@ class SkiddingBearing(AbstractSystem):
                 " `outer_speed` in rad/s, or nothing skids."
             )
 
-    def solve_case(self, case: Cases, options: SolveOptions) -> Any:
+    def solve_case(self, case: Cases, support: Support, options: SolveOptions) -> Any:
         model = self.model
         load = jnp.asarray(case.load).at[2].add(self.preload)
         loaded = eqx.tree_at(lambda c: c.load, case, load)
-        solution = solve_case(model.element, loaded, options)
+        solution = solve_case(model.element, loaded, support, options)
         still = jnp.zeros_like(self.preload)
         rings = case.inner_speed, case.outer_speed
         speed = Speed(*(still if ring is None else ring for ring in rings))
         places = enough_places(model.bearing) if self.places is None else self.places
-        whole = load_case(
-            model.bearing,
-            loaded.load,
-            options,
-            prescribed=loaded.prescribed,
-            fixed_displacement=loaded.fixed_displacement,
-            speed=speed,
-        )
-        return end_state(model, solution, whole, options, speed, places)
+        held = case_support(loaded, support)
+        whole = load_case(model.bearing, loaded.load, held, speed=speed)
+        return end_state(model, solution, whole, speed, places)
 
     def message(self, solved):
         if int(solved.result) == Result.GRID_MISFIT:

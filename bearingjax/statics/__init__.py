@@ -38,7 +38,7 @@ case before the mask.
 Names
 -----
 
-- Load solves: `solve_load`, `SolveOptions`, `Solution`, `BallSolution`,
+- Load solves: `solve_load`, `Support`, `SolveOptions`, `Solution`, `BallSolution`,
   `RollerSolution`, `Stats`, `failure_message`.
 - Preload and seats: `Installed`, `preload`, `remaining_preload`, `SetPreload`.
 - Stiffness: `linearise`, `OperatingPoint`, `restrained_freedoms`.
@@ -54,11 +54,12 @@ from .preload import SetPreload, preload, remaining_preload
 from .refine import Refined, refine
 from .service_warning import seat_warnings, speed_warnings
 from .solution import BallSolution, RollerSolution, Solution, Stats, failure_message
-from .support import restrained_freedoms
+from .support import Support, restrained_freedoms
 from .warning import warnings
 
 __all__ = [
-    "solve_load", "SolveOptions", "Solution", "BallSolution", "RollerSolution", "Stats",
+    "solve_load", "Support", "SolveOptions", "Solution", "BallSolution",
+    "RollerSolution", "Stats",
     "failure_message", "Installed", "preload", "remaining_preload", "SetPreload",
     "linearise", "OperatingPoint", "restrained_freedoms", "refine", "Refined",
     "warnings", "seat_warnings", "speed_warnings",

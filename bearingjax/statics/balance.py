@@ -79,13 +79,12 @@ class Balance(eqx.Module):
         return self.along(force[self.moving] - self.load)
 
 
-def balance_of(case: LoadCase, radius: Scalar, outer_moves: bool) -> Balance:
+def balance_of(case: LoadCase, radius: Scalar) -> Balance:
     """The balance of a load case.
 
     Args:
         case: Load case.
         radius: Pitch radius [m].
-        outer_moves: Whether the outer ring is the moving one.
     """
     one = jnp.ones_like(radius)
     free = np.array([name in case.free for name in FREEDOMS], dtype=float)
@@ -96,5 +95,5 @@ def balance_of(case: LoadCase, radius: Scalar, outer_moves: bool) -> Balance:
         scale=jnp.concatenate([jnp.tile(one, 3), jnp.tile(1.0 / radius, 3)]),
         free=jnp.asarray(free, dtype=case.load.dtype),
         radius=radius,
-        outer_moves=outer_moves,
+        outer_moves=case.moving_ring == "outer",
     )

@@ -14,9 +14,10 @@ from ..numerics.lapack import pseudoinverse
 from ..numerics.types import Ring, RingStiffness
 from ..numerics.warning import Warning
 from .load import raise_if_failed, solve
-from .load_case import Prescribed, Vector
+from .load_case import Vector
 from .options import SolveOptions
 from .solution import Solution
+from .support import RESTRAINED, Support
 from .warning import warnings
 
 _SLACK = 1e-9
@@ -112,10 +113,8 @@ def linearise(
     element: BearingElement,
     load: Vector | None = None,
     *,
-    prescribed: Prescribed | None = None,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
     speed: Speed | None = None,
+    support: Support = RESTRAINED,
     throw: bool = True,
 ) -> OperatingPoint:
     """Linearise a bearing about its equilibrium under a load.
@@ -125,7 +124,7 @@ def linearise(
     gz; for gz = 0 they are those of `first_azimuth`.
 
     Args:
-        element, load, prescribed, free, fixed_ring, speed, throw: As in `solve_load`.
+        element, load, speed, support, throw: As in `solve_load`.
 
     Returns:
         OperatingPoint, differentiable with respect to design, load and speeds; its
@@ -137,8 +136,7 @@ def linearise(
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """
     check_element("linearise", element)
-    options = SolveOptions(free, fixed_ring, points=2)
-    solution = solve(element, load, options, prescribed=prescribed, speed=speed)
+    solution = solve(element, load, support, SolveOptions(points=2), speed=speed)
     if throw:
         solution = raise_if_failed(solution, "linearise")
     return OperatingPoint(solution)

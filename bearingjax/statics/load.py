@@ -1,14 +1,12 @@
-"""Displacement of the rings under load: `solve_load`, and `solve` with settings in one.
+"""Displacement of the rings under load: `solve_load`.
 
 A load solve has three parts: the balance (what is free, what is held, in which unit),
 the search for the equilibrium, and the solution with its result code.
 """
 
-from collections.abc import Sequence
 from typing import Any, TypedDict, Unpack, overload
 
 import jax
-from jaxtyping import Array, Int
 
 from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
 from ..design.bearing_set import pitch_radius
@@ -19,9 +17,8 @@ from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar
 from .balance import balance_of
-from .load_case import LoadCase, Prescribed, Vector, load_case
+from .load_case import LoadCase, Vector, load_case
 from .load_result import solution_of
 from .load_search import search, search_start
 from .options import SolveOptions
@@ -32,19 +29,15 @@ from .solution import (
     failure_message,
     no_load_path,
 )
+from .support import RESTRAINED, Support
 
 
 class _Choices(TypedDict, total=False):
     """Keyword arguments of `solve_load`."""
 
-    prescribed: Prescribed | None
-    free: Sequence[str] | None
-    fixed_ring: str
-    fixed_displacement: Vector | None
     speed: Speed | None
-    points: int
-    tolerance: float | Scalar | None
-    max_steps: int | Int[Array, ""]
+    support: Support
+    options: SolveOptions | None
     start: Vector | None
     throw: bool
 
@@ -71,14 +64,9 @@ def solve_load(
     element: BearingElement,
     load: Vector | None = None,
     *,
-    prescribed: Prescribed | None = None,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
-    fixed_displacement: Vector | None = None,
     speed: Speed | None = None,
-    points: int = 101,
-    tolerance: float | Scalar | None = None,
-    max_steps: int | Int[Array, ""] = 200,
+    support: Support = RESTRAINED,
+    options: SolveOptions | None = None,
     start: Vector | None = None,
     throw: bool = True,
 ) -> Solution:
@@ -88,20 +76,12 @@ def solve_load(
         element: The bearing.
         load: (Fx, Fy, Fz, Mx, My, Mz) on the moving ring at the origin [N, N m];
             `None` is no load. A load on a freedom that is held, prescribed or left out
-            of `free`, is an error: the support would take it, unseen by the bearing.
-        prescribed: Displacements given instead of loads, by freedom name [m, rad];
-            their loads are results; gz turns the set of rollers.
-        free: Freedoms of the moving ring that may move. Default: all that the
-            bearing can restrain and that are not prescribed; a load on any other is
-            then "no load path". The others are held at zero; what holds them there
-            is a result.
-        fixed_ring: "outer" or "inner".
-        fixed_displacement: Displacement of the fixed ring (6,) [m, rad]; default 0.
+            of `free`, is an error: its support would take it, unseen by the bearing.
         speed: Ring speeds; `None`: no inertia.
-        points: Positions along the rollers at which loads are reported.
-        tolerance: Relative residual at which the solve ends; default 1e-11 in
-            float64, 1e-4 in float32.
-        max_steps: Step limit of the load solve.
+        support: What holds the rings: freedoms that are free or prescribed, the fixed
+            ring. Default: the outer ring is fixed, and the inner one moves in all that
+            the bearing can restrain.
+        options: Numerics: positions along the rollers, tolerance, step limit.
         start: Displacement of the moving ring (6,) from which the solve starts, such
             as that under a load near by; NaN, farther than the pitch radius, or
             `None`: from first contact [m, rad].
@@ -123,48 +103,26 @@ def solve_load(
         traced load on a held freedom), `NON_FINITE`, `SADDLE` (finite kinematics).
     """
     check_element("solve_load", element)
-    options = SolveOptions(free, fixed_ring, points, tolerance, max_steps)
-    solution = solve(
-        element,
-        load,
-        options,
-        prescribed=prescribed,
-        fixed_displacement=fixed_displacement,
-        speed=speed,
-        start=start,
-    )
+    solution = solve(element, load, support, options, speed=speed, start=start)
     return raise_if_failed(solution, "solve_load") if throw else solution
 
 
 def solve(
     element: BearingElement,
     load: Any,
-    options: SolveOptions,
+    support: Support = RESTRAINED,
+    options: SolveOptions | None = None,
     *,
-    prescribed: Any = None,
-    fixed_displacement: Any = None,
     speed: Speed | None = None,
     start: Any = None,
 ) -> Solution:
-    """Solve as `solve_load`, with settings in one object; no error if the solve fails.
+    """Solve as `solve_load`, of an element that is one; no error if the solve fails.
 
     Args:
-        element: The bearing.
-        load, prescribed, fixed_displacement, start: As in `solve_load`, which are
-            checked here.
-        options: Settings.
-        speed: As in `solve_load`.
+        element, load, support, options, speed, start: As in `solve_load`.
     """
-    options.check("solve_load")
-    case = load_case(
-        element.bearing,
-        load,
-        options,
-        prescribed=prescribed,
-        fixed_displacement=fixed_displacement,
-        speed=speed,
-        start=start,
-    )
+    case = load_case(element.bearing, load, support, speed=speed, start=start)
+    options = SolveOptions() if options is None else options
     options = options.for_dtype(case.load.dtype)
     # Called as it is, the model is worked out in the one program that is called: to
     # start another takes half the time of a solve. Within a loop over cases, once.
@@ -180,9 +138,7 @@ def _solve(
     options: SolveOptions,
 ) -> Solution:
     model = element.model(case.speed) if model is None else model
-    balance = balance_of(
-        case, pitch_radius(element.bearing), options.moving_ring == "outer"
-    )
+    balance = balance_of(case, pitch_radius(element.bearing))
     # The search is not differentiated: derivatives are those of its end.
     frozen, still = stop_gradient(model), stop_gradient(balance)
     rows = rows_of(stop_gradient(element.bearing))

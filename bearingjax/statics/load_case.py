@@ -1,6 +1,6 @@
 """Load case of one load solve, from the checked arguments."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -9,18 +9,13 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBearing, BearingSet
 from ..design.bearing_set import bearings_of
-from ..design.checks import real_numbers
-from ..element.frame import FREEDOMS, LOADS
+from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.types import as_array
-from .options import SolveOptions, check_names
-from .support import check_held, restrained_freedoms
+from .support import Support, check_held, restrained_freedoms, six_numbers
 
 Vector = Float[Array | np.ndarray, "6"] | Sequence[float | int]
 """Six numbers."""
-
-Prescribed = Mapping[str, float | int | Array | np.ndarray]
-"""Displacements by name of the freedom [m, rad]."""
 
 
 class LoadCase(eqx.Module):
@@ -36,8 +31,9 @@ class LoadCase(eqx.Module):
         speed: Ring speeds, or `None`.
         free: Freedoms of the moving ring that may move.
         held: Freedoms that a support holds: prescribed, or left out of the free ones.
+        moving_ring: The ring that the load acts on.
 
-    Traced: all real numbers. Static: free, held.
+    Traced: all real numbers. Static: free, held, moving_ring.
     """
 
     load: Float[Array, "6"]
@@ -47,15 +43,14 @@ class LoadCase(eqx.Module):
     speed: Speed | None
     free: tuple[str, ...] = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
+    moving_ring: str = eqx.field(static=True)
 
 
 def load_case(
     bearing: AbstractBearing | BearingSet,
     load: Any,
-    options: SolveOptions,
+    support: Support,
     *,
-    prescribed: Any = None,
-    fixed_displacement: Any = None,
     speed: Speed | None = None,
     start: Any = None,
 ) -> LoadCase:
@@ -63,70 +58,35 @@ def load_case(
 
     Args:
         bearing: The design.
-        load, prescribed, fixed_displacement, start: As in `solve_load`, not checked.
-        options: Settings, checked.
+        load, start: As in `solve_load`, not checked.
+        support: What holds the rings.
         speed: As in `solve_load`.
 
     Raises:
         TypeError: For text in place of numbers.
-        ValueError: For unknown names, or contradictory choices.
+        ValueError: For a load on a freedom that is held, or shapes that do not fit.
     """
     dtype = bearings_of(bearing)[0].pitch_diameter.dtype
-    forces = _six("load", load, dtype)
-    fixed = _six("fixed_displacement", fixed_displacement, dtype)
-    prescribed = _name_freedoms(prescribed)
-    check_names("solve_load", "prescribed", tuple(prescribed))
-    given = _six("prescribed", [prescribed.get(f, 0.0) for f in FREEDOMS], dtype)
-    free = options.free
-    if free is None:
-        free = [f for f in restrained_freedoms(bearing) if f not in prescribed]
-    both = sorted(set(free) & set(prescribed))
-    if both:
-        raise ValueError(
-            f"solve_load: {', '.join(both)} is both free and prescribed; choose one."
-        )
-    check_held("solve_load", forces, prescribed, options.free)
+    nothing = np.zeros(6)
+    load = nothing if load is None else load
+    forces = six_numbers("solve_load", "load", load, dtype)
+    fixed = support.fixed_displacement
+    check_held("solve_load", forces, support)
     rows = bearing.rows if isinstance(bearing, BearingSet) else ()
     for k, row in enumerate(rows):
         if row.spring is not None and "uz" not in restrained_freedoms(row.bearing):
             raise ValueError(
                 f"solve_load: row {k} has a spring, but holds no axial load."
             )
-    left_out = () if options.free is None else set(FREEDOMS[:5]) - set(free)
+    free = support.freedoms(bearing)
+    left_out = () if support.free is None else set(FREEDOMS[:5]) - set(free)
     return LoadCase(
         forces,
-        given,
-        fixed,
-        None if start is None else _six("start", start, dtype),
+        support.given(dtype),
+        as_array(nothing if fixed is None else fixed, dtype),
+        None if start is None else six_numbers("solve_load", "start", start, dtype),
         speed,
-        free=tuple(name for name in FREEDOMS if name in free),
-        held=tuple(f for f in FREEDOMS if f in prescribed or f in left_out),
+        free=free,
+        held=tuple(f for f in FREEDOMS if f in support.prescribed or f in left_out),
+        moving_ring=support.moving_ring,
     )
-
-
-def _name_freedoms(prescribed) -> dict:
-    if prescribed is None:
-        return {}
-    if not isinstance(prescribed, Mapping):
-        raise TypeError(
-            f"solve_load: `prescribed` is {prescribed!r}; it must be a dict of freedoms"
-            " with their values in m or rad, such as {'uz': 1e-5}."
-        )
-    return dict(prescribed)
-
-
-def _six(name, value, dtype):
-    value = np.zeros(6) if value is None else value
-    order, unit = (LOADS, "N, N m") if name == "load" else (FREEDOMS, "m, rad")
-    wanted = f"six numbers, {' '.join(order)} in {unit} (units belong in scene files)"
-    real_numbers("solve_load", name, value, wanted)
-    try:
-        array = as_array(value, dtype)
-    except ValueError as error:  # lists of unlike length
-        raise ValueError(f"solve_load: `{name}` must be {wanted}.") from error
-    if array.shape != (6,):
-        raise ValueError(
-            f"solve_load: `{name}` has shape {array.shape}; it must be (6,):"
-            f" {' '.join(order)}."
-        )
-    return array

@@ -86,7 +86,7 @@ def solution_of(
         speed=case.speed,
         free=case.free,
         held=case.held,
-        moving_ring=options.moving_ring,
+        moving_ring=case.moving_ring,
         pitch_radius=balance.radius,
         result=ending.result,
         unrestrained=ending.unrestrained,

@@ -15,7 +15,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .load import solve_load
 from .solution import Solution
-from .support import restrained_freedoms
+from .support import Support, restrained_freedoms
 
 
 class SetPreload(NamedTuple):
@@ -81,7 +81,7 @@ def preload(
         group = BearingSet(tuple(rows))
         alone = eqx.tree_at(lambda e: e.bearing, element, group)
         load = jnp.zeros(6, bearing.rows[0].position.dtype).at[2].set(force)
-        solution = solve_load(alone, load, free=["uz"], throw=throw)
+        solution = solve_load(alone, load, support=Support(free=["uz"]), throw=throw)
         travel = jnp.where(solution.converged, solution.displacement[8], jnp.nan)
         offsets[side] = sign * travel
 
@@ -121,7 +121,9 @@ def remaining_preload(
     bearing = element.bearing
     check_opposed("remaining_preload", bearing)
     still = jnp.zeros(6, bearing.rows[0].position.dtype)
-    solution = solve_load(element, still, free=["uz"], speed=speed, throw=throw)
+    solution = solve_load(
+        element, still, support=Support(free=["uz"]), speed=speed, throw=throw
+    )
     return row_preload_force(solution)
 
 

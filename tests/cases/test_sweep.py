@@ -41,13 +41,15 @@ BAD = {5: "non_finite", 7: "no_load_path"}
 @pytest.fixture(scope="module")
 def swept():
     """Fifty loads, two of them bad, in chunks that do not divide fifty."""
-    return bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8)
+    return bj.sweep(ELEMENT, loads(), outputs=NAMES, batches=bj.cases.Batches(chunk=8))
 
 
 @pytest.fixture(scope="module")
 def from_contact():
     """The same, each from first contact."""
-    return bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8, near=False)
+    return bj.sweep(
+        ELEMENT, loads(), outputs=NAMES, batches=bj.cases.Batches(chunk=8, near=False)
+    )
 
 
 @pytest.mark.slow
@@ -97,7 +99,9 @@ def test_a_case_lost_from_a_near_start_is_solved_again(swept, monkeypatch):
         return found
 
     monkeypatch.setattr(sweep_program.Program, "_blocks", lossy)
-    solved = bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=8)
+    solved = bj.sweep(
+        ELEMENT, loads(), outputs=NAMES, batches=bj.cases.Batches(chunk=8)
+    )
     # Beside it number 7, which nothing can carry.
     assert runs == [(50, True), (2, False)] and solved.converged[3]
     np.testing.assert_allclose(
@@ -213,7 +217,9 @@ def test_play_lifted_balls_and_designs_end_where_first_contact_ends(made, axial,
     cases = many(48, axial, speed)
     names = ["displacement", "largest_load", "iterations"]
     near, contact = (
-        bj.sweep(element, cases, outputs=names, chunk=12, near=flag)
+        bj.sweep(
+            element, cases, outputs=names, batches=bj.cases.Batches(chunk=12, near=flag)
+        )
         for flag in (True, False)
     )
     np.testing.assert_array_equal(near.result, contact.result)
@@ -236,7 +242,9 @@ def test_cases_in_a_queue_are_solved_as_together(from_contact, monkeypatch):
     monkeypatch.setattr(batched_loop, "_run_queue", seen)
     monkeypatch.setattr(load_search, "SLOTS", 6)
     jax.clear_caches()  # a search traced before has the slots of then
-    queued = bj.sweep(ELEMENT, loads(), outputs=NAMES, chunk=50)
+    queued = bj.sweep(
+        ELEMENT, loads(), outputs=NAMES, batches=bj.cases.Batches(chunk=50)
+    )
     assert 6 in used
     np.testing.assert_array_equal(queued.result, from_contact.result)
     np.testing.assert_array_equal(queued.iterations, from_contact.iterations)
@@ -247,7 +255,9 @@ def test_cases_in_a_queue_are_solved_as_together(from_contact, monkeypatch):
 
 def test_blocks_follow_each_other(swept, monkeypatch):
     monkeypatch.setattr(sweep_program, "BLOCK", 2)
-    short = bj.sweep(ELEMENT, loads(), outputs=["displacement"], chunk=8)
+    short = bj.sweep(
+        ELEMENT, loads(), outputs=["displacement"], batches=bj.cases.Batches(chunk=8)
+    )
     np.testing.assert_allclose(
         short.displacement, swept.displacement, rtol=1e-9, atol=1e-16
     )
@@ -282,7 +292,7 @@ def test_designs_speeds_and_displacements_vary():
         one = bj.solve_load(
             made(clearances[design]),
             cases.load[k],
-            prescribed={"gx": tilts[k]},
+            support=bj.Support(prescribed={"gx": tilts[k]}),
             speed=bj.Speed(inner=speeds[k]),
         )
         for found in (solved, under_vmap):
@@ -293,7 +303,7 @@ def test_designs_speeds_and_displacements_vary():
 
 @pytest.mark.slow
 def test_all_fields_or_a_function_of_the_solution():
-    whole = bj.sweep(ELEMENT, loads()[:3], points=5)
+    whole = bj.sweep(ELEMENT, loads()[:3], options=bj.statics.SolveOptions(points=5))
     assert whole.contact_pressure.shape == (3, 6, 2, 5)
     chosen = bj.sweep(
         ELEMENT, loads()[:3], outputs=lambda s: {"sag": s.displacement[7]}
@@ -402,9 +412,11 @@ LOADS = np.zeros((3, 6))
 WRONG = {
     "outputs name": (dict(outputs=["presure"]), "names 'presure'; there are rib_load"),
     "outputs text": (dict(outputs="result"), "must be a list of names"),
-    "ring": (dict(fixed_ring="middle"), "must be 'outer' or 'inner'"),
-    "chunk": (dict(chunk=0), "whole number of at least 1"),
-    "memory": (dict(points=10**8), "GiB, more than"),
+    "displacements": (
+        dict(support=bj.Support(prescribed={"uz": 1e-6})),
+        "`support` has displacements; give them to the cases",
+    ),
+    "memory": (dict(options=bj.statics.SolveOptions(10**8)), "GiB, more than"),
     "design": (dict(cases=bj.Cases(LOADS, design=[0, 0, 0])), "`element` is one"),
 }
 
@@ -414,6 +426,11 @@ def test_bad_calls(what):
     change, message = WRONG[what]
     with pytest.raises(ValueError, match=message):
         bj.sweep(ELEMENT, **{"cases": LOADS, **change})
+
+
+def test_bad_batches():
+    with pytest.raises(ValueError, match="`chunk` is 0; it must be a whole number"):
+        bj.cases.Batches(chunk=0)
 
 
 def test_bad_cases():

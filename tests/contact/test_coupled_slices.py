@@ -216,7 +216,12 @@ def test_solve_load_with_coupled_slices():
     element = bj.BearingElement(bearing, bj.contact.CoupledSlices(16))
     load = [8000.0, 0, 0, 0, 0, 0]
     free = ("ux", "uy", "gx", "gy")
-    got = bj.solve_load(element, load, free=free, points=16)
+    got = bj.solve_load(
+        element,
+        load,
+        support=bj.Support(free=free),
+        options=bj.statics.SolveOptions(points=16),
+    )
     assert got.converged
     assert np.allclose(got.force[6:11], load[:5], atol=1e-6)
     loads = np.asarray(got.roller_load)
@@ -225,7 +230,9 @@ def test_solve_load_with_coupled_slices():
     top = np.asarray(got.line_load)[loads[:, 1].argmax(), 1]
     assert top[0] > 1.15 * top[8] and top[-1] > 1.15 * top[8]
     # Palmgren's law is a twelfth stiffer or softer than the half-space.
-    plain = bj.solve_load(bj.BearingElement(bearing), load, free=free)
+    plain = bj.solve_load(
+        bj.BearingElement(bearing), load, support=bj.Support(free=free)
+    )
     assert float(plain.displacement[6]) == pytest.approx(
         float(got.displacement[6]), rel=0.1
     )

@@ -36,7 +36,10 @@ def surrogate(points=20, equilibrium=None, **change):
 def loaded(element, force, moment):
     """Outer ring loaded by (-force, moment), inner ring fixed: um, mrad, solution."""
     s = bj.solve_load(
-        element, [0.0, -force, 0.0, moment, 0.0, 0.0], fixed_ring="inner", points=41
+        element,
+        [0.0, -force, 0.0, moment, 0.0, 0.0],
+        support=bj.Support(fixed_ring="inner"),
+        options=bj.statics.SolveOptions(points=41),
     )
     return 1e6 * float(s.displacement[1]), 1e3 * float(s.displacement[3]), s
 

@@ -215,7 +215,7 @@ def test_facts_18_and_19(element):
     assert u[0] == pytest.approx(35.337e-6, rel=PUBLISHED)
     assert u[2] == pytest.approx(3.586e-6, rel=PUBLISHED)
     assert u[4] == pytest.approx(2.649e-3, rel=PUBLISHED)
-    locked = combined(element, 400.0, free=["ux", "uy", "uz"])
+    locked = combined(element, 400.0, support=bj.Support(["ux", "uy", "uz"]))
     load = np.asarray(along_the_orbit(locked.displacement))
     # One maximum only: falling from 191 N under the load to 44 N opposite (printed
     # to 1 N).

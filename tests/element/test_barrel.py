@@ -163,9 +163,7 @@ def test_random_bearings_under_random_loads_against_brute_force(kind, turning):
         found = bj.solve_load(
             element(bearing, line_law=LAW),
             load,
-            free=free,
-            prescribed=held,
-            fixed_displacement=outer,
+            support=bj.Support(free=free, prescribed=held, fixed_displacement=outer),
             speed=speed,
         )
         row, inertia = oracle_of(bearing), None
@@ -296,7 +294,9 @@ def test_warning_of_travel_along_the_rollers():
     for travel, warned in ((0.2e-3, False), (0.6e-3, True)):
         linear, exact = (
             bj.solve_load(
-                element(aligning, k), load, free=("ux", "uy"), prescribed={"uz": travel}
+                element(aligning, k),
+                load,
+                support=bj.Support(free=("ux", "uy"), prescribed={"uz": travel}),
             )
             for k in ("linearised", "exact")
         )
@@ -317,11 +317,15 @@ def test_rollers_go_with_a_tilted_inner_ring():
     turned = [0.0, -40000.0 * np.cos(tilt), 40000.0 * np.sin(tilt), 0.0, 0.0, 0.0]
     held, most = {"gx": tilt, "gy": 0.0}, []
     for force, prescribed in ((load, held), (turned, {"gx": 0.0, "gy": 0.0})):
-        found = bj.solve_load(exact, force, free=free, prescribed=prescribed)
+        found = bj.solve_load(
+            exact, force, support=bj.Support(free=free, prescribed=prescribed)
+        )
         most.append(float(np.max(found.roller_load)))
     assert most[0] == pytest.approx(most[1], rel=5e-3)
     linear = bj.solve_load(
-        element(aligning, "linearised", line_law=LAW), load, free=free, prescribed=held
+        element(aligning, "linearised", line_law=LAW),
+        load,
+        support=bj.Support(free=free, prescribed=held),
     )
     lost = 1.0 - float(np.max(linear.roller_load)) / most[0]
     assert lost > 0.08
@@ -507,7 +511,7 @@ def test_22317_with_one_number_per_contact():
         found = bj.solve_load(
             element(two_rows(clearance), "linearised", line_law=law),
             [radial, 0.0, axial, 0.0, 0.0, 0.0],
-            free=("ux", "uy", "uz"),
+            support=bj.Support(free=("ux", "uy", "uz")),
         )
         tolerance = 1e-3 if axial == 0.0 else 3e-3
         got = np.asarray(found.roller_load)[: len(loads), 0]
@@ -527,7 +531,7 @@ def test_eccentric_thrust(eccentricity, tilt, most):
     found = bj.solve_load(
         bj.BearingElement(bearing, line_law=law, quadrature=bj.numerics.Midpoint(1)),
         [0.0, 0.0, 20000.0, 0.0, -20000.0 * eccentricity, 0.0],
-        free=("uz", "gx", "gy"),
+        support=bj.Support(free=("uz", "gx", "gy")),
     )
     travel = 0.0063518004e-3 if tilt == 0 else 0.0063122715e-3
     assert float(found.displacement[8]) == pytest.approx(travel, rel=1e-5)
@@ -554,7 +558,9 @@ def test_crossed_rollers_of_a_rigid_model():
     ]
     for (fx, fz, my), place, most in cases:
         found = bj.solve_load(
-            crossed, [fx, 0.0, fz, 0.0, my, 0.0], free=("ux", "uy", "uz", "gx", "gy")
+            crossed,
+            [fx, 0.0, fz, 0.0, my, 0.0],
+            support=bj.Support(free=("ux", "uy", "uz", "gx", "gy")),
         )
         got = np.asarray(found.displacement)[[6, 8, 10]]
         if fx == my == 0:
@@ -645,7 +651,9 @@ def test_derivatives_by_every_number_of_the_drawing(kind):
             lambda b: [getattr(b, n) for n in names], bearing, list(values)
         )
         found = bj.solve_load(
-            element(changed, line_law=LAW), [*load, 0.0, 0.0, 0.0], free=free
+            element(changed, line_law=LAW),
+            [*load, 0.0, 0.0, 0.0],
+            support=bj.Support(free=free),
         )
         return found.displacement[8 if kind == "thrust" else 6]
 

@@ -314,12 +314,11 @@ def of_design(element, q, speed, load):
     solution = bj.solve_load(
         element,
         load,
-        prescribed={"gz": q[11]},
-        fixed_displacement=q[:6],
+        support=bj.Support(prescribed={"gz": q[11]}, fixed_displacement=q[:6]),
         start=q[6:],
         speed=speed,
         # As far as round-off lets it: differences feel what is left.
-        tolerance=1e-15,
+        options=bj.statics.SolveOptions(tolerance=1e-15),
         throw=False,
     )
     numbers = {

@@ -170,14 +170,14 @@ def test_force_and_stiffness_are_derivatives():
 
 @pytest.mark.slow
 def test_load_solve_sweep_and_gradients():
-    solution = bj.solve_load(ELEMENT, LOAD, free=FREE)
+    solution = bj.solve_load(ELEMENT, LOAD, support=bj.Support(free=FREE))
     np.testing.assert_allclose(solution.force[6:8], LOAD[:2], atol=1e-7)
     assert solution.roller_load.shape == (7, 2)
     swept = bj.sweep(
         ELEMENT,
         bj.Cases(np.stack([LOAD, 0.5 * np.asarray(LOAD)])),
         outputs=("displacement", "roller_load"),
-        free=FREE,
+        support=bj.Support(free=FREE),
     )
     np.testing.assert_allclose(
         swept.displacement[0], solution.displacement, rtol=1e-9, atol=1e-15
@@ -188,7 +188,9 @@ def test_load_solve_sweep_and_gradients():
     def sag(radius):
         bearing = eqx.tree_at(lambda b: b.raceway_radius, TORUS, radius)
         element = bj.BearingElement(bearing)
-        return bj.solve_load(element, LOAD, free=FREE).displacement[7]
+        return bj.solve_load(element, LOAD, support=bj.Support(free=FREE)).displacement[
+            7
+        ]
 
     at, step = 0.103, 1e-6
     slope = float(sag(at)[1])
@@ -198,7 +200,9 @@ def test_load_solve_sweep_and_gradients():
 
 def test_load_solve_without_load_and_hints():
     """A ring that is pushed across finds its place, though no load says how far."""
-    solution = bj.solve_load(ELEMENT, [0.0] * 6, prescribed={"uy": 3e-5}, free=("ux",))
+    solution = bj.solve_load(
+        ELEMENT, [0.0] * 6, support=bj.Support(prescribed={"uy": 3e-5}, free=("ux",))
+    )
     assert abs(float(solution.force[6])) < 1e-9 * float(solution.force[7])
     assert abs(float(solution.displacement[6])) > 1e-7
 
@@ -290,5 +294,8 @@ def test_an_element_without_unknowns_passes_through_the_same_machinery():
     np.testing.assert_allclose(got.force, want.force, atol=SOLVER * size)
     np.testing.assert_allclose(got.stiffness, want.stiffness, atol=SOLVER * stiff)
     load, held = [0.0, -20.0, 300.0, 0.0, 0.0, 0.0], dict(gx=0.0, gy=0.0)
-    one, other = (bj.solve_load(e, load, prescribed=held) for e in (reduced, full))
+    one, other = (
+        bj.solve_load(e, load, support=bj.Support(prescribed=held))
+        for e in (reduced, full)
+    )
     np.testing.assert_allclose(one.displacement, other.displacement, atol=1e-9 * 20e-6)

@@ -117,7 +117,9 @@ def test_load_solve_at_a_tilt():
     sag = [
         float(
             bj.solve_load(
-                element, [0, -800.0, 100.0, 0, 0, 0], prescribed={"gx": tilt, "gy": 0}
+                element,
+                [0, -800.0, 100.0, 0, 0, 0],
+                support=bj.Support(prescribed={"gx": tilt, "gy": 0}),
             ).displacement[7]
         )
         for tilt in (0.0, 0.04)
@@ -158,7 +160,9 @@ def test_row_in_a_set_is_placed_exactly():
 @pytest.mark.slow
 def test_free_tilts_are_warned_of(aligning):
     load = np.zeros(6)
-    s = bj.solve_load(aligning, load, free=["ux", "uy", "uz", "gx", "gy"])
+    s = bj.solve_load(
+        aligning, load, support=bj.Support(free=["ux", "uy", "uz", "gx", "gy"])
+    )
     (line,) = bj.statics.warnings(s)
     assert line.startswith("no stiffness in gx, gy of the inner ring")
     # The forces between the rings: of a thrust pair they are all axial.

@@ -353,7 +353,11 @@ def pair():
     @eqx.filter_jit
     def solve(element, load, speed):
         solution = bj.solve_load(
-            element, load, free=["uz"], speed=bj.Speed(speed), throw=False
+            element,
+            load,
+            support=bj.Support(free=["uz"]),
+            speed=bj.Speed(speed),
+            throw=False,
         )
         viscosity = oil.kinematic_viscosity(323.15)
         return (

@@ -310,7 +310,9 @@ def solved():
         element = bj.BearingElement(EXAMPLES[name][0])
         # Without ribs nothing holds turning cylinders that do not lie along the axis.
         speed = None if name in ("cylindrical thrust", "crossed") else SPEED
-        found[name] = bj.solve_load(element, load, prescribed=held, speed=speed)
+        found[name] = bj.solve_load(
+            element, load, support=bj.Support(prescribed=held), speed=speed
+        )
     return found
 
 
@@ -502,7 +504,7 @@ def test_warnings_of_the_types(solved):
     tilted = bj.solve_load(
         solved["spherical"].element,
         [2e4, 0, 5e3, 0, 0, 0],
-        prescribed=dict(gx=0.03, gy=0.0),
+        support=bj.Support(prescribed=dict(gx=0.03, gy=0.0)),
         speed=SPEED,
     )
     assert bj.warnings(tilted) == []
@@ -564,7 +566,10 @@ def test_damage_has_the_derivatives_of_differences(name):
         bearing = bj.BearingSet.self_aligning(row) if name == "spherical" else row
         element = bj.BearingElement(bearing)
         solution = bj.solve_load(
-            element, jnp.asarray(load, float), prescribed=held, throw=False
+            element,
+            jnp.asarray(load, float),
+            support=bj.Support(prescribed=held),
+            throw=False,
         )
         life = bj.rating_life(solution)
         return jnp.stack([jnp.log(life.damage), jnp.log(life.basic_rating_life)])
@@ -646,7 +651,9 @@ def test_rating_life_of_thrust_rollers_on_two_circles(order):
     rows = [bj.design.SetRow(row) for row in (inner, outer)][::order]
     element = bj.BearingElement(bj.BearingSet(tuple(rows)))
     load = np.array([0.0, 0.0, 30e3, 0.0, 0.0, 0.0])
-    life = bj.rating_life(bj.solve_load(element, load, free=("uz",)))
+    life = bj.rating_life(
+        bj.solve_load(element, load, support=bj.Support(free=("uz",)))
+    )
     capacity = float(bj.dynamic_capacity(element.bearing))
     assert float(life.dynamic_capacity) == pytest.approx(capacity, rel=ROUNDING)
     basic = 1e6 * (capacity / 30e3) ** (10 / 3)

@@ -85,7 +85,10 @@ def ball_life(x):
     element, zero = ball_element(x), jnp.zeros(())
     load = jnp.stack([x[1], zero, x[2], zero, zero, zero])
     solution = bj.solve_load(
-        element, load, prescribed={"gx": zero, "gy": x[3]}, throw=False
+        element,
+        load,
+        support=bj.Support(prescribed={"gx": zero, "gy": x[3]}),
+        throw=False,
     )
     return solution, bj.rating_life(
         element,
@@ -117,8 +120,8 @@ def roller_life(x):
     solution = bj.solve_load(
         element,
         jnp.stack([x[1], zero, zero, zero, zero, zero]),
-        prescribed={"gx": zero, "gy": x[3]},
-        points=2 * LAMINAE + 1,
+        support=bj.Support(prescribed={"gx": zero, "gy": x[3]}),
+        options=bj.statics.SolveOptions(points=2 * LAMINAE + 1),
         throw=False,
     )
 
@@ -737,7 +740,9 @@ def held(bearing, axial):
     load = [2e3, 0.0, axial, 0.0, 0.0, 0.0]
     kept = {"gx": 0.0, "gy": 0.0}
     return np.asarray(
-        bj.solve_load(bj.BearingElement(bearing), load, prescribed=kept).force[6:]
+        bj.solve_load(
+            bj.BearingElement(bearing), load, support=bj.Support(prescribed=kept)
+        ).force[6:]
     )
 
 
@@ -1036,7 +1041,7 @@ def doubted():
                 inner_speed=np.array([speed for _, speed in cases]),
             ),
             outputs=["n_loaded"],
-            points=2 * LAMINAE + 1,
+            options=bj.statics.SolveOptions(points=2 * LAMINAE + 1),
             life=bj.LifeConditions(viscosity=2e-4, contamination="grease, normal"),
         )
         assert found.converged.all()

@@ -97,7 +97,9 @@ def test_balls_settle_at_individual_orbit_speeds(moved):
     turning = model(speed=20.0)
     found, _ = moved(turning, 0.0)
     solution = bj.solve_load(
-        turning.element, turning.load, fixed_ring="inner", free=("ux", "uy", "uz")
+        turning.element,
+        turning.load,
+        support=bj.Support(fixed_ring="inner", free=("ux", "uy", "uz")),
     )
     assert isinstance(solution, bj.statics.BallSolution)
     cosine = np.cos(np.asarray(solution.contact_angle)).mean(axis=1)

@@ -109,7 +109,9 @@ def test_transfer_at_low_frequency_matches_static_compliance():
     alone = dataclasses.replace(model(), sensor=None, retardation=0.0)
     found = transfer(alone, np.array([1e-3]))
     solution = bj.solve_load(
-        alone.element, alone.load, fixed_ring="inner", free=("ux", "uy", "uz")
+        alone.element,
+        alone.load,
+        support=bj.Support(fixed_ring="inner", free=("ux", "uy", "uz")),
     )
     flexible = np.linalg.inv(np.asarray(solution.stiffness)[:3, :3])
     size = np.abs(flexible).max()

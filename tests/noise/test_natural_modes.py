@@ -110,7 +110,9 @@ def test_equations_of_the_paper(radial):
     """Balls that move radially, seven of them loaded: the same frequencies."""
     element = RADIAL.element
     solution = bj.solve_load(
-        element, RADIAL.load, fixed_ring="inner", free=("ux", "uy", "uz")
+        element,
+        RADIAL.load,
+        support=bj.Support(fixed_ring="inner", free=("ux", "uy", "uz")),
     )
     load = np.asarray(solution.roller_load)
     psi = np.asarray(bj.element.azimuths(BEARING)) + np.pi / 2

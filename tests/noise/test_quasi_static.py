@@ -28,7 +28,9 @@ PULLED = jnp.array([0.0, 0.0, 200.0, 0.0, 0.0, 0.0])
 
 
 def standing(element):
-    return bj.solve_load(element, AXIAL, fixed_ring="inner", free=("ux", "uy", "uz"))
+    return bj.solve_load(
+        element, AXIAL, support=bj.Support(fixed_ring="inner", free=("ux", "uy", "uz"))
+    )
 
 
 def deep_groove(z, diameter, pitch):

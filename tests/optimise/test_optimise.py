@@ -1,5 +1,6 @@
 """Design optimisation: gradients, bounds, constraints, known optima, failures."""
 
+import dataclasses
 import re
 from types import SimpleNamespace
 
@@ -12,7 +13,7 @@ import pytest
 from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
-from bearingjax.optimise import design_numbers
+from bearingjax.optimise import SearchOptions, design_numbers
 from bearingjax.optimise.design_problem import Bound, Problem, Run
 from bearingjax.optimise.optimise import _most_violated, verdict
 from bearingjax.optimise.search import SearchOutcome
@@ -74,15 +75,21 @@ def wanted(straight, one_case):
     """Stiffness in uy at a clearance of 15 µm."""
     element = with_numbers(straight, {PLAY: 15e-6})
     tilts = {"gx": 0.0, "gy": 0.0}
-    solution = bj.solve_load(element, one_case.load[0], prescribed=tilts)
+    solution = bj.solve_load(
+        element, one_case.load[0], support=bj.Support(prescribed=tilts)
+    )
     return float(solution.stiffness[7, 7])
 
 
 def search(straight, one_case, wanted, **choices):
     objective = choices.pop("objective", bj.optimise.StiffnessTarget(wanted, "uy"))
     variables = choices.pop("variables", [play()])
-    choices = {"points": 2, **choices}
-    return bj.optimise.optimise(straight, one_case, variables, objective, **choices)
+    names = {field.name for field in dataclasses.fields(SearchOptions)}
+    mine = {name: choices.pop(name) for name in names & set(choices)}
+    options = SearchOptions(**{"solve": SolveOptions(points=2), **mine})
+    return bj.optimise.optimise(
+        straight, one_case, variables, objective, search=options, **choices
+    )
 
 
 # Measures.
@@ -355,7 +362,7 @@ def test_balls_and_numbers_in_several_places(one_case):
         bj.Cases([[0, -500.0, 0, 0, 0, 0]]),
         [bj.optimise.Variable(both, 0.515, 0.54, name="osculation")],
         bj.optimise.PeakPressure(),
-        free=["uy"],
+        support=bj.Support(free=["uy"]),
     )
     bearing = found.element.bearing
     assert found.converged and found.variables[0].name == "osculation"
@@ -461,10 +468,13 @@ WRONG = {
         "bearing.radial_internal_clearance is a variable twice",
     ),
     "objective": (dict(objective="peak"), "`objective` is a str|parameter 'objective'"),
-    "method": (dict(method="newton"), "`method` is 'newton'; it must be one of l-bfgs"),
+    "method": (
+        dict(search=SearchOptions("newton")),
+        "`method` is 'newton'; it must be one of l-bfgs",
+    ),
     "method without constraints": (
         dict(
-            method="l-bfgs-b",
+            search=SearchOptions("l-bfgs-b"),
             constraints=[bj.optimise.Constraint(bj.optimise.Stiffness("uy"), lower=1)],
         ),
         "keeps no constraints; take 'slsqp'",
@@ -473,8 +483,11 @@ WRONG = {
         dict(constraints=[bj.optimise.Stiffness("uy")]),
         "holds a Stiffness|parameter 'constraints'",
     ),
-    "steps": (dict(max_steps=0), "`max_steps` is 0"),
-    "tolerance": (dict(tolerance=0.0), "`tolerance` is 0.0; it must be above 0"),
+    "steps": (dict(search=SearchOptions(max_steps=0)), "`max_steps` is 0"),
+    "tolerance": (
+        dict(search=SearchOptions(tolerance=0.0)),
+        "`tolerance` is 0.0; it must be above 0",
+    ),
     "cases": (dict(cases=[1.0]), "`cases` is a list|parameter 'cases'"),
     "designs": (
         dict(cases=bj.Cases(design=[0, 1])),
@@ -496,7 +509,6 @@ def test_wrong_calls(straight, one_case, name):
         cases=one_case,
         variables=[play()],
         objective=bj.optimise.PeakPressure(),
-        points=2,
     )
     with pytest.raises((ValueError, TypeError), match=text):
         bj.optimise.optimise(**{**values, **given})

@@ -4,7 +4,7 @@ import numpy as np
 import optax
 import pytest
 
-from bearingjax.optimise.search import SearchOutcome, arrived, search
+from bearingjax.optimise.search import SearchOutcome, arrived, search_least
 from bearingjax.optimise.trials import Trial, Trials, optimality
 
 TOLERANCE = 1e-5
@@ -34,7 +34,7 @@ def trials(barred, start=(0.05, 0.05), kept=None):
 
 
 def run(method, tried, n_bounds=0, max_steps=200):
-    ending = search(METHODS[method], tried, n_bounds, max_steps, TOLERANCE)
+    ending = search_least(METHODS[method], tried, n_bounds, max_steps, TOLERANCE)
     return ending, tried.attempt(ending.unit, True)
 
 
@@ -121,6 +121,6 @@ def test_custom_search_callable_arguments():
         )
 
     tried = trials(nowhere)
-    ending = search(own, tried, 0, 7, TOLERANCE)
+    ending = search_least(own, tried, 0, 7, TOLERANCE)
     # The best of its steps counts, not where it says that it ended.
     assert np.allclose(ending.unit, 0.15) and ending.text == f"7 {TOLERANCE}"

@@ -23,10 +23,10 @@ def found():
         cases,
         [radius],
         objective,
-        method="nelder-mead",
-        free=["ux"],
-        points=21,
-        max_steps=4,
+        search=bj.optimise.SearchOptions(
+            method="nelder-mead", max_steps=4, solve=bj.statics.SolveOptions(points=21)
+        ),
+        support=bj.Support(free=["ux"]),
     )
 
 

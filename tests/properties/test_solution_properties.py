@@ -64,8 +64,7 @@ def _solved(design, fixed_ring, clearance, first, load, tilt, oil):
     solution = bj.solve_load(
         element,
         radial,
-        prescribed=prescribed,
-        fixed_ring=fixed_ring,
+        support=bj.Support(prescribed=prescribed, fixed_ring=fixed_ring),
         speed=None,
         throw=False,
     )

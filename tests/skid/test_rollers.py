@@ -174,7 +174,12 @@ def steady(at):
     loads = jnp.zeros(6).at[0].set(load)
     speed = Speed(inner=inner, outer=outer)
     return skid.steady(
-        model, loads, speed=speed, places=PLACES, free=["ux", "uy"], throw=False
+        model,
+        loads,
+        speed=speed,
+        places=PLACES,
+        support=bj.Support(free=["ux", "uy"]),
+        throw=False,
     )
 
 
@@ -319,7 +324,7 @@ def test_simulated_rollers_reach_steady_state(found):
         duration=duration,
         times=np.append(0.0, duration - turn * np.linspace(2.0, 0.0, 201)),
         tolerance=1e-5,
-        free=["ux", "uy"],
+        support=bj.Support(free=["ux", "uy"]),
     )
     assert moved.slip[0] == pytest.approx(0.0, abs=1e-9)
     last = np.asarray(moved.slip)[2:]
@@ -342,6 +347,12 @@ def test_bad_input():
     model = SkidModel(bj.BearingElement(BEARING), OIL, WARM)
     load, free = [300.0, 0, 0, 0, 0, 0], ["ux", "uy"]
     with pytest.raises(ValueError, match="multiple of the 7 rollers"):
-        skid.steady(model, load, speed=Speed(inner=FAST), free=free, places=10)
+        skid.steady(
+            model,
+            load,
+            speed=Speed(inner=FAST),
+            support=bj.Support(free=free),
+            places=10,
+        )
     with pytest.raises(TypeError, match="ball bearing"):
         skid.simulate(model, load, speed=Speed(inner=FAST), duration=0.1, balanced=True)

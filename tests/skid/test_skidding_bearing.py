@@ -12,6 +12,7 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import Speed
+from bearingjax.optimise import SearchOptions
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.skid import (
     CageSlip,
@@ -21,7 +22,7 @@ from bearingjax.skid import (
     conditions,
     skid_warnings,
 )
-from bearingjax.statics import SolveOptions
+from bearingjax.statics import SolveOptions, Support
 
 matplotlib.use("Agg")
 
@@ -62,13 +63,14 @@ def kept(slip):
 def search(slip=5e-3, cases=None, **choices):
     cases = spectrum() if cases is None else cases
     least = FrictionTorque()
-    given = dict(free=FREE, points=2, **choices)
+    options = SearchOptions(solve=SolveOptions(points=2), **choices)
+    given = dict(search=options, support=Support(FREE))
     return bj.optimise.optimise(design(), cases, VARIABLES, least, kept(slip), **given)
 
 
 def problem_of(start, cases):
-    options = SolveOptions(tuple(FREE), points=2)
-    return Problem(start, cases, VARIABLES, FrictionTorque(), kept(1.0), options)
+    given = VARIABLES, FrictionTorque(), kept(1.0), SolveOptions(points=2)
+    return Problem(start, cases, *given, Support(FREE))
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from han_chu import BEARING, ELEMENT, FREE, MODEL, SPEED
 from registry import taper
 
 import bearingjax as bj
-from bearingjax import skid
+from bearingjax import Support, skid
 from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.numerics.result import Result, SolveError
@@ -47,7 +47,9 @@ ring's motion and load [m]."""
 
 def under(axial, model=MODEL, radial=0.0, **choices):
     load = jnp.zeros(6).at[2].set(axial).at[0].set(radial)
-    return skid.steady(model, load, speed=SPEED, free=FREE, places=1, **choices)
+    return skid.steady(
+        model, load, speed=SPEED, support=Support(FREE), places=1, **choices
+    )
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +77,7 @@ def many_places():
     def one(axial, radial):
         load = jnp.zeros(6).at[1].set(radial).at[2].set(axial)
         load = load.at[3].set(-ASIDE * radial)
-        given = dict(speed=SPEED, load_speed=SPEED, free=FREE)
+        given = dict(speed=SPEED, load_speed=SPEED, support=Support(FREE))
         return skid.steady(MODEL, load, **given, throw=False)
 
     loads = [600.0, 600.0, 600.0, 120.0], [100.0, 400.0, 500.0, 0.0]
@@ -118,7 +120,7 @@ def test_the_row_is_solved_in_one_place_of_the_program(monkeypatch):
     monkeypatch.setattr(orbit_search, "ring_forces", counted)
 
     def end(load):
-        given = dict(speed=SPEED, free=FREE, places=12, throw=False)
+        given = dict(speed=SPEED, support=Support(FREE), places=12, throw=False)
         return skid.steady(MODEL, load, **given)
 
     jax.jit(end).lower(jnp.zeros(6).at[2].set(80.0))
@@ -242,7 +244,7 @@ def test_derivative_along_the_orbit(count):
 def test_standstill_and_both_rings():
     """At rest nothing moves; the sense of rotation and the frame do not matter."""
     load = jnp.array([0.0, 0.0, 120.0, 0.0, 0.0, 0.0])
-    choices = dict(free=FREE, places=1)
+    choices = dict(support=Support(FREE), places=1)
     rest = skid.steady(MODEL, load, speed=Speed(), **choices)
     np.testing.assert_array_equal(rest.spin, 0.0)
     np.testing.assert_array_equal(rest.orbit_speed, 0.0)
@@ -274,7 +276,7 @@ def stiff():
     @jax.jit
     def end(load, speed, carried, temperature):
         model = eqx.tree_at(lambda m: m.temperature, MODEL, temperature)
-        given = dict(free=FREE, places=1, throw=False)
+        given = dict(support=Support(FREE), places=1, throw=False)
         found = skid.steady(model, load, speed=speed, load_speed=carried, **given)
         return found
 
@@ -311,7 +313,7 @@ def test_steady_converges_for_glassy_oil(celsius):
     """Whose round-off is as large as the load that is not balanced at first."""
     model = at(celsius)
     load, speed = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0]), Speed(inner=1047.2)
-    given = dict(speed=speed, free=FREE, places=1, throw=False)
+    given = dict(speed=speed, support=Support(FREE), places=1, throw=False)
     end = skid.steady(model, load, **given)
     assert int(end.result) == Result.CONVERGED
     assert abs(float(end.imbalance)) < 1e-6
@@ -332,7 +334,9 @@ def test_derivative_of_the_torque_at_such_stress():
 
     def torque(speed):
         load = np.array([0.0, 0.0, 600.0, 0.0, 0.0, 0.0])
-        given = dict(speed=Speed(inner=speed), free=FREE, places=1, throw=False)
+        given = dict(
+            speed=Speed(inner=speed), support=Support(FREE), places=1, throw=False
+        )
         return skid.steady(model, load, **given).friction_torque
 
     value = jax.jit(jax.value_and_grad(torque))
@@ -359,7 +363,7 @@ def test_friction_torque_is_taken_at_driven_ring(stiff):
 def test_steady_ball_loads_match_orbit_speed(stiff, axial, speed):
     """As where load solve and end state are repeated in turn until they agree."""
     load = np.array([0.0, 0.0, axial, 0.0, 0.0, 0.0])
-    end = skid.steady(MODEL, load, speed=speed, free=FREE, places=1)
+    end = skid.steady(MODEL, load, speed=speed, support=Support(FREE), places=1)
     apart = 0.0
     for _ in range(12):
         last = stiff(axial, speed, Speed(speed.inner + apart, speed.outer + apart))
@@ -378,7 +382,9 @@ def test_steady_ball_loads_match_orbit_speed(stiff, axial, speed):
 @pytest.mark.slow
 def test_without_load_drag_stops_the_balls():
     """Nothing is pressed against the ring that turns, so nothing drives."""
-    end = skid.steady(MODEL, np.zeros(6), speed=SPEED, free=["uz"], places=1)
+    end = skid.steady(
+        MODEL, np.zeros(6), speed=SPEED, support=bj.Support(free=["uz"]), places=1
+    )
     np.testing.assert_allclose(end.slip, 1.0, rtol=1e-5)
     assert abs(float(end.friction_torque)) < 1e-15
     state = conditions(MODEL, end, SPEED)
@@ -424,14 +430,22 @@ def test_steady_missing_power_by_hand():
 def test_steady_without_load_path():
     load = jnp.array([0.0, 0.0, -120.0, 0.0, 0.0, 0.0])  # pulled apart
     with pytest.raises(SolveError):
-        skid.steady(MODEL, load, speed=SPEED, free=FREE, places=1)
-    lost = skid.steady(MODEL, load, speed=SPEED, free=FREE, places=1, throw=False)
+        skid.steady(MODEL, load, speed=SPEED, support=Support(FREE), places=1)
+    lost = skid.steady(
+        MODEL, load, speed=SPEED, support=Support(FREE), places=1, throw=False
+    )
     assert int(lost.result) == Result.NO_LOAD_PATH
 
 
 def test_bad_input():
     with pytest.raises(ValueError, match="multiple of the 12 balls"):
-        skid.steady(MODEL, [0, 0, 100.0, 0, 0, 0], speed=SPEED, free=FREE, places=7)
+        skid.steady(
+            MODEL,
+            [0, 0, 100.0, 0, 0, 0],
+            speed=SPEED,
+            support=Support(FREE),
+            places=7,
+        )
     oil = mil_l_23699()
     with pytest.raises(TypeError, match="of one ball bearing"):
         SkidModel(bj.BearingElement(taper()), oil, 303.15)

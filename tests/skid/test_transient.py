@@ -55,7 +55,7 @@ def run(load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, tolerance=1e-7, **g
         speed=speed,
         duration=duration,
         tolerance=tolerance,
-        free=FREE,
+        support=bj.Support(free=FREE),
         n_times=21,
         places=PLACES,
         max_steps=3000,
@@ -65,14 +65,16 @@ def run(load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, tolerance=1e-7, **g
 
 def steady(load):
     """With the loads of pure rolling, as they are tabulated in time."""
-    given = dict(speed=SPEED, load_speed=SPEED, free=FREE)
+    given = dict(speed=SPEED, load_speed=SPEED, support=bj.Support(FREE))
     return skid.steady(FEW, load, **given, places=STEADY_PLACES)
 
 
 @pytest.fixture(scope="module")
 def prepared():
     """What the balls of the bearing under both loads move in, and their start."""
-    solution = bj.solve_load(FEW.element, BOTH, speed=SPEED, free=FREE)
+    solution = bj.solve_load(
+        FEW.element, BOTH, speed=SPEED, support=bj.Support(free=FREE)
+    )
     return surroundings(FEW, solution, SPEED, EVEN, jnp.zeros(()), PLACES)
 
 
@@ -145,7 +147,9 @@ def test_simulate_reaches_steady_state():
     """Balls free in wide pockets; the cage starts with their final speed."""
     end = steady(LIGHT)
     model = with_cage(pocket_clearance=8e-3)
-    solution = bj.solve_load(model.element, LIGHT, speed=SPEED, free=FREE)
+    solution = bj.solve_load(
+        model.element, LIGHT, speed=SPEED, support=bj.Support(free=FREE)
+    )
     given = solution, SPEED, EVEN, jnp.zeros(()), PLACES
     _, start = surroundings(model, *given)
     start = start._replace(cage_speed=end.cage_speed)
@@ -218,7 +222,9 @@ def test_simulate_varying_load_matches_static_solutions(varying):
             is_leaf=lambda leaf: leaf is None,
         )
         element = bj.BearingElement(bearing, raceway_control=CONTROL)
-        want: Any = bj.solve_load(element, swing(found.time[k]), speed=SPEED, free=FREE)
+        want: Any = bj.solve_load(
+            element, swing(found.time[k]), speed=SPEED, support=bj.Support(free=FREE)
+        )
         got = found.contact_load[k]
         np.testing.assert_allclose(got, want.contact_load, atol=near)
         got = found.contact_angle[k]

@@ -142,7 +142,9 @@ def test_balls_that_the_load_zone_has_left_lie_in_the_outer_groove():
     def solved(load, speed):
         free, given = ["ux", "uy", "uz"], jnp.concatenate([load, jnp.zeros(3)])
         speed = bj.Speed(inner=speed)
-        return bj.solve_load(element, given, free=free, speed=speed, throw=False)
+        return bj.solve_load(
+            element, given, support=bj.Support(free=free), speed=speed, throw=False
+        )
 
     load, speed = np.split(np.asarray(LITTLE_THRUST), [3], axis=1)
     s = jax.tree.map(np.asarray, solved(jnp.asarray(load), jnp.asarray(speed[:, 0])))

@@ -49,7 +49,9 @@ def test_condensed_stiffness_of_free_and_prescribed_directions(point):
     )
     assert abs(expected - k[:3, :3]).max() > 0.01 * scale
     given = {name: float(point.motion[6 + i]) for i, name in ((3, "gx"), (4, "gy"))}
-    held = bj.linearise(ELEMENT, LOAD, prescribed=given, speed=SPEED)
+    held = bj.linearise(
+        ELEMENT, LOAD, support=bj.Support(prescribed=given), speed=SPEED
+    )
     np.testing.assert_allclose(held.condensed(), k[:3, :3], atol=SOLVER * abs(k).max())
     four = held.condensed(("ux", "uy", "uz", "gx"))
     np.testing.assert_array_equal(four, held.ring_stiffness[:4, :4])
@@ -70,7 +72,8 @@ def test_condensed_stiffness_drops_direction_without_stiffness():
     )
     element = bj.BearingElement(rollers, quadrature=bj.numerics.Midpoint(8))
     free = ("ux", "uy", "uz", "gx", "gy")  # nothing holds uz
-    point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], free=free)
+    held = bj.Support(free=free)
+    point = bj.linearise(element, [0, -2000.0, 0, 0, 0, 0], support=held)
     assert any("no stiffness in uz" in one for one in point.warnings)
     k = np.asarray(point.ring_stiffness)
     tilts = np.ix_([3, 4], [3, 4])

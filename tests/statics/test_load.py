@@ -43,7 +43,9 @@ def loads_of(s, ring):
 @pytest.mark.slow
 def test_either_ring_may_be_fixed(crowned):
     inner = bj.solve_load(crowned, RADIAL)
-    outer = bj.solve_load(crowned, [-x for x in RADIAL], fixed_ring="inner")
+    outer = bj.solve_load(
+        crowned, [-x for x in RADIAL], support=bj.Support(fixed_ring="inner")
+    )
     assert np.allclose(
         inner.displacement[6:], -outer.displacement[:6], rtol=1e-7, atol=1e-15
     )
@@ -56,7 +58,7 @@ def test_either_ring_may_be_fixed(crowned):
 def test_fixed_ring_may_stand_anywhere(crowned):
     """Common rigid motion changes nothing."""
     at = [3e-5, -2e-5, 1e-5, 2e-4, -1e-4, 0.0]
-    a = bj.solve_load(crowned, RADIAL, fixed_displacement=at)
+    a = bj.solve_load(crowned, RADIAL, support=bj.Support(fixed_displacement=at))
     b = bj.solve_load(crowned, RADIAL)
     # Without ribs the axial freedom stays where it was put: at zero, not at 1e-5.
     difference = np.asarray(a.displacement - b.displacement)[[6, 7, 9, 10]]
@@ -67,7 +69,7 @@ def test_loads_and_displacements_mixed(tapered):
     s = bj.solve_load(
         tapered,
         [2000.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        prescribed={"uz": 40e-6, "gx": 2e-4, "gz": 0.3},
+        support=bj.Support(prescribed={"uz": 40e-6, "gx": 2e-4, "gz": 0.3}),
     )
     q, force = np.asarray(s.displacement), np.asarray(s.force)
     assert np.allclose(q[[8, 9, 11]], [40e-6, 2e-4, 0.3], rtol=1e-15)
@@ -82,7 +84,7 @@ def test_loads_and_displacements_mixed(tapered):
 @pytest.mark.slow
 def test_solve_load_with_all_freedoms_prescribed(crowned):
     at = {"ux": 1e-5, "uy": -2e-5, "uz": 0.0, "gx": 0.0, "gy": 1e-4}
-    s = bj.solve_load(crowned, None, prescribed=at, free=[])
+    s = bj.solve_load(crowned, None, support=bj.Support(prescribed=at, free=[]))
     q = np.asarray(s.displacement)
     assert np.allclose(q[6:11], list(at.values()))
     assert np.allclose(s.force, crowned.force(jnp.asarray(q)), rtol=SOLVER, atol=1e-9)
@@ -91,7 +93,10 @@ def test_solve_load_with_all_freedoms_prescribed(crowned):
 
 def test_solve_load_outputs_are_consistent(tapered):
     s = bj.solve_load(
-        tapered, [1000.0, 0, 6000.0, 0, 0, 0], speed=bj.Speed(inner=300.0), points=1001
+        tapered,
+        [1000.0, 0, 6000.0, 0, 0, 0],
+        speed=bj.Speed(inner=300.0),
+        options=bj.statics.SolveOptions(points=1001),
     )
     length = 0.0115
     x = np.asarray(s.position)
@@ -125,10 +130,10 @@ def test_edge_loaded_rollers_are_warned_of(crowned):
 @pytest.mark.slow
 def test_a_freedom_without_stiffness_is_warned_of(crowned):
     load = [0.0, -500.0, 0, 0, 0, 0]
-    s = bj.solve_load(crowned, load, free=["ux", "uy", "uz"])
+    s = bj.solve_load(crowned, load, support=bj.Support(free=["ux", "uy", "uz"]))
     (line,) = (t for t in bj.statics.warnings(s) if "no stiffness" in t)
     assert line.startswith("no stiffness in uz of the inner ring: nothing holds it")
-    held = bj.solve_load(crowned, load, free=["ux", "uy"])
+    held = bj.solve_load(crowned, load, support=bj.Support(free=["ux", "uy"]))
     assert not any("no stiffness" in t for t in bj.statics.warnings(held))
 
 
@@ -156,7 +161,11 @@ def test_axial_load_on_nu_and_moment_about_the_axis(crowned):
 
 def test_solve_load_reports_step_limit(tapered):
     with pytest.raises(bj.SolveError, match="Step limit reached after 2 steps"):
-        bj.solve_load(tapered, [0, 0, 6000.0, 0, 0, 0], max_steps=2)
+        bj.solve_load(
+            tapered,
+            [0, 0, 6000.0, 0, 0, 0],
+            options=bj.statics.SolveOptions(max_steps=2),
+        )
 
 
 def test_message_reports_round_off_of_rolling_elements(tapered):
@@ -185,7 +194,9 @@ def test_a_failed_solve_has_no_derivative(tapered):
     """Of any size it would pass for one."""
 
     def moved(load):
-        s = bj.solve_load(tapered, load, throw=False, max_steps=2)
+        s = bj.solve_load(
+            tapered, load, throw=False, options=bj.statics.SolveOptions(max_steps=2)
+        )
         return s.displacement[8]
 
     slope = jax.jit(jax.grad(moved))(jnp.asarray([0, 0, 6000.0, 0, 0, 0]))
@@ -345,18 +356,34 @@ def test_many_devices_and_a_batch_of_open_size(tapered):
     "call, text",
     [
         (dict(load=[1.0, 2.0]), r"`load` has shape \(2,\).*Fx Fy Fz Mx My Mz"),
-        (dict(load=RADIAL, fixed_ring="left"), "`fixed_ring` is 'left'.*'outer'"),
-        (dict(load=RADIAL, free=["vx"]), "`free` names 'vx'; freedoms are ux"),
-        (dict(load=RADIAL, prescribed={"rz": 0.0}), "`prescribed` names 'rz'"),
-        (dict(load=RADIAL, free=["ux"], prescribed={"ux": 0.0}), "both free and presc"),
-        (dict(load=RADIAL, tolerance=2.0), "`tolerance` is 2;"),
-        (dict(load=RADIAL, free=["gz"]), "gz, which no rolling bearing restrains"),
-        (dict(load=RADIAL, fixed_displacement=[0.0]), "`fixed_displacement` has shape"),
+        (dict(load=RADIAL, start=[0.0]), r"`start` has shape \(1,\)"),
     ],
 )
 def test_wrong_calls(crowned, call, text):
     with pytest.raises(ValueError, match=text):
         bj.solve_load(crowned, **call)
+
+
+@pytest.mark.parametrize(
+    "given, text",
+    [
+        (dict(fixed_ring="left"), "`fixed_ring` is 'left'.*'outer'"),
+        (dict(free=["vx"]), "`free` names 'vx'; freedoms are ux"),
+        (dict(prescribed={"rz": 0.0}), "`prescribed` names 'rz'"),
+        (dict(prescribed={"uz": [0.0, 1.0]}), r"`prescribed\['uz'\]` has shape"),
+        (dict(free=["ux"], prescribed={"ux": 0.0}), "both free and presc"),
+        (dict(free=["gz"]), "gz, which no rolling bearing restrains"),
+        (dict(fixed_displacement=[0.0]), "`fixed_displacement` has shape"),
+    ],
+)
+def test_wrong_supports(given, text):
+    with pytest.raises(ValueError, match=text):
+        bj.Support(**given)
+
+
+def test_wrong_tolerance():
+    with pytest.raises(ValueError, match="`tolerance` is 2;"):
+        bj.statics.SolveOptions(tolerance=2.0)
 
 
 def fall(bearing, load):
@@ -407,7 +434,9 @@ def test_solve_load_design_gradient_with_held_freedom():
         )
         element = bj.BearingElement(bearing, quadrature=bj.numerics.Midpoint(5))
         load = jnp.array([0.0, -500.0, 0.0, 0.0, 0.0, 0.0])
-        return bj.solve_load(element, load, free=["uy"]).displacement[7]
+        return bj.solve_load(
+            element, load, support=bj.Support(free=["uy"])
+        ).displacement[7]
 
     slope = jax.jit(jax.value_and_grad(sag))
     at, h = 1e-6, 1e-8
@@ -422,7 +451,9 @@ def test_gradient_with_respect_to_a_prescribed_turn(crowned):
     @jax.jit
     @jax.value_and_grad
     def sag(turn):
-        s = bj.solve_load(crowned, RADIAL, prescribed={"gz": turn}, free=FREE)
+        s = bj.solve_load(
+            crowned, RADIAL, support=bj.Support(prescribed={"gz": turn}, free=FREE)
+        )
         return 1e6 * (s.displacement[7] + 2.0 * s.displacement[6])
 
     at, h = 0.1, 1e-5
@@ -442,13 +473,14 @@ def test_gradient_with_respect_to_a_prescribed_turn(crowned):
 def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
     load = [0.0, -4000.0, 0.0, 20.0, 0.0, 0.0]
     with pytest.raises(ValueError, match=f"has Mx = 20 N m, but gx is {why}"):
-        bj.solve_load(crowned, load, **held)
+        bj.solve_load(crowned, load, support=bj.Support(**held))
     with pytest.raises(ValueError, match=f"Mx = 20 N m in case 1, but gx is {why}"):
         cases = bj.Cases(
             [RADIAL[:3] + [0.0] * 3, load], prescribed=held.get("prescribed")
         )
-        bj.sweep(crowned, cases, free=held.get("free"))
-    s = jax.jit(lambda f: bj.solve_load(crowned, f, throw=False, **held))(
+        bj.sweep(crowned, cases, support=bj.Support(free=held.get("free")))
+    support = bj.Support(**held)
+    s = jax.jit(lambda f: bj.solve_load(crowned, f, support=support, throw=False))(
         jnp.asarray(load)
     )
     assert int(s.result) == bj.Result.NO_LOAD_PATH
@@ -469,9 +501,8 @@ def test_numbers_do_not_compile_anew(crowned, monkeypatch):
         s = bj.solve_load(
             crowned,
             RADIAL,
-            prescribed={"ux": moved},
-            tolerance=tolerance,
-            max_steps=steps,
+            support=bj.Support(prescribed={"ux": moved}),
+            options=bj.statics.SolveOptions(tolerance=tolerance, max_steps=steps),
             throw=False,
         )
     assert len(traces) == 1
@@ -611,8 +642,19 @@ def test_slow_taper(speed):
     element = bj.BearingElement(bj.load_bearing("30206"))
     load, held = [0.0, -900.0, 300.0, 0.0, 0.0, 0.0], {"gx": 0.0, "gy": 0.0}
     turning = bj.Speed(jnp.asarray(speed))
-    slow = bj.solve_load(element, load, prescribed=held, speed=turning, points=2)
-    rest = bj.solve_load(element, load, prescribed=held, points=2)
+    slow = bj.solve_load(
+        element,
+        load,
+        support=bj.Support(prescribed=held),
+        speed=turning,
+        options=bj.statics.SolveOptions(points=2),
+    )
+    rest = bj.solve_load(
+        element,
+        load,
+        support=bj.Support(prescribed=held),
+        options=bj.statics.SolveOptions(points=2),
+    )
     idle = np.asarray(rest.roller_load).min(axis=1) == 0
     assert 2 < idle.sum() < 15
     np.testing.assert_allclose(

@@ -189,7 +189,9 @@ def test_remaining_preload_of_sets(pair):
         )
     )
     element = bj.BearingElement(uneven)
-    q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement
+    q = bj.solve_load(
+        element, np.zeros(6), support=bj.Support(free=["uz"])
+    ).displacement
     _, axial, _ = evaluate(element, q)
     assert float(axial[0] + axial[1]) == pytest.approx(-float(axial[2]), rel=1e-9)
     assert float(remaining(element)) == pytest.approx(-float(axial[2]), rel=1e-9)
@@ -226,7 +228,9 @@ def test_remaining_preload_gradient():
 def test_remaining_preload_equals_spring_force(sprung):
     element, spring = sprung
     left = float(bj.statics.remaining_preload(element))
-    q = bj.solve_load(element, np.zeros(6), free=["uz"]).displacement
+    q = bj.solve_load(
+        element, np.zeros(6), support=bj.Support(free=["uz"])
+    ).displacement
     travel = float(evaluate(element, q)[2][1].travel)
     assert left == pytest.approx(push(spring, travel), rel=1e-9)
 

@@ -255,7 +255,7 @@ def test_high_speed(name, variant):
     s = bj.solve_load(
         element,
         [0, 0, axial, 0, 0, 0],
-        free=["ux", "uy", "uz"],
+        support=bj.Support(free=["ux", "uy", "uz"]),
         speed=bj.Speed(rpm * 2 * np.pi / 60),
     )
     angles = np.asarray(s.contact_angle) / DEGREE
@@ -321,7 +321,7 @@ def test_harris_mindel_equilibrium():
         lambda speed: bj.solve_load(
             element,
             [0, 0, 3000.0 * pound, 0, 0, 0],
-            free=["uz"],
+            support=bj.Support(free=["uz"]),
             speed=bj.Speed(speed),
         )
     )
@@ -427,7 +427,9 @@ def test_sjovall_double_row():
 def test_stribeck_number():
     """4.37 W/z: exactly 1/J_r(0.5) for many balls, 4.373 for fourteen (AF003-6)."""
     many = bj.DeepGrooveBallBearing(720, 1.0, 0.004, **grooves(0.52, 0.52))
-    s = bj.solve_load(bj.BearingElement(many), [1e-3, 0, 0, 0, 0, 0], free=["ux"])
+    s = bj.solve_load(
+        bj.BearingElement(many), [1e-3, 0, 0, 0, 0, 0], support=bj.Support(free=["ux"])
+    )
     stribeck = 720 * float(s.roller_load[:, 1].max()) / 1e-3
     assert stribeck == pytest.approx(1 / 0.228827929, rel=1e-5)
     fourteen = bj.DeepGrooveBallBearing(14, 0.0775, 0.014288, **grooves(0.52, 0.52))

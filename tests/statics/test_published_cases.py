@@ -75,8 +75,7 @@ def test_nu215_equilibrium(load, psi, displacement, moment, largest):
     s = bj.solve_load(
         nu215(30),
         [load, 0.0, 0.0, 0.0, 0.0, 0.0],
-        prescribed={"gy": -np.tan(1e-3 * psi)},
-        free=["ux"],
+        support=bj.Support(prescribed={"gy": -np.tan(1e-3 * psi)}, free=["ux"]),
     )
     assert 1e3 * float(s.displacement[6]) == pytest.approx(displacement, rel=1e-5)
     assert 1e3 * float(s.force[10]) == pytest.approx(moment, rel=1e-5, abs=1e-6)
@@ -99,7 +98,7 @@ def test_209_roller_bearing(law, clearance, displacement, largest):
         14, 0.065, 0.010, 0.0096, radial_internal_clearance=1e-3 * clearance
     )
     element = bj.BearingElement(bearing, line_law=constant)
-    s = bj.solve_load(element, [4450.0, 0, 0, 0, 0, 0], free=["ux"])
+    s = bj.solve_load(element, [4450.0, 0, 0, 0, 0, 0], support=bj.Support(free=["ux"]))
     assert 1e3 * float(s.displacement[6]) == pytest.approx(displacement, rel=2e-4)
     assert float(s.roller_load.max()) == pytest.approx(largest, rel=2e-4)
 
@@ -145,7 +144,9 @@ def test_taper_of_kumar(row):
         bearing, line_law=constant, quadrature=bj.numerics.Midpoint(10)
     )
     s = bj.solve_load(
-        element, [0, 0, load, 0, 0, 0], free=["uz"], prescribed={"ux": 0.0}
+        element,
+        [0, 0, load, 0, 0, 0],
+        support=bj.Support(free=["uz"], prescribed={"ux": 0.0}),
     )
     k = 1e-9 * np.asarray(s.stiffness)[6:9, 6:9]
     normal = 1e3 * float(s.displacement[8]) * np.sin(angle)

@@ -117,7 +117,9 @@ def test_independent_slices_miss_the_end():
     """A straight roller, edge loaded by a moment: the peak is beyond the slices'."""
     bearing = bj.CylindricalRollerBearing(9, 0.0725, 0.010, 0.015)
     element = bj.BearingElement(bearing)
-    solution = bj.solve_load(element, [8000.0, 0, 0, 0, 30.0, 0], free=FREE)
+    solution = bj.solve_load(
+        element, [8000.0, 0, 0, 0, 30.0, 0], support=bj.Support(free=FREE)
+    )
     got = bj.refine(element, solution)
     end = 2 * float(got.solution.grid.half_y[0])
     assert got.edge_factor > 2 and end < 5e-6
@@ -136,10 +138,15 @@ def test_bad_input(tapered):
         9, 0.0725, 0.010, 0.015, radial_internal_clearance=40e-6
     )
     other = bj.BearingElement(light)
-    loose = bj.solve_load(other, [1000.0, 0, 0, 0, 0, 0], free=FREE)
+    loose = bj.solve_load(other, [1000.0, 0, 0, 0, 0, 0], support=bj.Support(free=FREE))
     with pytest.raises(ValueError, match="roller 4 bears no load on the outer raceway"):
         bj.refine(other, loose, 4, "outer")
-    fast = bj.solve_load(other, [1000.0, 0, 0, 0, 0, 0], free=FREE, speed=bj.Speed(2e3))
+    fast = bj.solve_load(
+        other,
+        [1000.0, 0, 0, 0, 0, 0],
+        support=bj.Support(free=FREE),
+        speed=bj.Speed(2e3),
+    )
     with pytest.raises(ValueError, match="and the `speed` of its rings"):
         bj.refine(other, fast, raceway="outer")
     angular = bj.BearingElement(balls())

@@ -254,7 +254,7 @@ def test_warnings_negative_clearance_of_single_bearing(deep, rollers):
     load, running = [0, -2000.0, 300, 0, 0, 0], bj.Speed(inner=100.0)
     for element in (deep, rollers):
         name = "radial_internal_clearance"
-        kept = dict(prescribed={"gx": 0.0, "gy": 0.0})
+        kept = dict(support=bj.Support(prescribed={"gx": 0.0, "gy": 0.0}))
         pressed = changed(element, **{name: -5e-6})
         (text,) = bj.warnings(solved(pressed, load, running, **kept))
         assert text.startswith("runs with a radial clearance of -5 µm")
@@ -475,7 +475,9 @@ def test_balls_beyond_the_bottom_of_their_groove():
     held = {"gx": 0.0, "gy": 0.0}
     for share, told in ((0.3, False), (0.8, True), (1.2, True)):
         uz = {"uz": -share * bottom}
-        s = bj.solve_load(element, [0, -1500, 0, 0, 0, 0], prescribed=held | uz)
+        s = bj.solve_load(
+            element, [0, -1500, 0, 0, 0, 0], support=bj.Support(prescribed=held | uz)
+        )
         texts = [t for t in bj.warnings(s) if t.startswith("balls beyond the bottom")]
         assert bool(texts) is told
     load = np.asarray(s.contact_load)

@@ -570,7 +570,8 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
         task.variables,
         task.objective,
         (),
-        SolveOptions(free=("uy",), points=2),
+        SolveOptions(points=2),
+        bj.Support(("uy",)),
     )
     start = np.array([v.start_in(problem.element) for v in task.variables])
     np.testing.assert_allclose(start, [323.15, 293.15, 11.5e-6, 32.5e-6])

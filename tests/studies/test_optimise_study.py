@@ -89,7 +89,7 @@ def test_command_finds_the_clearance_of_a_stiffness(run, written, undrawn, tmp_p
     found = bj.solve_load(
         with_numbers(read_scene(CLEARANCE).element, {f"bearing.{PLAY}": 15e-6}),
         [0, -3e3, 0, 0, 0, 0],
-        free=["uy"],
+        support=bj.Support(free=["uy"]),
     ).stiffness[7, 7]
     target = float(read_optimisation(CLEARANCE).objective.target)
     assert np.isclose(target, float(found), rtol=SOLVER, atol=0.0)
@@ -233,10 +233,10 @@ def test_report_needs_no_unit_of_a_plain_measure():
         task.cases,
         task.variables,
         own,
-        method="nelder-mead",
-        free=["uy"],
-        points=2,
-        max_steps=3,
+        search=bj.optimise.SearchOptions(
+            "nelder-mead", max_steps=3, solve=bj.statics.SolveOptions(points=2)
+        ),
+        support=bj.Support(free=["uy"]),
     )
     assert "\nown " in str(optimisation_report(task, found))
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax import Support
 from bearingjax.cli.entry import parser
 from bearingjax.cli.execute import Tools
 from bearingjax.design import rows_of
@@ -140,7 +141,7 @@ def of_optimise(path):
     task = read_optimisation(path)
     case = jax.tree.map(lambda leaf: leaf[0], task.cases)
     design = ready(task.scene.installed, None)
-    solved = solved_case(design, case, SolveOptions(free=task.scene.free, points=2))
+    solved = solved_case(design, case, Support(task.scene.free), SolveOptions(points=2))
     np.testing.assert_allclose(
         facts(element_of(design).bearing), facts(solved.element.bearing), rtol=1e-12
     )

@@ -99,7 +99,9 @@ def test_lives_are_those_of_the_bearings_alone():
             zip("ux uy uz gx gy".split(), solution.displacement[6:11], strict=True)
         )
         again = bj.solve_load(
-            solution.element, prescribed=held, free=[], speed=solution.speed
+            solution.element,
+            support=bj.Support(prescribed=held, free=[]),
+            speed=solution.speed,
         )
         entry = bearing.scene.catalogue.entry
         life = bj.rating_life(

@@ -9,16 +9,15 @@ from jaxtyping import Array, Float
 
 from ...design.checks import finite, is_traced, of_shape, one_of, real_numbers
 from ...element.bearing_element import BearingElement, check_element
-from ...element.frame import FREEDOMS, LOADS
+from ...element.frame import FREEDOMS, LOADS, RINGS
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import as_real
 from ...numerics.warning import Warning
 from ...statics.linearise import OperatingPoint, linearise
-from ...statics.options import SolveOptions
 from ...statics.solution import failure_message
-from ...statics.support import restrained_freedoms
+from ...statics.support import Support, restrained_freedoms
 from ...statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 from .modes import speed_list
 
@@ -115,21 +114,16 @@ def _sweep(element, speeds, load, tilts, fixed_ring):
 
 
 def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:
-    moving = SolveOptions(fixed_ring=fixed_ring).moving_ring
-    return linearise(
-        element,
-        load,
-        prescribed={"gx": 0.0, "gy": 0.0} if tilts == "held" else None,
-        fixed_ring=fixed_ring,
-        speed=Speed(**{moving: speed}),
-        throw=False,
-    )
+    held = {"gx": 0.0, "gy": 0.0} if tilts == "held" else None
+    support = Support(prescribed=held, fixed_ring=fixed_ring)
+    turning = Speed(**{support.moving_ring: speed})
+    return linearise(element, load, speed=turning, support=support, throw=False)
 
 
 def _check(element, speeds, load, tilts, fixed_ring):
     """Return checked speeds (speed,) and loads (speed, 6)."""
     name = "stiffness_table"
-    SolveOptions(fixed_ring=fixed_ring).check(name)
+    one_of(name, "fixed_ring", fixed_ring, RINGS, "'outer' or 'inner'")
     one_of(name, "tilts", tilts, TILTS, " or ".join(map(repr, TILTS)))
     check_element(name, element)
     for what, value in (("speeds", speeds), ("load", load)):

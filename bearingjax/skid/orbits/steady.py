@@ -5,7 +5,6 @@ whether the pockets are wide enough for that (`ball_orbit`). Rollers are carried
 by the cage (`roller_orbit`).
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -20,7 +19,7 @@ from ...numerics.result import Result, raise_unless_converged
 from ...statics.balance import balance_of
 from ...statics.load import raise_if_failed, solve
 from ...statics.load_case import LoadCase, load_case
-from ...statics.options import SolveOptions
+from ...statics.support import RESTRAINED, Support
 from ..model import SkidModel
 from .ball_orbit import BallOrbit
 from .orbit_search import NO_TRACTION, derivatives, search, with_derivatives
@@ -43,9 +42,7 @@ def steady(
     speed: Speed,
     places: int | None = None,
     load_speed: Speed | None = None,
-    prescribed: Any = None,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
+    support: Support = RESTRAINED,
     throw: bool = True,
 ) -> Any:
     """Find the steady motion of the balls or rollers of a skidding bearing.
@@ -60,7 +57,7 @@ def steady(
         load_speed: Ring speeds whose pure rolling gives the centrifugal forces, as in
             the published method; default: the orbit of the steady state gives them,
             so that contact loads are consistent with the slip.
-        prescribed, free, fixed_ring: As in `solve_load`.
+        support: As in `solve_load`.
         throw: Raise if it cannot be solved; otherwise read `result`.
 
     Returns:
@@ -85,15 +82,13 @@ def steady(
     """
     check_places("skid.steady", model.bearing, places)
     carried = speed if load_speed is None else load_speed
-    options = SolveOptions(free, fixed_ring)
-    support = {"prescribed": prescribed, "speed": carried}
-    solution = solve(model.element, load, options, **support)
+    solution = solve(model.element, load, support, speed=carried)
     if throw:
         solution = raise_if_failed(solution, "skid.steady")
     count = _places(model.bearing, solution, places)
-    case = load_case(model.bearing, load, options, **support)
+    case = load_case(model.bearing, load, support, speed=carried)
     follows = load_speed is None
-    found = end_state(model, solution, case, options, speed, count, follows)
+    found = end_state(model, solution, case, speed, count, follows)
     if not throw:
         return found
     return raise_unless_converged(
@@ -179,7 +174,6 @@ def end_state(
     model: SkidModel,
     solution: Any,
     case: LoadCase,
-    options: SolveOptions,
     speed: Speed,
     count: int,
     follows: bool = True,
@@ -190,7 +184,6 @@ def end_state(
         model: The bearing, its oil and its surroundings.
         solution: Solution under its load, for balls or rollers in pure rolling.
         case: Load case that the solution solves.
-        options: Settings of its solve.
         speed: Ring speeds.
         count: Number of places along the orbit. Static.
         follows: Whether loads follow the orbit from that of pure rolling. Static.
@@ -199,7 +192,7 @@ def end_state(
     """
     bearing = model.bearing
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
-    balance = balance_of(case, pitch_radius(bearing), options.moving_ring == "outer")
+    balance = balance_of(case, pitch_radius(bearing))
     kind = BallOrbit if bearing.is_ball else RollerOrbit
     solved = solution.result == int(Result.CONVERGED)
     ring = solution.displacement[balance.moving] / balance.scale

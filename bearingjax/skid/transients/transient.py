@@ -5,7 +5,6 @@ the method is implicit, with the exact Jacobian. The powers are integrated with 
 motion, so that the power balance measures the integration itself.
 """
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -26,7 +25,7 @@ from ...numerics.types import Scalar, as_real
 from ...statics.balance import balance_of
 from ...statics.load import raise_if_failed, solve
 from ...statics.load_case import load_case
-from ...statics.options import SolveOptions
+from ...statics.support import RESTRAINED, Support
 from ..balanced_loads import BalancedLoads
 from ..conditions import conditions_of
 from ..model import SkidModel
@@ -67,9 +66,7 @@ def simulate(
     max_steps: int = 20_000,
     derivatives: str = "reverse",
     progress: bool = False,
-    prescribed: Any = None,
-    free: Sequence[str] | None = None,
-    fixed_ring: str = "outer",
+    support: Support = RESTRAINED,
     throw: bool = True,
 ) -> Any:
     """Integrate the motion of the balls or rollers of a bearing and its cage.
@@ -115,7 +112,7 @@ def simulate(
             differentiated. Where balls meet or leave the cage on the way derivatives
             need a small tolerance: 1e-2 off at 1e-8, 2e-3 at 1e-10 was seen.
         progress: Show a bar.
-        prescribed, free, fixed_ring: As in `solve_load`.
+        support: As in `solve_load`.
         throw: Raise if the end is not reached; otherwise read `result`.
 
     Returns:
@@ -149,20 +146,16 @@ def simulate(
     at = table.at(zero) if balanced else table.at(as_real(duration))
     if load_speed is not None and not balanced:
         at = load_speed
-    options = SolveOptions(free, fixed_ring)
     first = load(zero) if callable(load) else load
-    solution: Any = solve(
-        model.element, first, options, prescribed=prescribed, speed=at
-    )
+    solution: Any = solve(model.element, first, support, speed=at)
     if throw:
         solution = raise_if_failed(solution, "skid.simulate")
     gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
         # Without its load, which comes over time.
-        case = load_case(model.bearing, None, options, prescribed=prescribed)
-        outer_moves = options.moving_ring == "outer"
-        balance = balance_of(case, pitch_radius(model.bearing), outer_moves)
+        case = load_case(model.bearing, None, support)
+        balance = balance_of(case, pitch_radius(model.bearing))
         environment, rolling = balanced_surroundings(
             model, solution, balance, over_time, table, gravity
         )

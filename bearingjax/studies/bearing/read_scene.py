@@ -25,8 +25,9 @@ from ...life.life_warning import given_rating_warnings
 from ...numerics.compiled.programs import call_stored
 from ...numerics.warning import Warning
 from ...statics.installed import Installed
-from ...statics.options import DEFAULT_TOLERANCE
+from ...statics.options import DEFAULT_TOLERANCE, SolveOptions
 from ...statics.preload import SetPreload
+from ...statics.support import Support
 from .catalogue_keys import FromCatalogue
 from .leftover_keys import leftover_warnings
 from .oil import Oil, read_oil
@@ -84,6 +85,16 @@ class Scene:
     def moving_ring(self) -> str:
         """Name of the loaded ring."""
         return RINGS[1 - RINGS.index(self.fixed_ring)]
+
+    @property
+    def support(self) -> Support:
+        """What holds the rings."""
+        return Support(self.free, self.prescribed, self.fixed_ring)
+
+    @property
+    def solve_options(self) -> SolveOptions:
+        """Numerics of the load solves."""
+        return SolveOptions(self.points, self.tolerance)
 
     @property
     def element(self) -> BearingElement[Any]:

@@ -7,6 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from ...cases.batches import Batches
 from ...cases.cases import Cases
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.sweep import Sweep, sweep
@@ -22,6 +23,7 @@ from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
 from ...statics.preload import is_opposed, row_preload_force
 from ...statics.service_warning import preload_range_warnings, preload_warnings
+from ...statics.support import Support
 from ..bearing.life_ratings import life_conditions
 from ..solve.run import with_set_preload
 from .read_cases import CaseTable, DesignGroup, turns_of
@@ -77,13 +79,10 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             part.element,
             cases,
             outputs=OUTPUTS if table.outputs is None else table.outputs,
-            free=scene.free,
-            fixed_ring=scene.fixed_ring,
-            points=scene.points,
-            tolerance=scene.tolerance,
-            progress=progress,
-            stop=stop,
+            support=Support(scene.free, fixed_ring=scene.fixed_ring),
+            options=scene.solve_options,
             life=_life(table, part),
+            batches=Batches(progress=progress, stop=stop),
         )
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
@@ -153,7 +152,7 @@ def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
     unloaded = Cases(
         np.zeros((first.size, 6)), inner_speed=inner, outer_speed=outer, design=design
     )
-    found = sweep(part.element, unloaded, outputs=_preload, free=["uz"])
+    found = sweep(part.element, unloaded, outputs=_preload, support=Support(["uz"]))
     force = np.asarray(found.outputs["preload"])
     if design is None:
         return force

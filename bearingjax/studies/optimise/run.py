@@ -5,7 +5,8 @@ from functools import partial
 
 from ...files.quantity import SceneError
 from ...optimise.life import OfLife, RatingLife
-from ...optimise.optimise import Optimised, optimise
+from ...optimise.optimise import Optimised, SearchOptions, optimise
+from ...statics.support import RESTRAINED, Support
 from ..bearing.life_ratings import life_conditions
 from ..cases.read_cases import turns_of
 from .read_optimise import Optimisation
@@ -28,17 +29,14 @@ def run_optimisation(
         SolveError: If the design of the scene does not solve.
         SceneError: For choices that contradict each other.
     """
-    name, more = task.scene.name, {}
+    name, support, solve = task.scene.name, RESTRAINED, None
     if isinstance(task, ShaftOptimisation):
         design = task.design
     else:
         scene, design = task.scene, task.scene.installed
-        more = {
-            "points": scene.points,
-            "free": scene.free,
-            "fixed_ring": scene.fixed_ring,
-            "solve_tolerance": scene.tolerance,
-        }
+        support = Support(scene.free, fixed_ring=scene.fixed_ring)
+        solve = scene.solve_options
+    limits = task.max_steps, task.tolerance
     try:
         found = optimise(
             design,
@@ -46,11 +44,8 @@ def run_optimisation(
             task.variables,
             task.objective,
             task.constraints,
-            task.method,
-            max_steps=task.max_steps,
-            tolerance=task.tolerance,
-            progress=progress,
-            **more,
+            search=SearchOptions(task.method, *limits, solve, progress),
+            support=support,
         )
     except ValueError as error:
         raise SceneError(f"{name}: {error}") from error

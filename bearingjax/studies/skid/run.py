@@ -100,9 +100,7 @@ def _left_out(task):
 def _supports(task):
     scene = task.scene
     return {
-        "prescribed": scene.prescribed,
-        "free": scene.free,
-        "fixed_ring": scene.fixed_ring,
+        "support": scene.support,
         "places": task.places,
         "throw": False,
     }

@@ -5,7 +5,7 @@ import dataclasses
 from ...design.checks import of_class
 from ...numerics.compiled.programs import call_stored
 from ...numerics.types import as_array
-from ...statics.load import solve_load
+from ...statics.load import solve
 from ...statics.service_warning import preload_warnings
 from ...statics.solution import Solution
 from ..bearing.read_scene import Scene
@@ -31,12 +31,9 @@ def run_scene(scene: Scene) -> Solution:
         _solve,
         scene.running(),
         as_array(scene.load, float),
-        {name: as_array(value, float) for name, value in scene.prescribed.items()},
-        scene.free,
-        scene.fixed_ring,
+        scene.support,
+        scene.solve_options,
         scene.speed,
-        scene.points,
-        None if scene.tolerance is None else as_array(scene.tolerance, float),
     )
 
 
@@ -71,15 +68,5 @@ def with_set_preload(scene: Scene) -> Scene:
     return dataclasses.replace(scene, preload_of_set=found, warnings=warned)
 
 
-def _solve(element, load, prescribed, free, fixed_ring, speed, points, tolerance):
-    return solve_load(
-        element,
-        load,
-        prescribed=prescribed,
-        free=free,
-        fixed_ring=fixed_ring,
-        speed=speed,
-        points=points,
-        tolerance=tolerance,
-        throw=False,
-    )
+def _solve(element, load, support, options, speed):
+    return solve(element, load, support, options, speed=speed)
