@@ -67,7 +67,9 @@ def spectrum(count):
 def damage_of(element, case):
     """Part of the life that a revolution of one case uses."""
     solution = solve_case(element, case)
-    return bj.rating_life(element, solution, dynamic_capacity=CAPACITY).damage
+    return bj.rating_life(
+        element, solution, conditions=bj.LifeConditions(dynamic_capacity=CAPACITY)
+    ).damage
 
 
 def life(numbers, structure, cases, batch):

@@ -15,7 +15,7 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
 from ..design import rows_of
-from ..life.life import LifeConditions, life_of, life_outputs
+from ..life.life import LifeConditions, life_outputs, rating_life
 from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
@@ -92,7 +92,7 @@ class Task(eqx.Module):
         }
         warned = sizes(solution) if self.warn else {}
         if self.life is not None:
-            life = life_of(solution.element, solution, self.life)
+            life = rating_life(solution.element, solution, self.life)
             lives = life_outputs(life, self.lives)
             kept |= {name: nan_if_failed(v) for name, v in lives.items()}
             if self.warn:

@@ -249,15 +249,8 @@ class Life(eqx.Module):
 def rating_life(
     element: BearingElement | Solution,
     solution: Solution | None = None,
+    conditions: LifeConditions | None = None,
     *,
-    dynamic_capacity: Scalar | float | None = None,
-    static_capacity: Scalar | float | None = None,
-    fatigue_load_limit: Scalar | float | None = None,
-    viscosity: Scalar | float | None = None,
-    contamination: Scalar | float | Cleanliness | str | None = None,
-    reliability: Scalar | float = 0.9,
-    load_fixed_to: str = "space",
-    edge_stress: bool = True,
     speed: Speed | None = None,
     lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
 ) -> Life:
@@ -267,8 +260,7 @@ def rating_life(
         element: The bearing that was solved; may be left out, as the solution holds it.
         solution: Its solution. Of rollers every second position is the middle of a
             lamina: 101 `points` are 50 laminae.
-        dynamic_capacity, static_capacity, fatigue_load_limit, viscosity, contamination,
-            reliability, load_fixed_to, edge_stress: As in `LifeConditions`.
+        conditions: Ratings, lubrication and reliability; `None`: `LifeConditions()`.
         speed: Ring speeds; `None`: those of the solution. Without any the inner ring
             turns against a load fixed in space, and there is no life in hours.
         lamina_load: Load of every lamina on both raceways in place of the solution's
@@ -290,34 +282,9 @@ def rating_life(
         solution = cast(Solution, element)
         element = getattr(element, "element", element)
     check_element("rating_life", element)
-    conditions = LifeConditions(
-        dynamic_capacity,
-        static_capacity,
-        fatigue_load_limit,
-        viscosity,
-        contamination,
-        reliability,
-        load_fixed_to,
-        edge_stress,
-    )
-    bearing = cast(BearingElement, element)
-    return life_of(bearing, solution, conditions, speed=speed, lamina_load=lamina_load)
-
-
-def life_of(
-    element: BearingElement,
-    solution: Solution,
-    conditions: LifeConditions,
-    *,
-    speed: Speed | None = None,
-    lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
-) -> Life:
-    """Rating life as in `rating_life`, with the conditions in one object.
-
-    Args:
-        element, solution, speed, lamina_load: As in `rating_life`.
-        conditions: The keywords of `rating_life` as an object.
-    """
+    bearing = cast(BearingElement, element).bearing
+    conditions = LifeConditions() if conditions is None else conditions
+    of_class("rating_life", "conditions", conditions, LifeConditions, "LifeConditions")
     kinds = BallSolution | RollerSolution
     allowed = "what `solve_load` returns of a ball or roller bearing"
     of_class("rating_life", "solution", solution, kinds, allowed)
@@ -326,7 +293,7 @@ def life_of(
             "rating_life: `solution` holds several cases; map over them with jax.vmap,"
             " or name lives in the `outputs` of `sweep`."
         )
-    asked, solved = (_rows_in_words(e.bearing) for e in (element, solution.element))
+    asked, solved = (_rows_in_words(b) for b in (bearing, solution.element.bearing))
     if asked != solved:
         raise ValueError(
             f"rating_life: `element` has {asked}, but the solution is of {solved}; it"
@@ -341,8 +308,8 @@ def life_of(
                 f"rating_life: `lamina_load` has shape {shape}; it must be (element, 2,"
                 " lamina), of the rollers of the solution."
             )
-    check_alike(element.bearing)
-    return _life(element.bearing, solution, conditions, speed, lamina_load)
+    check_alike(bearing)
+    return _life(bearing, solution, conditions, speed, lamina_load)
 
 
 def _rows_in_words(bearing) -> str:

@@ -10,7 +10,7 @@ from ..cases.cases import Cases
 from ..cases.spectrum import spectrum_life
 from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
-from ..life.life import LifeConditions, life_of
+from ..life.life import LifeConditions, rating_life
 from ..life.life_warning import ALL, life_sizes
 from ..numerics.warning import Warning, warnings_of_cases
 from .measure import AbstractMeasure
@@ -48,7 +48,7 @@ class OfLife(AbstractMeasure):
         """
 
         def damage(solution):
-            return life_of(element, solution, self.conditions).damage
+            return rating_life(element, solution, self.conditions).damage
 
         found = spectrum_life(cases, jax.vmap(damage)(loads_of(solution)))
         if not self.hours:
@@ -69,7 +69,7 @@ class OfLife(AbstractMeasure):
         """
 
         def one(solution):
-            found = life_of(element, solution, self.conditions)
+            found = rating_life(element, solution, self.conditions)
             if self.hours:
                 return found.life_hours
             none = found.damage == 0
@@ -89,7 +89,7 @@ class OfLife(AbstractMeasure):
     @eqx.filter_jit
     def _sizes(self, element, solution):
         def one(solution):
-            life = life_of(element, solution, self.conditions)
+            life = rating_life(element, solution, self.conditions)
             return life_sizes(element.bearing, life.ratings, vars(life))
 
         return jax.vmap(one)(loads_of(solution))

@@ -15,7 +15,7 @@ from ..cases.cases import check_hours
 from ..design import rows_of
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
-from ..life.life import LifeConditions, life_of
+from ..life.life import LifeConditions, rating_life
 from ..life.life_warning import life_sizes
 from ..life.rating import check_alike
 from ..life.reference_life import BALLS, exponents_of
@@ -255,7 +255,7 @@ def bearing_results(
         speed: Its ring speeds.
         conditions: Life conditions of the bearing.
     """
-    life = life_of(solution.element, solution, conditions, speed=speed)
+    life = rating_life(solution.element, solution, conditions, speed=speed)
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}
     doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))

@@ -323,7 +323,9 @@ def test_lives_of_every_type(solved, name):
     solution, (load, _) = solved[name], CASES[name]
     bearing = EXAMPLES[name][0]
     life = bj.rating_life(
-        solution, speed=SPEED, viscosity=2e-5, contamination="grease, normal"
+        solution,
+        speed=SPEED,
+        conditions=bj.LifeConditions(viscosity=2e-5, contamination="grease, normal"),
     )
     p = float(equivalent_load(bearing, jnp.asarray(load, float)).dynamic)
     c = by_hand(name)[0]
@@ -342,7 +344,9 @@ def test_lives_of_every_type(solved, name):
 @pytest.mark.slow
 def test_life_of_evenly_loaded_thrust_rollers(solved):
     """(C/(0.73 F))^4: by the definition of C with λν = 0.73, edges apart."""
-    life = bj.rating_life(solved["cylindrical thrust"], edge_stress=False)
+    life = bj.rating_life(
+        solved["cylindrical thrust"], conditions=bj.LifeConditions(edge_stress=False)
+    )
     c = by_hand("cylindrical thrust")[0]
     expected = 1e6 * (c / (0.73 * 2e4)) ** 4
     assert float(life.reference_rating_life) == pytest.approx(expected, rel=1e-6)

@@ -93,9 +93,9 @@ def ball_life(x):
     return solution, bj.rating_life(
         element,
         solution,
-        dynamic_capacity=23400.0,
-        viscosity=12e-6,
-        contamination="grease, normal",
+        conditions=bj.LifeConditions(
+            dynamic_capacity=23400.0, viscosity=12e-6, contamination="grease, normal"
+        ),
         speed=SPEED,
     )
 
@@ -126,8 +126,8 @@ def roller_life(x):
     )
 
     def life(**conditions):
-        given = dict(dynamic_capacity=125e3, speed=SPEED) | conditions
-        return bj.rating_life(element, solution, **given)
+        given = bj.LifeConditions(125e3, **conditions)
+        return bj.rating_life(element, solution, given, speed=SPEED)
 
     oiled = life(viscosity=20e-6, contamination=0.5, reliability=0.95)
     return solution, oiled, life(edge_stress=False)
@@ -1118,7 +1118,11 @@ def test_rating_life_rejects_invalid_arguments(balls, rollers, untyped):
     with pytest.raises(ValueError, match="`element` has .*Roller.* solution is of .*B"):
         bj.rating_life(other, solution)
     with pytest.raises(ValueError, match="no speed is known"):
-        bj.rating_life(element, solution, viscosity=1e-5, contamination=0.5)
+        bj.rating_life(
+            element,
+            solution,
+            conditions=bj.LifeConditions(viscosity=1e-5, contamination=0.5),
+        )
     x = jnp.asarray([0.0, 1e3, 0.0, 0.0, 1e-4])
     solution, *_ = rollers(x)[1]["of"]
     short = eqx.tree_at(lambda s: s.line_load, solution, solution.line_load[..., :60])

@@ -71,9 +71,11 @@ def _solved(design, fixed_ring, clearance, first, load, tilt, oil):
     life = bj.rating_life(
         element,
         solution,
-        viscosity=iso_vg(46.0).kinematic_viscosity(oil["temperature"]),
-        contamination=oil["dirt"],
-        reliability=oil["reliability"],
+        conditions=bj.LifeConditions(
+            viscosity=iso_vg(46.0).kinematic_viscosity(oil["temperature"]),
+            contamination=oil["dirt"],
+            reliability=oil["reliability"],
+        ),
         speed=bj.Speed(inner=150.0),
     )
     return solution, life

@@ -246,7 +246,9 @@ def of_solution(solution):
     oil = iso_vg(68.0)
     return {
         "solution": solution,
-        "life": bj.rating_life(solution, viscosity=2e-5, contamination=0.5),
+        "life": bj.rating_life(
+            solution, conditions=bj.LifeConditions(viscosity=2e-5, contamination=0.5)
+        ),
         "torque": bj.friction_torque(solution, 2e-5),
         "skf": bj.friction.skf_friction_torque(solution, 2e-5),
         "films": bj.films(solution, oil, 340.0, 2e-7),

@@ -111,9 +111,11 @@ def test_life_of_one_load_matches_rating_life(run, written, tmp_path, solution):
     life = bj.rating_life(
         scene.element,
         solution,
-        dynamic_capacity=23400.0,
-        viscosity=scene.life.viscosity,
-        contamination="grease, normal",
+        conditions=bj.LifeConditions(
+            dynamic_capacity=23400.0,
+            viscosity=scene.life.viscosity,
+            contamination="grease, normal",
+        ),
     )
     for name in (*NAMES, "life_hours", "static_safety", "equivalent_load", "a_iso"):
         np.testing.assert_allclose(found[name], float(getattr(life, name)), rtol=SOLVER)

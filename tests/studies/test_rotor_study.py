@@ -242,8 +242,7 @@ def test_lives_of_the_bearings():
     wanted = bj.rating_life(
         element,
         alone,
-        viscosity=viscosity,
-        contamination=0.5,
+        conditions=bj.LifeConditions(viscosity=viscosity, contamination=0.5),
         speed=bj.Speed(jnp.asarray(task.speed)),
     )
     hours: Any = wanted.life_hours

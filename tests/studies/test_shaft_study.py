@@ -105,7 +105,9 @@ def test_lives_are_those_of_the_bearings_alone():
         )
         entry = bearing.scene.catalogue.entry
         life = bj.rating_life(
-            solution.element, again, dynamic_capacity=entry.dynamic_capacity
+            solution.element,
+            again,
+            conditions=bj.LifeConditions(dynamic_capacity=entry.dynamic_capacity),
         )
         np.testing.assert_allclose(
             bearing.life.reference_rating_life, life.reference_rating_life, rtol=1e-7

@@ -6,7 +6,7 @@ import functools
 import jax
 
 from ...files.quantity import SceneError
-from ...life.life import Life, life_of
+from ...life.life import Life, rating_life
 from ...life.life_warning import life_warnings
 from ...numerics.warning import Warning
 from ...statics.solution import Solution
@@ -79,7 +79,7 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     turning = speed is not None and float(speed.inner) != float(speed.outer)
     conditions = life_conditions(scene, turning=turning)
     try:
-        life = life_of(solution.element, solution, conditions)
+        life = rating_life(solution.element, solution, conditions)
     except ValueError as error:
         raise SceneError(f"{scene.name}: {error}") from error
     return jax.device_get(life)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...element import Speed
 from ...files.quantity import SceneError
-from ...life.life import Life, life_of
+from ...life.life import Life, rating_life
 from ...life.life_warning import life_warnings
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array
@@ -204,7 +204,7 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
             scene.points,
         )
         conditions = life_conditions(scene, speed is not None)
-        life = life_of(support.element, solution, conditions, speed=speed)
+        life = rating_life(support.element, solution, conditions, speed=speed)
         found.append((mount, jax.device_get(life)))
         bearing = support.element.bearing
         doubts = life_warnings(bearing, found[-1][1].ratings, vars(found[-1][1]))

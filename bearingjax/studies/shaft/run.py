@@ -13,7 +13,7 @@ from ...design import rows_of
 from ...element import Speed
 from ...files.quantity import SceneError
 from ...fits import radial_clearance
-from ...life.life import Life, life_of
+from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
 from ...numerics.compiled.programs import call_stored
 from ...numerics.result import Result
@@ -366,7 +366,7 @@ def _in_place(
             installed=scene.installed.with_speed(Speed(speed.inner, 0.0)),
         )
         try:
-            life = jax.device_get(life_of(solution.element, solution, conditions))
+            life = jax.device_get(rating_life(solution.element, solution, conditions))
         except ValueError as error:
             raise SceneError(f"{task.name}: {seat.name}: {error}") from error
         oil = None
