@@ -132,14 +132,14 @@ def settled(system, frequency):
 def one(rng, method, points):
     system, interference = drawn(rng)
     unit = float(system.reference_frequency)
-    steps = Steps(largest=0.1)
+    steps = Steps(largest=0.1, points=points)
     begun = time.perf_counter()
     given = RANGE[0] * unit, RANGE[1] * unit, method
-    branch = follow(system, *given, steps=steps, points=points)
+    branch = follow(system, *given, steps=steps)
     begun_anew = branch.ending == BranchEnd.NO_START
     if begun_anew:
         last = settled(system, RANGE[0] * unit)
-        branch = follow(system, *given, last, steps=steps, points=points)
+        branch = follow(system, *given, last, steps=steps)
     seconds = time.perf_counter() - begun
     count = len(branch.frequency)
     row = {

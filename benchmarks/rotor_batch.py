@@ -73,8 +73,7 @@ def branch(preloads):
         jnp.append(start, BEGIN / unit),
         END / unit,
         Arclength(),
-        Steps(largest=0.06),
-        POINTS,
+        Steps(largest=0.06, points=POINTS),
     )
     amplitude = jax.vmap(amplitudes)(found.motion)[:, 3] * SCALE
     radius = jnp.max(jnp.abs(jnp.linalg.eigvals(found.monodromy)), axis=1)

@@ -95,7 +95,7 @@ RANGE = 1.06, 0.75
 def branch_of(angle, acceleration, method, points):
     system = rotor(angle, damping_ratio=DAMPING, base_acceleration=acceleration)
     unit = float(system.reference_frequency)
-    given = {"steps": Steps(largest=0.06), "points": points}
+    given = {"steps": Steps(largest=0.06, points=points)}
     return system, follow(system, RANGE[0] * unit, RANGE[1] * unit, method, **given)
 
 
@@ -206,8 +206,7 @@ def timed_branch(system, method, points, begin, end):
             begin * unit,
             end * unit,
             method,
-            steps=Steps(largest=0.02),
-            points=points,
+            steps=Steps(largest=0.02, points=points),
             locate=False,
         )
         seconds.append(time.perf_counter() - begun)

@@ -228,7 +228,7 @@ def orbits(rotor, settled, moment, points):
     )  # fmt: skip
     start = system.freedoms(settled.motion)[None]
     branch = follow(
-        system, *SPEEDS, METHOD, start, points=points, steps=Steps(largest=0.2),
+        system, *SPEEDS, METHOD, start, steps=Steps(largest=0.2, points=points),
     )  # fmt: skip
     at = rotor.at(1).start
     moved = np.asarray(branch.displacement) @ np.asarray(system.motions)[at : at + 2].T

@@ -43,6 +43,6 @@ from .spectrum import SpectrumLife, spectrum_life
 from .sweep import Sweep, stack_designs, sweep
 
 __all__ = [
-    "sweep", "Sweep", "Cases", "Batches", "solve_case", "stack_designs", "spectrum_life",
-    "SpectrumLife",
+    "sweep", "Sweep", "Cases", "Batches", "solve_case", "stack_designs",
+    "spectrum_life", "SpectrumLife",
 ]  # fmt: skip

@@ -7,7 +7,6 @@ import numpy as np
 from ..contact.halfspace import Grid
 from ..element.bearing_element import BearingElement
 from ..element.frame import RINGS
-from ..element.inertia import Speed
 from ..numerics.units import unit
 from ..numerics.warning import Warning
 from ..statics.refine import Refined, refine
@@ -32,7 +31,6 @@ def refined_lamina_loads(
     solution: RollerSolution,
     n_laminae: int = 50,
     *,
-    speed: Speed | None = None,
     grid: Grid | None = None,
 ) -> LaminaLoads:
     """Loads of laminae whose Hertz pressure is that of half-spaces, ends included.
@@ -45,7 +43,7 @@ def refined_lamina_loads(
         element: The bearing that was solved.
         solution: Its solution, a single one that converged.
         n_laminae: Laminae of a roller, at least 30.
-        speed, grid: As in `refine`.
+        grid: As in `refine`.
 
     Returns:
         LaminaLoads; a load is π ρ p²/E* of the largest pressure p across the contact
@@ -70,9 +68,7 @@ def refined_lamina_loads(
     found = np.zeros((*loads.shape, n_laminae))
     sharp = []
     for roller, ring in zip(*np.nonzero(loads > 1e-9 * loads.max()), strict=True):
-        contact = refine(
-            element, solution, int(roller), RINGS[ring], speed=speed, grid=grid
-        )
+        contact = refine(element, solution, int(roller), RINGS[ring], grid=grid)
         found[roller, ring] = _of_laminae(contact, n_laminae)
         if _peaks_at_an_end(contact):
             sharp.append(f"roller {roller} on the {RINGS[ring]} raceway")

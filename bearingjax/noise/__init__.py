@@ -36,7 +36,8 @@ Names
   `REFERENCE_ACCELERATION`, `octave_bands`, `third_octave_bands`, `Bands`,
   `band_levels`, `band_root_mean_square`, `band_shift`, `total_root_mean_square`.
 - Lines and orders: `kinematic_frequencies`, `KinematicFrequencies`, `waviness_force`,
-  `WavinessForce`, `name_lines`, `Line`, `line_causes`.
+  `WavinessForce`, `name_lines`, `NameRule`, `PeakRule`,
+  `Line`, `line_causes`.
 - Many bearings: `Tolerances`, `RandomWaves`, `sample_errors`, `SampledErrors`,
   `sampled_model`, `monte_carlo`, `MonteCarlo`, `source_contributions`,
   `SourceContributions`.
@@ -60,7 +61,7 @@ from .dynamics.cage_contact import CageContact
 from .dynamics.contact_states import ContactStates, contact_states
 from .level import REFERENCE_ACCELERATION, acceleration_of, combine_levels, level
 from .linear import LinearModel, Transfer, linear_model, transfer
-from .lines import Line, name_lines
+from .lines import Line, NameRule, PeakRule, name_lines
 from .model import NoiseModel
 from .monte_carlo import MonteCarlo, monte_carlo, sampled_model
 from .natural import NaturalModes, natural_modes, ring_modes
@@ -90,8 +91,8 @@ __all__ = [
     "REFERENCE_ACCELERATION", "octave_bands", "third_octave_bands", "Bands",
     "band_levels", "band_root_mean_square", "band_shift", "total_root_mean_square",
     "kinematic_frequencies", "KinematicFrequencies", "waviness_force", "WavinessForce",
-    "name_lines", "Line", "line_causes", "Tolerances", "RandomWaves", "sample_errors",
-    "SampledErrors", "sampled_model", "monte_carlo", "MonteCarlo",
-    "source_contributions", "SourceContributions", "sound", "write_sound",
+    "name_lines", "NameRule", "PeakRule", "Line", "line_causes", "Tolerances",
+    "RandomWaves", "sample_errors", "SampledErrors", "sampled_model", "monte_carlo",
+    "MonteCarlo", "source_contributions", "SourceContributions", "sound", "write_sound",
     "model_warnings", "record_warnings", "contribution_warnings",
 ]  # fmt: skip

@@ -1,5 +1,6 @@
 """Prominent lines of a spectrum and their names."""
 
+import dataclasses
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, NamedTuple
 
@@ -38,6 +39,68 @@ class Line(NamedTuple):
     name: str
 
 
+@dataclasses.dataclass(frozen=True)
+class NameRule:
+    """Which names of lines are sought.
+
+    Attributes:
+        harmonics: Largest multiple of a frequency.
+        sidebands: Most sidebands to either side.
+        tolerance: Largest distance from a line to its name [Hz]; `None`: half of the
+            distance of two lines.
+
+    Raises:
+        TypeError, ValueError: For counts that are no whole numbers or below their
+            least, or a tolerance below zero.
+    """
+
+    harmonics: int = 10
+    sidebands: int = 2
+    tolerance: float | None = dataclasses.field(default=None, metadata=unit("Hz"))
+
+    def __post_init__(self):
+        count("NameRule", "harmonics", self.harmonics)
+        count("NameRule", "sidebands", self.sidebands + 1)
+        if self.tolerance is not None:
+            non_negative("NameRule", "tolerance", self.tolerance, "Hz")
+
+
+@dataclasses.dataclass(frozen=True)
+class PeakRule:
+    """Which local maxima of a spectrum are lines.
+
+    A line is a local maximum that is both `factor` times the median of its neighbours
+    and `least` times the largest line; the `largest` maxima count whatever their
+    neighbours: where lines are close, as multiples of the cage frequency are, none is
+    far above its neighbours.
+
+    Attributes:
+        factor: Least ratio of a line over the median of its neighbours [1]. One in
+            2^(factor²) lines of noise passes: of 4 one in 65 thousand, of 5 one in 30
+            million.
+        neighbours: Number of neighbours to either side.
+        least: Smallest amplitude over that of the largest line [1].
+        floor: Amplitude up to which a line is round-off [unit of the record].
+        largest: Number of maxima, above `least`, taken by size alone.
+
+    Raises:
+        TypeError, ValueError: For counts that are no whole numbers or below their
+            least, or a factor or share below zero.
+    """
+
+    factor: float = dataclasses.field(default=5.0, metadata=unit("1"))
+    neighbours: int = 25
+    least: float = dataclasses.field(default=1e-3, metadata=unit("1"))
+    floor: float = 0.0
+    largest: int = 0
+
+    def __post_init__(self):
+        count("PeakRule", "neighbours", self.neighbours)
+        count("PeakRule", "largest", self.largest + 1)
+        for name in ("factor", "least", "floor"):
+            non_negative("PeakRule", name, getattr(self, name), "")
+
+
 def name_lines(
     spectrum: Spectrum,
     bearing: AbstractBearing | BearingSet,
@@ -45,24 +108,16 @@ def name_lines(
     contact_angle: Any = None,
     *,
     natural: Mapping[str, Any] | None = None,
-    harmonics: int = 10,
-    sidebands: int = 2,
-    tolerance: Any = None,
-    factor: float = 5.0,
-    neighbours: int = 25,
-    least: float = 1e-3,
-    floor: float = 0.0,
-    largest: int = 0,
+    names: NameRule | None = None,
+    peaks: PeakRule | None = None,
 ) -> tuple[Line, ...]:
     """Return the prominent lines of a spectrum, with names from the kinematics.
 
-    A line is a local maximum that is both `factor` times the median of its neighbours
-    and `least` times the largest line; the `largest` maxima count whatever their
-    neighbours: where lines are close, as multiples of the cage frequency are, none is
-    far above its neighbours. In a spectrum with Hann's window its frequency
-    and amplitude are those of a single line between the bins.
+    `PeakRule` says which maxima are lines. In a spectrum with Hann's window frequency
+    and amplitude of a line are those of a single one between the bins.
 
-    Names are sought among, with k up to `harmonics` and m up to `sidebands` in size:
+    Names are sought among, with k up to `harmonics` and m up to `sidebands` of
+    `NameRule` in size:
     k shaft, k cage, k BPFO, k BPFI ± m shaft, 2k BSF ± m cage, k BPFO ± m shaft. Where
     both rings turn, "inner ring" and "outer ring" stand for the shaft, and both
     raceways have the sidebands of both. Among all within the tolerance the name of
@@ -78,39 +133,25 @@ def name_lines(
             have their number in the names of their lines.
         speed, contact_angle: As in `kinematic_frequencies`.
         natural: Natural frequencies by their names [Hz].
-        harmonics: Largest multiple of a frequency.
-        sidebands: Most sidebands to either side.
-        tolerance: Largest distance from a line to its name [Hz]; `None`: half of the
-            distance of two lines.
-        factor: Least ratio of a line over the median of its neighbours [1]. One in
-            2^(factor²) lines of noise passes: of 4 one in 65 thousand, of 5 one in 30
-            million.
-        neighbours: Number of neighbours to either side.
-        least: Smallest amplitude over that of the largest line [1].
-        floor: Amplitude up to which a line is round-off [unit of the record].
-        largest: Number of maxima, above `least`, taken by size alone.
+        names: Which names are sought, and how near; `None`: `NameRule()`.
+        peaks: Which maxima are lines; `None`: `PeakRule()`.
 
     Returns:
         Lines by their frequency; of none that fits the name is `UNNAMED`.
 
     Raises:
-        TypeError, ValueError: As `kinematic_frequencies`; for counts that are no whole
-            numbers or below their least; a tolerance, factor or share below zero.
+        TypeError, ValueError: As `kinematic_frequencies`; for a natural frequency that
+            is not above zero.
     """
-    count("name_lines", "harmonics", harmonics)
-    count("name_lines", "neighbours", neighbours)
-    count("name_lines", "sidebands", sidebands + 1)
-    count("name_lines", "largest", largest + 1)
-    non_negative("name_lines", "factor", factor, "")
-    non_negative("name_lines", "least", least, "")
-    non_negative("name_lines", "floor", floor, "")
+    names = NameRule() if names is None else names
+    peaks = PeakRule() if peaks is None else peaks
     kinematic = [
         kinematic_frequencies(one, speed, contact_angle) for one in _single(bearing)
     ]
+    tolerance = names.tolerance
     if tolerance is None:
         tolerance = 0.5 * float(spectrum.resolution)
-    non_negative("name_lines", "tolerance", tolerance, "Hz")
-    known = list(_of_all(kinematic, harmonics, sidebands))
+    known = list(_of_all(kinematic, names.harmonics, names.sidebands))
     for name, frequency in (natural or {}).items():
         positive("name_lines", f"natural[{name!r}]", frequency, "Hz")
     own = [(float(frequency), name) for name, frequency in (natural or {}).items()]
@@ -122,28 +163,27 @@ def name_lines(
             amplitude,
             _name(frequency, known, own, float(tolerance)),
         )
-        for frequency, amplitude in _peaks(spectrum, factor, neighbours, least, largest)
-        if amplitude > floor
+        for frequency, amplitude in _peaks(spectrum, peaks)
+        if amplitude > peaks.floor
     )
 
 
-def _peaks(
-    spectrum: Spectrum, factor: float, neighbours: int, least: float, largest: int
-) -> Iterator[tuple[float, float]]:
+def _peaks(spectrum: Spectrum, rule: PeakRule) -> Iterator[tuple[float, float]]:
     """Yield frequency and amplitude of the local maxima above the floor."""
     amplitude = np.asarray(spectrum.amplitude)
     size = np.sqrt((np.abs(amplitude.reshape(len(amplitude), -1)) ** 2).sum(axis=1))
     size[0] = 0.0  # the mean is no line
-    wide = min(neighbours, len(size) - 1)
+    wide = min(rule.neighbours, len(size) - 1)
     around = np.lib.stride_tricks.sliding_window_view(
         np.pad(size, wide, mode="reflect"), 2 * wide + 1
     )
-    floor = np.maximum(factor * np.median(around, axis=1), least * size.max())
+    least = rule.least * size.max()
+    floor = np.maximum(rule.factor * np.median(around, axis=1), least)
     left, middle, right = size[:-2], size[1:-1], size[2:]
     maxima = 1 + np.flatnonzero((middle > left) & (middle >= right))
     chosen = size[maxima] > floor[maxima]
-    for k in np.argsort(-size[maxima])[:largest]:
-        chosen[k] = size[maxima[k]] > least * size.max()
+    for k in np.argsort(-size[maxima])[: rule.largest]:
+        chosen[k] = size[maxima[k]] > least
     at = maxima[chosen]
     away, gain = spectrum.window.peak(size[at - 1], size[at], size[at + 1])
     frequencies = (at + away) * float(spectrum.resolution)

@@ -188,8 +188,7 @@ class Tolerances(eqx.Module):
         waviness: Any = None,
         axial_waviness: Any = None,
         spacing: Any = None,
-        highest: int = 100,
-        highest_of_elements: int = 40,
+        highest: tuple[int, int] = (100, 40),
         slope: Any = 1.0,
     ) -> "Tolerances":
         """Create tolerances from a grade of rolling elements, read as distributions.
@@ -209,12 +208,11 @@ class Tolerances(eqx.Module):
             runout: Radial runout of the rings, from `running_accuracy`; `None`: no
                 eccentricity.
             waviness: Root mean square of the heights of both raceways outwards,
-                orders 2 to `highest` [m]; `None`: none.
+                orders 2 to the first of `highest` [m]; `None`: none.
             axial_waviness: Root mean square of the heights of both raceways along the
                 axis [m]; `None`: none.
             spacing: See the class [rad].
-            highest: Last order of the raceways.
-            highest_of_elements: Last order of the rolling elements.
+            highest: Last orders of the raceways and of the rolling elements.
             slope: Slope of all waves [1].
 
         Raises:
@@ -234,8 +232,9 @@ class Tolerances(eqx.Module):
                 return None
             return RandomWaves.of_root_mean_square(height, low, high, slope)
 
-        radial = waves(waviness, 2, highest)
-        axial = waves(axial_waviness, 2, highest)
+        of_raceways, of_elements = highest
+        radial = waves(waviness, 2, of_raceways)
+        axial = waves(axial_waviness, 2, of_raceways)
         share = 0.5 / 3.0 * np.sqrt(2.0)
         return cls(
             diameter=found.lot_variation,
@@ -246,7 +245,7 @@ class Tolerances(eqx.Module):
             outer_outwards=radial,
             inner_axial=axial,
             inner_outwards=radial,
-            elements=waves(found.form / PEAKS_IN_RMS, 2, highest_of_elements),
+            elements=waves(found.form / PEAKS_IN_RMS, 2, of_elements),
         )
 
     @property

@@ -46,7 +46,7 @@ from .optimise import History, Optimised, SearchOptions, optimise
 from .variable import Variable, design_numbers
 
 __all__ = [
-    "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers", "PeakPressure",
-    "MeanPressure", "EdgeLoad", "Displacement", "Stiffness", "StiffnessTarget",
-    "RatingLife", "Damage", "Optimised", "Outcome", "History",
+    "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers",
+    "PeakPressure", "MeanPressure", "EdgeLoad", "Displacement", "Stiffness",
+    "StiffnessTarget", "RatingLife", "Damage", "Optimised", "Outcome", "History",
 ]  # fmt: skip

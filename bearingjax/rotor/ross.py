@@ -21,8 +21,7 @@ def to_ross(
     damping: Any = 0.0,
     tilts: str = "held",
     fixed_ring: str = "outer",
-    n_link: int | None = None,
-    tag: str | None = None,
+    **others: Any,
 ) -> Any:
     """Return a `ross.BearingElement` with bearing stiffness over rotor speed.
 
@@ -45,8 +44,8 @@ def to_ross(
         damping: c of x, y and z, or C (3, 3), or (speed, 3, 3) [N s/m]; nothing is
             made up: zero unless given.
         tilts, fixed_ring: As `stiffness_table`.
-        n_link: Node that the other ring sits on; `None`: ground.
-        tag: Name in ROSS.
+        others: Further arguments of `ross.BearingElement`, such as `n_link`, the node
+            that the other ring sits on (default: ground), or `tag`, its name.
 
     Returns:
         ross.BearingElement.
@@ -69,7 +68,7 @@ def to_ross(
             f' ({error}): pip install "bearingjax[ross]".'
         ) from error
     coefficients = _coefficients(element, speeds, load, damping, tilts, fixed_ring)
-    return ross.BearingElement(n=n, n_link=n_link, tag=tag, **coefficients)
+    return ross.BearingElement(n=n, **coefficients, **others)
 
 
 def _coefficients(element, speeds, load, damping, tilts, fixed_ring) -> dict:

@@ -20,7 +20,6 @@ from ..design.checks import one_of
 from ..element.bearing_element import BearingElement, check_element
 from ..element.constants import relative_radii
 from ..element.frame import RINGS
-from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics.types import Scalar, as_real
 from .rollers import approaches, contact_loads
@@ -56,7 +55,6 @@ def refine(
     roller: int | None = None,
     raceway: str = "inner",
     *,
-    speed: Speed | None = None,
     free_ends: FreeEnds | None = None,
     grid: Grid | None = None,
     solver: AbstractPressureSolver | None = None,
@@ -73,7 +71,6 @@ def refine(
         roller: Which rolling element, of a set counted row by row; default: that with
             the largest load on the raceway.
         raceway: "inner" or "outer".
-        speed: Ring speeds of the solution.
         free_ends: As in `RollerContact`.
         grid: The cells; `None`: 35 by 64, graded, of a width found by coarse solves,
             which takes concrete numbers.
@@ -86,7 +83,7 @@ def refine(
     Raises:
         TypeError: For balls.
         ValueError: For an unknown roller or raceway, a solution that did not converge
-            or is not that of the element at that speed, or a roller that is not loaded
+            or is not that of the element, or a roller that is not loaded
             there.
         SolveError: If `throw` and it did not converge.
 
@@ -112,13 +109,13 @@ def refine(
         raise ValueError(
             f"refine: roller {roller} bears no load on the {raceway} raceway."
         )
-    row, bearing, place = _row_of(element, solution, roller, speed)
+    row, bearing, place = _row_of(element, solution, roller)
     again = float(contact_loads(row)[0][place, ring])
     if not abs(again - float(loads[roller])) <= _SAME * float(loads[roller]):
         raise ValueError(
             f"refine: roller {roller} bears {float(loads[roller]):.5g} N in `solution`,"
             f" and {again:.5g} N in `element` where its rings are there: give the"
-            " element that was solved, and the `speed` of its rings."
+            " element that was solved."
         )
     a, b = approaches(row)[place, ring]
     contact = roller_contact(row, bearing, ring, free_ends)
@@ -171,9 +168,9 @@ def roller_contact(
     )
 
 
-def _row_of(element, solution, roller, speed):
+def _row_of(element, solution, roller):
     """Solved row of a rolling element, design of the row, number within the row."""
-    model = element.model(speed)
+    model = element.model(solution.speed)
     rows = model.results(solution.displacement, model.solve(solution.displacement))
     ends = np.cumsum(solution.row_sizes)
     k = int(np.searchsorted(ends, roller, side="right"))

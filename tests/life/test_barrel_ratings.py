@@ -358,7 +358,7 @@ def test_refined_contact_has_the_bearings_geometry(solved):
     washer."""
     for name, near in (("spherical", 2e-4), ("toroidal", 2e-4), ("crossed", 1e-9)):
         solution = solved[name]
-        got = bj.refine(solution.element, solution, speed=solution.speed)
+        got = bj.refine(solution.element, solution)
         constants = solution.element.model().rows[0].element.constants
         y = jnp.linspace(-0.9, 0.9, 5) * constants.half_length
         wanted = relative_radii(constants, y)[1]

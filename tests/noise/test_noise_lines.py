@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
-from bearingjax.noise import Hann, kinematic_frequencies, name_lines, spectrum
+from bearingjax.noise import (
+    Hann,
+    NameRule,
+    PeakRule,
+    kinematic_frequencies,
+    name_lines,
+    spectrum,
+)
 
 TURN = 2 * np.pi
 SHAFT = 25.0
@@ -71,7 +78,7 @@ def test_lines_between_bins():
 def test_lines_on_bins_without_a_window():
     places = {"shaft": (SHAFT, 1.0), "3 shaft": (75.0, 0.2), "unnamed": (218.75, 0.1)}
     found = spectrum(record(4, 1024, tones=places), 4 / SHAFT, SHAFT)
-    lines = name_lines(found, BEARING, SPEED, ANGLE, tolerance=1e-6)
+    lines = name_lines(found, BEARING, SPEED, ANGLE, names=NameRule(tolerance=1e-6))
     assert [line.name for line in lines] == list(places)
     for line, (place, size) in zip(lines, places.values(), strict=True):
         np.testing.assert_allclose(line.frequency, place)
@@ -91,11 +98,13 @@ def test_directions_are_taken_together():
     )
 
 
-def only(place, speed=SPEED, turns=200, **options):
+def only(place, speed=SPEED, turns=200, natural=None, **rule):
     """Name of a lone line."""
     y = record(turns, 2**15, tones={"": (place, 1.0)})
     found = spectrum(y, turns / SHAFT, SHAFT, window=Hann())
-    (line,) = name_lines(found, BEARING, speed, ANGLE, **options)
+    (line,) = name_lines(
+        found, BEARING, speed, ANGLE, natural=natural, names=NameRule(**rule)
+    )
     return line.name
 
 
@@ -147,9 +156,9 @@ def test_noise_has_no_lines():
     y = np.random.default_rng(3).normal(size=8192)
     found = spectrum(y, 8.0, SHAFT)
     assert name_lines(found, BEARING, SPEED) == ()
-    assert 0 < len(name_lines(found, BEARING, SPEED, factor=3.0)) < 20
+    assert 0 < len(name_lines(found, BEARING, SPEED, peaks=PeakRule(factor=3.0))) < 20
     # Every third line is larger than both beside it.
-    found = name_lines(found, BEARING, SPEED, factor=0.0)
+    found = name_lines(found, BEARING, SPEED, peaks=PeakRule(factor=0.0))
     np.testing.assert_allclose(len(found), 4096 / 3, rtol=0.05)
     # Records of nothing, and one of a mean alone.
     for y in (np.zeros(256), np.full(256, 3.0)):
@@ -157,11 +166,12 @@ def test_noise_has_no_lines():
 
 
 def test_wrong_settings():
-    found = spectrum(np.zeros(64), 0.16, SHAFT)
-    for name, value in dict(
-        harmonics=0, neighbours=0, sidebands=-1, factor=-1.0, least=-1.0, tolerance=-1.0
-    ).items():
+    for name, value in dict(harmonics=0, sidebands=-1, tolerance=-1.0).items():
         with pytest.raises(ValueError, match=f"`{name}` is"):
-            name_lines(found, BEARING, SPEED, **{name: value})
+            NameRule(**{name: value})
+    for name, value in dict(neighbours=0, factor=-1.0, least=-1.0, largest=-1).items():
+        with pytest.raises(ValueError, match=f"`{name}` is"):
+            PeakRule(**{name: value})
+    found = spectrum(np.zeros(64), 0.16, SHAFT)
     with pytest.raises(ValueError, match="natural.*mode.*-3 Hz"):
         name_lines(found, BEARING, SPEED, natural={"mode": -3.0})

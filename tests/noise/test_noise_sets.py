@@ -15,6 +15,7 @@ from tolerances import SOLVER
 import bearingjax as bj
 from bearingjax.design import FormErrors, Harmonics, RacewayErrors, with_raceways
 from bearingjax.noise import (
+    NameRule,
     NoiseModel,
     Tolerances,
     excitation,
@@ -158,7 +159,9 @@ def test_name_lines_states_row_of_unequal_rows():
     heard = spectrum(np.cos(2 * np.pi * passage * time), turns / 1.0, 1.0)
     rows = [dataclasses.replace(ROW, n_balls=n) for n in (8, 9)]
     pair = bj.BearingSet((bj.SetRow(rows[0], -0.01), bj.SetRow(rows[1], 0.01)))
-    (line,) = name_lines(heard, pair, bj.Speed(inner=2 * np.pi), tolerance=0.05)
+    (line,) = name_lines(
+        heard, pair, bj.Speed(inner=2 * np.pi), names=NameRule(tolerance=0.05)
+    )
     assert line.name == "BPFO of row 1"
 
 

@@ -1,5 +1,6 @@
 """Branches over frequency: folds, flips, Neimark-Sacker points, and how they end."""
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -115,8 +116,8 @@ def test_follow_does_not_retrace_for_new_values(branches):
     def run(cubic, begin, step):
         spring = Counted(Spring(jnp.asarray(cubic), jnp.asarray(0.0)))
         system = oscillator(spring, FORCE, RATIO)
-        steps = Steps(first=step, largest=0.5)
-        return follow(system, begin, 0.9, BALANCE, steps=steps, points=40)
+        steps = Steps(first=step, largest=0.5, points=40)
+        return follow(system, begin, 0.9, BALANCE, steps=steps)
 
     run(0.05, 0.6, 0.05)
     before = len(traces)
@@ -162,7 +163,7 @@ def test_the_rotor_softens_and_becomes_almost_periodic():
     system = rotor(36, damping_ratio=0.01, base_acceleration=5.0)
     unit = float(system.reference_frequency)
     method = HarmonicBalance(6, 32, steps=24)
-    branch = follow(system, 1.05 * unit, 0.8 * unit, method, points=120)
+    branch = follow(system, 1.05 * unit, 0.8 * unit, method, steps=Steps(points=120))
     assert branch.ending == BranchEnd.LIMIT and branch.residual.max() < 1e-8
     kinds = [event.kind for event in branch.events]
     assert kinds.count("neimark_sacker") == 2 and kinds.count("fold") == 4
@@ -195,21 +196,22 @@ def test_follow_reports_ending():
     branch = follow(system, 0.6, 1.6, BALANCE, steps=STEPS)
     assert branch.ending == BranchEnd.SMALL_STEP
     assert 0.9 < branch.amplitude.max() < 1.01 and branch.refused > 5
-    short = follow(system, 0.6, 1.6, BALANCE, steps=STEPS, points=3)
+    few = dataclasses.replace(STEPS, points=3)
+    short = follow(system, 0.6, 1.6, BALANCE, steps=few)
     assert short.ending == BranchEnd.POINTS and len(short.frequency) == 3
     none = follow(system, 1.0, 1.6, BALANCE, steps=STEPS)
     assert none.ending == BranchEnd.NO_START and len(none.frequency) == 0
 
 
 def test_many_systems_at_once():
-    steps = Steps(first=0.05, largest=0.5)
+    steps = Steps(first=0.05, largest=0.5, points=60)
 
     @jax.jit
     @jax.vmap
     def run(force):
         system = duffing(CUBIC, force, RATIO)
         begin = jnp.zeros(16).at[-1].set(0.6)
-        return trace(system, BALANCE, begin, jnp.asarray(1.6), Arclength(), steps, 60)
+        return trace(system, BALANCE, begin, jnp.asarray(1.6), Arclength(), steps)
 
     found = run(jnp.array([0.05, 0.2]))
     assert (np.asarray(found.ending) == BranchEnd.LIMIT).all()

@@ -137,14 +137,14 @@ def test_all_keys():
 def test_tolerances_by_grade_and_by_number():
     table = (
         "vibration.tolerance={grade='G10', class='P5', bore='25 mm', seed=4,"
-        " outside_diameter='52 mm', waviness='50 nm', slope=1.5, highest=60,"
+        " outside_diameter='52 mm', waviness='50 nm', slope=1.5, highest=(60, 40),"
         " inner_eccentricity='3 um'}"
     )
     task = read_noise("noise_deep_groove", [table], bearings=5)
     bearing = task.model.element.bearing
     wanted = Tolerances.of_grade(
         "G10", bearing, runout=running_accuracy("P5", 0.025, 0.052), waviness=50e-9,
-        slope=1.5, highest=60,
+        slope=1.5, highest=(60, 40),
     )  # fmt: skip
     wanted = dataclasses.replace(wanted, inner_eccentricity=3e-6)
     assert jax.tree.structure(task.tolerances) == jax.tree.structure(wanted)

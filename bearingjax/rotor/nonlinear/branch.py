@@ -108,7 +108,6 @@ def follow(
     *,
     parameter: Arclength | ChangeOfParameter | None = None,
     steps: Steps | None = None,
-    points: int = 500,
     locate: bool = True,
 ) -> Branch:
     """Follow a branch of periodic orbits from one frequency towards another.
@@ -121,8 +120,7 @@ def follow(
         start: Displacements at `begin` to start with, at even phases from 0 on, such
             as an orbit's by any method (sample, n) [m, rad]; `None`: rest.
         parameter: Quantity held between points; `None`: `Arclength()`.
-        steps: Lengths of steps; `None`: `Steps()`.
-        points: Most points.
+        steps: Lengths of steps, and most points; `None`: `Steps()`.
         locate: Whether folds, flips, Neimark-Sacker and branch points are located, to
             1e-6 in frequency.
 
@@ -135,7 +133,7 @@ def follow(
     positive("follow", "begin", begin, "rad/s")
     parameter, steps = parameter or Arclength(), steps or Steps()
     motion, begin, end = beginning(system, start), as_real(begin), as_real(end)
-    found = _trace(system, method, motion, begin, end, parameter, steps, points)
+    found = _trace(system, method, motion, begin, end, parameter, steps)
     *every, count, refused, ending = jax.tree.map(np.asarray, found)
     at = BranchPoint(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
@@ -157,7 +155,7 @@ def follow(
 
 
 @program(quick=True, level=1)
-def _trace(system, method, motion, begin, end, parameter, steps, points) -> Traced:
+def _trace(system, method, motion, begin, end, parameter, steps) -> Traced:
     z, unit = method.unknowns(motion), system.reference_frequency
     return trace(
         system,
@@ -166,7 +164,6 @@ def _trace(system, method, motion, begin, end, parameter, steps, points) -> Trac
         end / unit,
         parameter,
         steps,
-        points,
     )
 
 

@@ -80,7 +80,7 @@ class ChangeOfParameter(eqx.Module):
 
 
 class Steps(eqx.Module):
-    """Lengths of steps along a branch, in units of `scale` and of the frequency ratio.
+    """Steps along a branch, their lengths in units of `scale` and the frequency ratio.
 
     The next step is N_opt/N times the last one after N Newton steps, at most twice and
     at least half of it.
@@ -92,8 +92,9 @@ class Steps(eqx.Module):
         newton: N_opt [1].
         turn: Most by which the branch may turn in a step [rad].
         frequency: Longest step in the frequency ratio alone, as along the tangent [1].
+        points: Most points of the branch.
 
-    Traced: all fields.
+    Traced: all fields but points.
     """
 
     first: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.01)
@@ -104,6 +105,7 @@ class Steps(eqx.Module):
     frequency: Scalar = eqx.field(
         converter=as_real, metadata=unit("1"), default=float("inf")
     )
+    points: int = eqx.field(static=True, default=500)
 
 
 class Traced(NamedTuple):
@@ -216,7 +218,6 @@ def trace(
     end: Scalar,
     parameter: Arclength | ChangeOfParameter,
     steps: Steps,
-    points: int,
 ) -> Traced:
     """Follow a branch; compiled by the caller.
 
@@ -226,12 +227,12 @@ def trace(
         begin: Unknowns and frequency ratio to begin with (m + 1,) [1].
         end: Frequency ratio to go to [1].
         parameter: Quantity held between points.
-        steps: Lengths of steps.
-        points: Most points. Static.
+        steps: Lengths of steps, and their most.
 
     Returns:
         `Traced`; it has no derivatives: see `solve_orbit`.
     """
+    points = steps.points
     along = along_frequency(begin.shape[0] - 1, begin.dtype)
     start = begin[-1]
     forward = jnp.where(end > start, along, -along)

@@ -72,7 +72,6 @@ def run_refined(
             solution,
             roller,
             "inner" if raceway is None else raceway,
-            speed=scene.speed,
             free_ends=FreeEnds() if free_ends else None,
             throw=False,
         )

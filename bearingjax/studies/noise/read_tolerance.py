@@ -130,7 +130,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
                 grade,
                 bearing,
                 runout=runouts[0] if runouts else None,
-                highest_of_elements=keys.highest_of_elements,
+                highest=(keys.highest, keys.highest_of_elements),
                 slope=keys.slope,
             )
         found = dataclasses.replace(found, **given)

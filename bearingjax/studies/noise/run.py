@@ -12,7 +12,9 @@ from ...noise import (
     ContactStates,
     Line,
     MonteCarlo,
+    NameRule,
     NaturalModes,
+    PeakRule,
     SourceContributions,
     Spectrum,
     Vibration,
@@ -257,9 +259,8 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         bearing,
         speed,
         natural=natural,
-        harmonics=harmonics,
-        floor=rounding(task.model, record),
-        largest=LARGEST_LINES,
+        names=NameRule(harmonics),
+        peaks=PeakRule(floor=rounding(task.model, record), largest=LARGEST_LINES),
     )
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
     highest = float(record.bandwidth)

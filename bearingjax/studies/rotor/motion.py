@@ -159,8 +159,10 @@ def respond(
         as_array(asked.end, float),
         method,
         as_array(np.tile(rest, (samples, 1)), float),
-        steps=Steps(frequency=abs(asked.end - asked.begin) / (_PARTS * unit)),
-        points=asked.points,
+        steps=Steps(
+            frequency=abs(asked.end - asked.begin) / (_PARTS * unit),
+            points=asked.points,
+        ),
     )
     moved = _at_stations(task, system, branch.displacement)
     stopped = None
