@@ -124,8 +124,7 @@ def settled(system, frequency):
     """Displacements over the last of many periods from rest, integrated in time."""
     periods = SETTLE + np.arange(SAMPLES) / SAMPLES
     times = 2.0 * np.pi / frequency * periods
-    end = 2.0 * np.pi / frequency * (SETTLE + 1)
-    found = simulate(system, end, frequency, times=times, throw=False)
+    found = simulate(system, times, frequency, throw=False)
     return found.displacement
 
 

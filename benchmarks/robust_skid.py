@@ -122,11 +122,16 @@ def main(smoke, first=0, runs=300):
         one = model(rng, laws[0] if smoke else laws[k % 3])
         load, speed, duration = given(rng, kind, float(one.bearing.pitch_diameter))
         found = skid.simulate(
-            one, load, speed=speed, duration=duration, n_times=21,
+            one,
+            load,
+            speed=speed,
+            times=duration * np.linspace(0.0, 1.0, 21),
             support=bj.Support(free=FREE),
-            tolerance=1e-4, max_steps=5_000, throw=False,
-            places=None if kind == "balanced" else 48,
-        )  # fmt: skip
+            options=skid.SkidOptions(
+                1e-4, 5_000, places=None if kind == "balanced" else 48
+            ),
+            throw=False,
+        )
         pitch = 0.4 * float(one.bearing.pitch_diameter) * np.abs(speed.inner).max()
         mass = np.pi / 6.0 * 7850.0 * float(one.bearing.ball_diameter) ** 3
         label, fault = judged(found, 0.5 * BALLS * mass * (0.5 * pitch) ** 2)

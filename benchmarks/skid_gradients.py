@@ -93,13 +93,9 @@ def in_time(numbers, derivatives):
         numbers["model"],
         load,
         speed=speed,
-        duration=0.003,
-        tolerance=1e-8,
+        times=np.array([0.0, 0.003]),
         support=Support(free=FREE),
-        n_times=2,
-        places=1,
-        max_steps=512,
-        derivatives=derivatives,
+        options=skid.SkidOptions(1e-8, 512, derivatives, places=1),
         throw=False,
     )
     rolling = found.rolling_orbit_speed[-1, 0]

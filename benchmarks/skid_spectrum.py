@@ -171,12 +171,9 @@ def in_time(model, varying, begin, duration, rate):
         model,
         SinusoidalLoad(load(RADIAL), change, DRIVE),
         speed=SPEED,
-        duration=duration,
-        n_times=round(duration * rate) + 1,
+        times=duration * np.linspace(0.0, 1.0, round(duration * rate) + 1),
         support=bj.Support(free=FREE),
-        tolerance=1e-5,
-        max_steps=2_000_000,
-        derivatives="forward",
+        options=bj.skid.SkidOptions(1e-5, 2_000_000, "forward"),
     )
     late = np.asarray(found.time) >= begin
     lines = bj.skid.sliding_spectrum(found, begin=begin)

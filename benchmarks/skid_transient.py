@@ -62,11 +62,12 @@ from han_chu import ELEMENT, FREE, MODEL, SPEED
 from scipy.integrate import solve_ivp
 
 from bearingjax import Support, skid
+from bearingjax.numerics.in_time import IntegrationOptions
 from bearingjax.numerics.types import as_real
 from bearingjax.skid.load_table import _as_row, _pieces
 from bearingjax.skid.ring_speed import as_table
 from bearingjax.skid.transients.beginning import surroundings
-from bearingjax.skid.transients.integration import Options, integrate_motion
+from bearingjax.skid.transients.integration import integrate_motion
 from bearingjax.statics.load import solve_load
 
 CASES = {
@@ -184,7 +185,7 @@ class InNumPy:
 @eqx.filter_jit
 def ours(around, start, times, tolerance):
     """Orbital speeds (time, ball) [rad/s], and steps."""
-    options = Options(as_real(tolerance), 50_000, "forward", False)
+    options = IntegrationOptions(as_real(tolerance), 50_000, "forward")
     moved = integrate_motion(around, start, times, times[-1], options)
     return moved.state.orbit, moved.steps
 
@@ -198,13 +199,9 @@ def many(loads, duration, places, tolerance):
                 MODEL,
                 load,
                 speed=SPEED,
-                duration=duration,
+                times=duration * np.linspace(0.0, 1.0, 21),
                 support=Support(free=FREE),
-                places=places,
-                n_times=21,
-                tolerance=tolerance,
-                max_steps=50_000,
-                derivatives="forward",
+                options=skid.SkidOptions(tolerance, 50_000, "forward", places=places),
                 throw=False,
             ).orbit_speed
         )

@@ -202,6 +202,23 @@ def of_class(owner, name: str, value, kinds: Any, allowed: str) -> None:
         raise TypeError(f"{_title(owner)}: `{name}` is a {kind}; it must be {allowed}.")
 
 
+def integration(owner, options) -> None:
+    """Numerics of an integration in time, with its limits.
+
+    Args:
+        owner: As in `check`.
+        options: With `tolerance`, `max_steps` and `derivatives`.
+
+    Raises:
+        TypeError, ValueError: For a tolerance or a limit that is not above zero, or an
+            unknown mode of derivatives.
+    """
+    positive(owner, "tolerance", options.tolerance, "")
+    count(owner, "max_steps", options.max_steps)
+    modes = "reverse", "forward"
+    one_of(owner, "derivatives", options.derivatives, modes, " or ".join(modes))
+
+
 def of_shape(owner, name: str, fits: bool, allowed: str, *given: Any) -> None:
     """An array of an allowed shape.
 

@@ -36,8 +36,7 @@ Names
   `REFERENCE_ACCELERATION`, `octave_bands`, `third_octave_bands`, `Bands`,
   `band_levels`, `band_root_mean_square`, `band_shift`, `total_root_mean_square`.
 - Lines and orders: `kinematic_frequencies`, `KinematicFrequencies`, `waviness_force`,
-  `WavinessForce`, `name_lines`, `NameRule`, `PeakRule`,
-  `Line`, `line_causes`.
+  `WavinessForce`, `name_lines`, `NameRule`, `PeakRule`, `Line`, `line_causes`.
 - Many bearings: `Tolerances`, `RandomWaves`, `sample_errors`, `SampledErrors`,
   `sampled_model`, `monte_carlo`, `MonteCarlo`, `source_contributions`,
   `SourceContributions`.

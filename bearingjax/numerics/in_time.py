@@ -10,23 +10,41 @@ from jaxtyping import Array, Float, Int
 
 from .implicit import stop_gradient
 from .result import Result
-from .types import Scalar
+from .types import Scalar, as_real
+from .units import unit
 
 
-class Options(eqx.Module):
-    """Settings of an integration.
+class IntegrationOptions(eqx.Module):
+    """Numerics of an integration in time.
 
     Attributes:
-        tolerance: Tolerance of the state [1].
+        tolerance: Error allowed of the state, in units to which it relates [1].
         max_steps: Step limit. Static.
-        derivatives: "reverse" or "forward". Static.
+        derivatives: "reverse" or "forward": the mode in which the result can be
+            differentiated. Static.
         progress: Whether a bar is shown. Static.
     """
 
-    tolerance: Scalar
-    max_steps: int = eqx.field(static=True)
-    derivatives: str = eqx.field(static=True)
+    tolerance: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-6)
+    max_steps: int = eqx.field(static=True, default=200_000)
+    derivatives: str = eqx.field(static=True, default="reverse")
     progress: bool = eqx.field(static=True, default=False)
+
+
+class Stepping(NamedTuple):
+    """How an integration steps.
+
+    Attributes:
+        solver: Solver of Diffrax.
+        step_error: Largest error of a step, over the tolerance [1].
+        first: First step [any unit of time].
+        knots: Times at which rates may jump [the same]; `None`: none.
+    """
+
+    solver: Any
+    step_error: float
+    first: Scalar
+    knots: Float[Array, " knot"] | None = None
 
 
 class Integrated(NamedTuple):
@@ -51,12 +69,8 @@ def integrate(
     start: Any,
     times: Float[Array, " time"],
     duration: Scalar,
-    options: Options,
-    *,
-    solver: Any,
-    step_error: float,
-    first: Scalar,
-    knots: Float[Array, " knot"] | None = None,
+    options: IntegrationOptions,
+    stepping: Stepping,
 ) -> Integrated:
     """A motion from time zero on.
 
@@ -66,15 +80,13 @@ def integrate(
         start: State at time zero, in units to which the tolerance relates.
         times: Times of the output, rising [any unit of time].
         duration: The last time [the same].
-        options: Settings.
-        solver: Solver of Diffrax.
-        step_error: Largest error of a step, over the tolerance [1].
-        first: First step [the same].
-        knots: Times at which rates may jump [the same]; `None`: none.
+        options: Numerics.
+        stepping: Solver and its steps.
     """
     # Late, so that the package is imported as fast without it.
     import diffrax
 
+    solver, step_error, first, knots = stepping
     controller = diffrax.PIDController(
         rtol=step_error * options.tolerance,
         atol=step_error * options.tolerance,

@@ -28,19 +28,19 @@ high speed films are thinner, because the oil is sheared warm before it enters:
 In time
 -------
 
-`skid.simulate(model, load, speed=..., duration=...)` follows every ball and the cage
-from rolling, from rest (`speed=SpeedTable(...)`, `ramp(...)`) or from a motion of your
-own, with pocket contact on both sides, drag and gravity (`axis="horizontal"`), by a
-linearly implicit method with the exact Jacobian. Speeds, slip, films, heat, cage forces
-and friction torque come with a balance of all powers (`imbalance`), a result code, and
-derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads over time
-(`LoadHistory`, `SinusoidalLoad`, or your own function of time) are balanced at every
-time with the balls where they are; a constant load is tabulated around the bearing,
-which is three times faster and does not see balls bunch (`balanced=True` does). Against
-SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map of 1000 end
-states in one call: benchmarks/skid_map.py. Where others use the processor too, set
-`OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads otherwise
-wait for each other.
+`skid.simulate(model, load, speed=..., times=...)` follows every ball and the cage from
+rolling, from rest (`speed=SpeedTable(...)`, `ramp(...)`) or from a motion of your own,
+with pocket contact on both sides, drag and gravity (`SkidOptions(axis="horizontal")`),
+by a linearly implicit method with the exact Jacobian. Speeds, slip, films, heat, cage
+forces and friction torque come with a balance of all powers (`imbalance`), a result
+code, and derivatives in either mode (`derivatives="reverse"` or `"forward"`). Loads
+over time (`LoadHistory`, `SinusoidalLoad`, or your own function of time) are balanced
+at every time with the balls where they are; a constant load is tabulated around the
+bearing, which is three times faster and does not see balls bunch (`balanced=True`
+does). Against SciPy's stiff solvers at like errors: benchmarks/skid_transient.py; a map
+of 1000 end states in one call: benchmarks/skid_map.py. Where others use the processor
+too, set `OPENBLAS_NUM_THREADS=1` for end states under radial loads: LAPACK's threads
+otherwise wait for each other.
 
 `sliding_spectrum(history)` has the lines of a ball's sliding, `zones(steady)` the parts
 of the orbit with loads above those of the axial load alone, `sliding_ellipse` slip and
@@ -78,8 +78,8 @@ Names
 
 - The bearing in its oil: `SkidModel`, `Cage`, `Drag`.
 - Steady motion: `steady`, `SteadySkid`, `SteadyRollerSkid`, `Power`, `zones`, `Zone`.
-- Motion in time: `simulate`, `SkidHistory`, `SkidRollerHistory`, `SkidState`,
-  `rest_state`, `SpeedTable`, `ramp`, `LoadHistory`, `SinusoidalLoad`.
+- Motion in time: `simulate`, `SkidOptions`, `SkidHistory`, `SkidRollerHistory`,
+  `SkidState`, `rest_state`, `SpeedTable`, `ramp`, `LoadHistory`, `SinusoidalLoad`.
 - Contacts: `conditions`, `Conditions`, `sliding_ellipse`, `Ellipse`,
   `sliding_spectrum`, `SlidingSpectrum`.
 - Optimisation: `SkiddingBearing`, `FrictionTorque`, `FrictionPower`, `CageSlip`.
@@ -103,13 +103,14 @@ from .transients.history import (
     SlidingSpectrum,
     sliding_spectrum,
 )
-from .transients.transient import simulate
+from .transients.transient import SkidOptions, simulate
 from .warning import skid_warnings
 
 __all__ = [
     "SkidModel", "Cage", "Drag", "steady", "SteadySkid", "SteadyRollerSkid", "Power",
-    "zones", "Zone", "simulate", "SkidHistory", "SkidRollerHistory", "SkidState",
-    "rest_state", "SpeedTable", "ramp", "LoadHistory", "SinusoidalLoad", "conditions",
+    "zones", "Zone", "simulate", "SkidOptions", "SkidHistory", "SkidRollerHistory",
+    "SkidState", "rest_state", "SpeedTable", "ramp", "LoadHistory", "SinusoidalLoad",
+    "conditions",
     "Conditions", "sliding_ellipse", "Ellipse", "sliding_spectrum", "SlidingSpectrum",
     "SkiddingBearing", "FrictionTorque", "FrictionPower", "CageSlip", "skid_warnings",
 ]  # fmt: skip

@@ -320,11 +320,11 @@ def test_simulated_rollers_reach_steady_state(found):
         model,
         [1000.0, 0, 0, 0, 0, 0],
         speed=Speed(inner=FAST),
-        load_speed=Speed(end.cage_speed, end.cage_speed),
-        duration=duration,
         times=np.append(0.0, duration - turn * np.linspace(2.0, 0.0, 201)),
-        tolerance=1e-5,
         support=bj.Support(free=["ux", "uy"]),
+        options=skid.SkidOptions(
+            1e-5, load_speed=Speed(end.cage_speed, end.cage_speed)
+        ),
     )
     assert moved.slip[0] == pytest.approx(0.0, abs=1e-9)
     last = np.asarray(moved.slip)[2:]
@@ -355,4 +355,8 @@ def test_bad_input():
             places=10,
         )
     with pytest.raises(TypeError, match="ball bearing"):
-        skid.simulate(model, load, speed=Speed(inner=FAST), duration=0.1, balanced=True)
+        options = skid.SkidOptions(balanced=True)
+        times = np.array([0.0, 0.1])
+        skid.simulate(
+            model, load, speed=Speed(inner=FAST), times=times, options=options
+        )

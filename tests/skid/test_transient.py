@@ -15,7 +15,7 @@ from han_chu import BEARING, FREE, MODEL, SPEED
 import bearingjax as bj
 from bearingjax import skid
 from bearingjax.numerics.result import Result, SolveError
-from bearingjax.skid import LoadHistory, SinusoidalLoad, SpeedTable
+from bearingjax.skid import LoadHistory, SinusoidalLoad, SkidOptions, SpeedTable
 from bearingjax.skid.motion import SkidSystem, each_ball
 from bearingjax.skid.transients.beginning import surroundings
 
@@ -48,18 +48,19 @@ def with_cage(**fields):
     return model
 
 
-def run(load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, tolerance=1e-7, **given):
+def run(
+    load=LIGHT, *, model=FEW, speed=EVEN, duration=0.02, start=None, throw=True, **given
+):
+    options = {"tolerance": 1e-7, "max_steps": 3000, "places": PLACES, **given}
     return skid.simulate(
         model,
         load,
         speed=speed,
-        duration=duration,
-        tolerance=tolerance,
+        times=duration * np.linspace(0.0, 1.0, 21),
+        start=start,
         support=bj.Support(free=FREE),
-        n_times=21,
-        places=PLACES,
-        max_steps=3000,
-        **given,
+        options=SkidOptions(**options),
+        throw=throw,
     )
 
 

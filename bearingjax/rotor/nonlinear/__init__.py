@@ -21,7 +21,7 @@ a kind between neighbouring points of a branch are not seen: shorten
 of the amplitude; where some lift off, force has a kink in its slope, and 15 harmonics
 or 96 steps leave 5e-6 (benchmarks/rotor_response.py).
 
-In time, `simulate(system, duration, frequency, end_frequency=...)` integrates decay,
+In time, `simulate(system, times, frequency, end_frequency=...)` integrates decay,
 run-up through critical speeds (the phase is the exact integral of the frequency; the
 inertia of a changing speed takes part) and forces of your own over time; `poincare` has
 the states once per period, `waterfall` the spectra over the frequency, `envelope` the
@@ -46,11 +46,13 @@ Names
 - Branches: `follow`, `trace`, `Branch`, `BranchEnd`, `Event`, `Steps`, `Arclength`,
   `ChangeOfParameter`, `peak`.
 - Free vibration: `backbone`, `Backbone`.
-- In time: `simulate`, `History`, `FrequencyTable`, `poincare`, `envelope`.
+- In time: `simulate`, `IntegrationOptions`, `History`, `FrequencyTable`, `poincare`,
+  `envelope`.
 - Spectra over speed: `waterfall`, `Waterfall`, `steady_spectra`, `spectra_over_time`,
   `Spectra`.
 """
 
+from ...numerics.in_time import IntegrationOptions
 from .backbone import Backbone, backbone
 from .branch import Branch, Event, follow
 from .continuation import Arclength, BranchEnd, ChangeOfParameter, Steps, trace
@@ -81,6 +83,6 @@ __all__ = [
     "AbstractSupportLaw", "solve_orbit", "PeriodicOrbit", "HarmonicBalance", "Shooting",
     "AbstractMethod", "follow", "trace", "Branch", "BranchEnd", "Event", "Steps",
     "Arclength", "ChangeOfParameter", "peak", "backbone", "Backbone", "simulate",
-    "History", "FrequencyTable", "poincare", "envelope", "waterfall", "Waterfall",
-    "steady_spectra", "spectra_over_time", "Spectra",
+    "IntegrationOptions", "History", "FrequencyTable", "poincare", "envelope",
+    "waterfall", "Waterfall", "steady_spectra", "spectra_over_time", "Spectra",
 ]  # fmt: skip

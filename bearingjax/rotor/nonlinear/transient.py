@@ -16,10 +16,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ...design.checks import check, count, is_traced, one_of, positive
+from ...design.checks import check, count, integration, is_traced
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
-from ...numerics.in_time import Options
+from ...numerics.in_time import IntegrationOptions, Stepping
 from ...numerics.in_time import integrate as in_time
 from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
@@ -61,17 +61,13 @@ Start = tuple[Any, Any]
 
 def simulate(
     system: AbstractVibratingSystem,
-    duration: Scalar | float,
+    times: Any,
     frequency: Scalar | float | FrequencyTable,
     *,
     start: Start | None = None,
     end_frequency: Scalar | float | None = None,
     force: Callable | None = None,
-    times: Any = None,
-    n_times: int = 1001,
-    tolerance: Scalar | float = 1e-6,
-    max_steps: int = 200_000,
-    derivatives: str = "reverse",
+    options: IntegrationOptions | None = None,
     throw: bool = True,
 ) -> History:
     """Integrate the vibration in time.
@@ -82,23 +78,19 @@ def simulate(
 
     Args:
         system: The system.
-        duration: [s].
+        times: When to report, rising from 0 on; the motion ends at the last (time,)
+            [s].
         frequency: Frequency of the excitation [rad/s], or a `FrequencyTable`.
         start: Displacement [m, rad] and velocity [m/s, rad/s] at time zero, (n,) each;
             `None`: rest.
-        end_frequency: At the end of the duration, the frequency changing evenly until
+        end_frequency: At the last time, the frequency changing evenly until
             then [rad/s]; `None`: it is constant.
         force: time [s] -> further forces on the freedoms (n,) [N, N m]; a Module, so
             that its numbers are traced.
-        times: When to report, rising, from 0 to `duration` (time,) [s]. Default:
-            `n_times` of them, evenly spaced.
-        n_times: Number of times, at least 2. Static.
-        tolerance: Error allowed of displacements over `scale`, of velocities over
-            `scale` times the reference frequency, and of larger ones relative to
-            themselves. The error of a step is held below a fiftieth of it.
-        max_steps: Step limit. Static.
-        derivatives: "reverse" or "forward": the mode in which the result can be
-            differentiated. Static.
+        options: Numerics; `None`: `IntegrationOptions()`. The tolerance is the error
+            allowed of displacements over `scale`, of velocities over `scale` times the
+            reference frequency, and of larger ones relative to themselves. The error of
+            a step is held below a fiftieth of it.
         throw: Raise if the end is not reached; otherwise read `result`. Static.
 
     Returns:
@@ -110,19 +102,20 @@ def simulate(
     Fails: `STEP_LIMIT`; `NON_FINITE` where steps shrink to nothing, as next to forces
         that are not numbers.
     """
-    positive("simulate", "duration", duration, "s")
-    count("simulate", "n_times", n_times)
-    options = check_settings("simulate", tolerance, max_steps, derivatives)
-    table = as_frequency_table("simulate", frequency, duration, end_frequency)
-    if times is None:
-        times = as_real(duration) * as_real(np.linspace(0.0, 1.0, n_times))
-    elif not is_traced(times) and not is_traced(duration):
+    end = as_real(times[-1])
+    if not is_traced(times):
         each = np.asarray(times)
-        inside = each[0] >= 0.0 and each[-1] <= duration
-        rising = bool(np.all(np.diff(each) > 0)) and inside
-        check("simulate", "times", rising, "rising from 0 to `duration`", each, "s")
-    begin, times = beginning("simulate", system, start), as_real(times)
-    found = _simulate(system, table, begin, force, times, as_real(duration), options)
+        rising = bool(np.all(np.diff(each) > 0)) and each[0] >= 0.0 and each[-1] > 0
+        check("simulate", "times", rising, "rising from 0 on", each, "s")
+    table = as_frequency_table("simulate", frequency, end, end_frequency)
+    return _integrated(system, table, start, force, as_real(times), end, options, throw)
+
+
+def _integrated(system, table, start, force, times, duration, options, throw):
+    options = IntegrationOptions() if options is None else options
+    integration("simulate", options)
+    begin = beginning("simulate", system, start)
+    found = _simulate(system, table, begin, force, times, duration, options)
     if not throw:
         return found
     return raise_unless_converged(
@@ -137,7 +130,9 @@ def poincare(
     *,
     settle: int = 0,
     start: Start | None = None,
-    **options: Any,
+    force: Callable | None = None,
+    options: IntegrationOptions | None = None,
+    throw: bool = True,
 ) -> History:
     """Return states once per period of the excitation, at phases 2πk.
 
@@ -149,8 +144,7 @@ def poincare(
         frequency: Frequency of the excitation [rad/s], or a `FrequencyTable`.
         n_points: Number of points. Static.
         settle: Periods before the first of them. Static.
-        start: As in `simulate`.
-        options: Others of `simulate`.
+        start, force, options, throw: As in `simulate`.
 
     Returns:
         `History` at those times; raises and fails as `simulate`.
@@ -171,16 +165,7 @@ def poincare(
         )
     # A little longer than the last, that is at zero where there is one point.
     duration = times[-1] + jnp.where(times[-1] > 0, 0.0, table.time_at(as_real(1.0)))
-    return simulate(system, duration, table, start=start, times=times, **options)
-
-
-def check_settings(owner: str, tolerance, max_steps, derivatives) -> Options:
-    """Return checked settings of an integration."""
-    positive(owner, "tolerance", tolerance, "")
-    count(owner, "max_steps", max_steps)
-    ways = "reverse", "forward"
-    one_of(owner, "derivatives", derivatives, ways, " or ".join(ways))
-    return Options(as_real(tolerance), max_steps, derivatives)
+    return _integrated(system, table, start, force, times, duration, options, throw)
 
 
 def beginning(
@@ -228,7 +213,7 @@ def simulate_traced(
     force: Callable | None,
     times: Float[Array, " time"],
     duration: Scalar,
-    options: Options,
+    options: IntegrationOptions,
 ) -> History:
     """`simulate`, compiled by the caller."""
     # Imported here, which keeps the import of the package fast.
@@ -247,10 +232,12 @@ def simulate_traced(
         times,
         duration,
         options,
-        solver=diffrax.Dopri8(),
-        step_error=_STEP_ERROR,
-        first=jnp.minimum(stop_gradient(_FIRST / fast), 0.5 * duration),
-        knots=table.time if table.time.shape[0] > 1 else None,
+        Stepping(
+            diffrax.Dopri8(),
+            _STEP_ERROR,
+            first=jnp.minimum(stop_gradient(_FIRST / fast), 0.5 * duration),
+            knots=table.time if table.time.shape[0] > 1 else None,
+        ),
     )
     turned = jax.vmap(table.at)(times)
     displacement, velocity = jnp.split(found.state * size[None], 2, axis=1)

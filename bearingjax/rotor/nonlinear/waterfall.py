@@ -8,14 +8,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ...design.checks import check, count, real_numbers
+from ...design.checks import check, count, integration, real_numbers
 from ...numerics.compiled.programs import program
+from ...numerics.in_time import IntegrationOptions
 from ...numerics.spectrum import LEAST, even_step, hann_lines
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import as_real
 from ...numerics.units import mixed, unit
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
-from .transient import Start, beginning, check_settings, simulate_traced
+from .transient import Start, beginning, simulate_traced
 
 
 class Waterfall(eqx.Module):
@@ -43,8 +44,7 @@ def waterfall(
     periods: int = 8,
     samples: int = 32,
     start: Start | None = None,
-    tolerance: Scalar | float = 1e-6,
-    max_steps: int = 200_000,
+    options: IntegrationOptions | None = None,
 ) -> Waterfall:
     """Return spectra of the vibration that remains after some periods.
 
@@ -59,7 +59,7 @@ def waterfall(
         periods: Periods that a spectrum is of. Static.
         samples: A period; lines reach half of it in order. Static.
         start: As in `simulate`, at every frequency.
-        tolerance, max_steps: As in `simulate`.
+        options: As in `simulate`.
 
     Returns:
         `Waterfall`; where the end is not reached amplitudes are NaN and `result` says
@@ -73,7 +73,8 @@ def waterfall(
     real_numbers("waterfall", "frequencies", frequencies, "a row of numbers")
     each = as_real(frequencies)
     check("waterfall", "frequencies", each > 0, "above zero throughout", each, "rad/s")
-    options = check_settings("waterfall", tolerance, max_steps, "reverse")
+    options = IntegrationOptions() if options is None else options
+    integration("waterfall", options)
     begin = beginning("waterfall", system, start)
     return _spectra(system, each, begin, options, tuple(numbers.values()))
 

@@ -18,10 +18,6 @@ _STEP = 0.02
 _FIRST = 1e-5
 """First step over the duration [1]."""
 
-Options = in_time.Options
-"""The tolerance: of speeds relative to the fastest ring, of angles in rad, of work
-relative to the kinetic energy of rolling balls or rollers."""
-
 
 class Integrated(NamedTuple):
     """A motion, leading axis time; NaN where it was not reached.
@@ -46,7 +42,7 @@ def integrate_motion(
     start: SkidState,
     times: Float[Array, " time"],
     duration: Scalar,
-    options: Options,
+    options: in_time.IntegrationOptions,
 ) -> Integrated:
     """Integrate the motion of balls and cage.
 
@@ -68,10 +64,7 @@ def integrate_motion(
         times,
         duration,
         options,
-        solver=Rodas(),
-        step_error=_STEP,
-        first=_FIRST * duration,
-        knots=_knots(environment),
+        in_time.Stepping(Rodas(), _STEP, _FIRST * duration, _knots(environment)),
     )
     state, work = jax.vmap(system.unpacked)(found.state)
     return Integrated(state, work, found.steps, found.rejected, found.result)

@@ -15,13 +15,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.bearing_set import pitch_radius
-from ...design.checks import count, is_traced, one_of, positive
+from ...design.checks import check, count, integration, is_traced, one_of
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
 from ...numerics.gravity import GRAVITY
 from ...numerics.implicit import stop_gradient
+from ...numerics.in_time import IntegrationOptions
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
+from ...numerics.units import unit
 from ...statics.balance import balance_of
 from ...statics.load import raise_if_failed, solve
 from ...statics.load_case import load_case
@@ -34,7 +36,7 @@ from ..orbits.steady_results import driving
 from ..ring_speed import SpeedTable, as_table
 from .beginning import balanced_surroundings, surroundings
 from .history import SkidHistory, SkidRollerHistory
-from .integration import Options, integrate_motion
+from .integration import integrate_motion
 
 _PLACES = 96
 """Number of places of the table."""
@@ -49,24 +51,70 @@ CAUSES = {
 """Causes and remedies of integrations that end early."""
 
 
+class SkidOptions(eqx.Module):
+    """How contact loads in time are found, and numerics of their integration.
+
+    Attributes:
+        tolerance: Error allowed of speeds relative to the fastest ring, of angles in
+            rad, of work relative to the kinetic energy of rolling balls [1]. The error
+            of a step is held below a fiftieth of it. In smooth motion the error stays
+            below it; where balls strike the cage, 6 to 70 times larger ones were seen.
+        max_steps: Step limit.
+        derivatives: "reverse" or "forward": the mode in which the result can be
+            differentiated. Where balls meet or leave the cage on the way derivatives
+            need a small tolerance: 1e-2 off at 1e-8, 2e-3 at 1e-10 was seen.
+        progress: Whether a bar is shown.
+        axis: "vertical": no gravity along the orbits; "horizontal": it acts against y,
+            along the orbits only, as its radial part is small against contact loads.
+        balanced: Whether the ring is balanced at every time; of balls alone. `None`: if
+            the load is a function of time.
+        places: Places of the table of loads, 1 where all loads are equal, or at least
+            6. `None`: 1 if they are, else 96 (also if the load is traced).
+        load_speed: Ring speeds at which tabulated loads and angles are worked out;
+            `None`: those at the end. Balanced ones are of the speeds of the time.
+
+    Traced: tolerance, load_speed. Static: all others.
+
+    Raises:
+        TypeError, ValueError: For settings that do not exist.
+    """
+
+    tolerance: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-6)
+    max_steps: int = eqx.field(static=True, default=20_000)
+    derivatives: str = eqx.field(static=True, default="reverse")
+    progress: bool = eqx.field(static=True, default=False)
+    axis: str = eqx.field(static=True, default="vertical")
+    balanced: bool | None = eqx.field(static=True, default=None)
+    places: int | None = eqx.field(static=True, default=None)
+    load_speed: Speed | None = None
+
+    def __check_init__(self):
+        integration("SkidOptions", self)
+        axes = "vertical", "horizontal"
+        one_of("SkidOptions", "axis", self.axis, axes, " or ".join(axes))
+        if self.places is not None:
+            count("SkidOptions", "places", self.places)
+            if 1 < self.places < 6:
+                raise ValueError(
+                    f"SkidOptions: `places` is {self.places}; it must be 1 or at least"
+                    " 6."
+                )
+
+    def integration(self) -> IntegrationOptions:
+        """Numerics of the integration alone."""
+        how = self.derivatives, self.progress
+        return IntegrationOptions(self.tolerance, self.max_steps, *how)
+
+
 def simulate(
     model: SkidModel,
     load: Any,
     *,
     speed: Speed | SpeedTable,
-    duration: Any,
-    times: Any = None,
-    n_times: int = 101,
+    times: Any,
     start: SkidState | None = None,
-    load_speed: Speed | None = None,
-    axis: str = "vertical",
-    balanced: bool | None = None,
-    places: int | None = None,
-    tolerance: float | Scalar = 1e-6,
-    max_steps: int = 20_000,
-    derivatives: str = "reverse",
-    progress: bool = False,
     support: Support = RESTRAINED,
+    options: SkidOptions | None = None,
     throw: bool = True,
 ) -> Any:
     """Integrate the motion of the balls or rollers of a bearing and its cage.
@@ -88,31 +136,12 @@ def simulate(
             `LoadHistory`, `SinusoidalLoad`, or another pytree that is a function of
             time [s] and returns such a load.
         speed: Speed of the rings: constant, or over time.
-        duration: Duration of the motion [s].
-        times: When to report, rising, from 0 to `duration` (time,) [s]. Default:
-            `n_times` of them, evenly spaced. Between its steps the motion is
-            interpolated by cubics.
-        n_times: Number of times, at least 2. Static.
+        times: When to report, rising from 0 on; the motion ends at the last (time,)
+            [s]. Between its steps the motion is interpolated by cubics.
         start: Motion at the beginning; default: rolling with outer raceway control, at
             rest if the rings are.
-        load_speed: Ring speeds at which tabulated loads and angles are worked out;
-            default: those at the end. Balanced ones are of the speeds of the time.
-        axis: "vertical": no gravity along the orbits; "horizontal": it acts against y,
-            along the orbits only, as its radial part is small against contact loads.
-        balanced: Whether the ring is balanced at every time; of balls alone. Static.
-            Default: if the load is a function of time.
-        places: Places of the table, 1 where all loads are equal, or at least 6; static.
-            Default: 1 if they are, else 96 (also if the load is traced).
-        tolerance: Error allowed of speeds relative to the fastest ring, of angles in
-            rad, of work relative to the kinetic energy of rolling balls. The error of a
-            step is held below a fiftieth of it. In smooth motion the error stays below
-            it; where balls strike the cage, 6 to 70 times larger ones were seen.
-        max_steps: Step limit. Static.
-        derivatives: "reverse" or "forward": the mode in which the result can be
-            differentiated. Where balls meet or leave the cage on the way derivatives
-            need a small tolerance: 1e-2 off at 1e-8, 2e-3 at 1e-10 was seen.
-        progress: Show a bar.
         support: As in `solve_load`.
+        options: Contact loads and numerics; `None`: `SkidOptions()`.
         throw: Raise if the end is not reached; otherwise read `result`.
 
     Returns:
@@ -121,7 +150,7 @@ def simulate(
 
     Raises:
         TypeError: If the ring of a roller bearing is to be balanced at every time.
-        ValueError: For settings that do not exist.
+        ValueError: For times that do not rise from 0.
         SolveError: If the end is not reached, and `throw` is set.
 
     Fails: codes of the load solve; `STEP_LIMIT`; `NO_LOAD_PATH` if a load over time
@@ -129,10 +158,14 @@ def simulate(
         the duration, as next to rates that are not numbers, or where a film is as stiff
         as a Newtonian glass: spins settle in it within 1e-15 s.
     """
-    _check(axis, derivatives, places, duration, tolerance, max_steps, n_times)
-    table, zero = as_table(speed), jnp.zeros_like(as_real(duration))
-    if times is None:
-        times = as_real(duration) * jnp.asarray(np.linspace(0.0, 1.0, n_times))
+    options = SkidOptions() if options is None else options
+    end = as_real(times[-1])
+    if not is_traced(times):
+        each = np.asarray(times)
+        rising = each[0] >= 0.0 and bool(np.all(np.diff(each) > 0)) and each[-1] > 0
+        check("skid.simulate", "times", rising, "rising from 0 on", each, "s")
+    table, zero = as_table(speed), jnp.zeros_like(end)
+    balanced, places = options.balanced, options.places
     varies = callable(load)
     if balanced is None:
         balanced = varies
@@ -143,14 +176,14 @@ def simulate(
         )
     if balanced:
         model.check_balls("skid with `balanced`")
-    at = table.at(zero) if balanced else table.at(as_real(duration))
-    if load_speed is not None and not balanced:
-        at = load_speed
+    at = table.at(zero) if balanced else table.at(end)
+    if options.load_speed is not None and not balanced:
+        at = options.load_speed
     first = load(zero) if callable(load) else load
     solution: Any = solve(model.element, first, support, speed=at)
     if throw:
         solution = raise_if_failed(solution, "skid.simulate")
-    gravity = as_real(GRAVITY if axis == "horizontal" else 0.0)
+    gravity = as_real(GRAVITY if options.axis == "horizontal" else 0.0)
     if balanced:
         over_time = load if callable(load) else _Constant(as_real(load))
         # Without its load, which comes over time.
@@ -163,34 +196,14 @@ def simulate(
         if places is None:
             places = 1 if _alike(solution.roller_load) else _PLACES
         environment, rolling = surroundings(model, solution, at, table, gravity, places)
-    steps = Options(as_real(tolerance), max_steps, derivatives, progress)
     start = rolling if start is None else _taken_up(start, rolling)
-    found = _skid(
-        environment, solution, start, as_real(times), as_real(duration), steps
-    )
+    steps = options.integration()
+    found = _skid(environment, solution, start, as_real(times), end, steps)
     if not throw:
         return found
     return raise_unless_converged(
         found, found.result, lambda: _message(found), "skid.simulate"
     )
-
-
-def _check(axis, derivatives, places, duration, tolerance, max_steps, n_times):
-    for name, value, allowed in (
-        ("axis", axis, ("vertical", "horizontal")),
-        ("derivatives", derivatives, ("reverse", "forward")),
-    ):
-        one_of("skid.simulate", name, value, allowed, " or ".join(allowed))
-    if places is not None:
-        count("skid.simulate", "places", places)
-        if 1 < places < 6:
-            raise ValueError(
-                f"skid.simulate: `places` is {places}; it must be 1 or at least 6."
-            )
-    positive("skid.simulate", "duration", duration, "s")
-    positive("skid.simulate", "tolerance", tolerance, "")
-    count("skid.simulate", "max_steps", max_steps)
-    count("skid.simulate", "n_times", n_times)
 
 
 def _alike(loads):

@@ -21,6 +21,7 @@ from ...rotor.nonlinear import (
     Branch,
     BranchEnd,
     HarmonicBalance,
+    IntegrationOptions,
     Shooting,
     Steps,
     VibratingRotor,
@@ -236,16 +237,15 @@ def run_in_time(
     rest = system.freedoms(settled.motion)
     found = simulate(
         system,
-        as_array(asked.duration, float),
+        as_array(asked.duration * np.linspace(0.0, 1.0, asked.n_times), float),
         as_array(task.speed, float),
         start=(rest, 0.0 * rest),
         end_frequency=(
             None if asked.speed_to is None else as_array(asked.speed_to, float)
         ),
-        n_times=asked.n_times,
-        tolerance=as_array(asked.tolerance, float),
-        max_steps=asked.max_steps,
-        derivatives="forward",
+        options=IntegrationOptions(
+            as_array(asked.tolerance, float), asked.max_steps, "forward"
+        ),
         throw=False,
     )
     found = jax.device_get(found)

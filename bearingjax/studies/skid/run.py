@@ -97,18 +97,15 @@ def _left_out(task):
         yield Warning("left_out_loads", words)
 
 
-def _supports(task):
-    scene = task.scene
-    return {
-        "support": scene.support,
-        "places": task.places,
-        "throw": False,
-    }
-
-
 def _end(task) -> tuple[Any, Any]:
-    asked = _supports(task)
-    found = skid.steady(task.model, task.scene.load, speed=task.speed, **asked)
+    found = skid.steady(
+        task.model,
+        task.scene.load,
+        speed=task.speed,
+        places=task.places,
+        support=task.scene.support,
+        throw=False,
+    )
     return found, task.speed
 
 
@@ -118,16 +115,19 @@ def _motion(task, shown) -> tuple[Any, Any]:
         task.model,
         task.scene.load if task.loads is None else task.loads,
         speed=speed,
-        duration=task.duration,
-        n_times=task.n_times,
+        times=task.duration * np.linspace(0.0, 1.0, task.n_times),
         start=rest_state(task.model.bearing) if task.start == "rest" else None,
-        load_speed=task.speed,
-        axis=task.axis,
-        balanced=task.balanced,
-        tolerance=task.tolerance,
-        max_steps=task.max_steps,
-        derivatives="forward",
-        progress=shown,
-        **_supports(task),
+        support=task.scene.support,
+        options=skid.SkidOptions(
+            task.tolerance,
+            task.max_steps,
+            derivatives="forward",
+            progress=shown,
+            axis=task.axis,
+            balanced=task.balanced,
+            places=task.places,
+            load_speed=task.speed,
+        ),
+        throw=False,
     )
     return found, speed
