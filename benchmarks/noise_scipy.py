@@ -39,6 +39,7 @@ import bearingjax as bj
 from bearingjax.noise import (
     NoiseModel,
     RandomWaves,
+    RecordOptions,
     Tolerances,
     monte_carlo,
     needed_steps,
@@ -169,10 +170,8 @@ def many(turns, steps, batch, bearings):
     """Seconds for each of many random bearings, with spectra and bands."""
 
     def run(n):
-        return monte_carlo(
-            plain(), SCATTER, n, jax.random.key(1), turns=turns, settle=0,
-            samples=SAMPLES, steps=steps, batch=batch,
-        )  # fmt: skip
+        options = RecordOptions(turns, 0, SAMPLES, steps, batch)
+        return monte_carlo(plain(), SCATTER, n, jax.random.key(1), records=options)
 
     run(batch)
     begin = time.process_time()

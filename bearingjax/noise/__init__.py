@@ -38,8 +38,8 @@ Names
 - Lines and orders: `kinematic_frequencies`, `KinematicFrequencies`, `waviness_force`,
   `WavinessForce`, `name_lines`, `NameRule`, `PeakRule`, `Line`, `line_causes`.
 - Many bearings: `Tolerances`, `RandomWaves`, `sample_errors`, `SampledErrors`,
-  `sampled_model`, `monte_carlo`, `MonteCarlo`, `source_contributions`,
-  `SourceContributions`.
+  `sampled_model`, `monte_carlo`, `RecordOptions`, `LevelOptions`, `MonteCarlo`,
+  `source_contributions`, `ContributionOptions`, `SourceContributions`.
 - Sound and warnings: `sound`, `write_sound`, `model_warnings`, `record_warnings`,
   `contribution_warnings`.
 """
@@ -62,7 +62,13 @@ from .level import REFERENCE_ACCELERATION, acceleration_of, combine_levels, leve
 from .linear import LinearModel, Transfer, linear_model, transfer
 from .lines import Line, NameRule, PeakRule, name_lines
 from .model import NoiseModel
-from .monte_carlo import MonteCarlo, monte_carlo, sampled_model
+from .monte_carlo import (
+    LevelOptions,
+    MonteCarlo,
+    RecordOptions,
+    monte_carlo,
+    sampled_model,
+)
 from .natural import NaturalModes, natural_modes, ring_modes
 from .orders import (
     KinematicFrequencies,
@@ -74,7 +80,11 @@ from .quasi_static import Excitation, excitation
 from .scatter import RandomWaves, SampledErrors, Tolerances, sample_errors
 from .sensor import Sensor
 from .sound import sound, write_sound
-from .source_contributions import SourceContributions, source_contributions
+from .source_contributions import (
+    ContributionOptions,
+    SourceContributions,
+    source_contributions,
+)
 from .spectrum import AbstractWindow, Hann, Rectangular, Spectrum, spectrum
 from .static_start import static_start
 from .vibration import CageMotion, Vibration, bandwidth, needed_steps, vibration
@@ -92,6 +102,7 @@ __all__ = [
     "kinematic_frequencies", "KinematicFrequencies", "waviness_force", "WavinessForce",
     "name_lines", "NameRule", "PeakRule", "Line", "line_causes", "Tolerances",
     "RandomWaves", "sample_errors", "SampledErrors", "sampled_model", "monte_carlo",
-    "MonteCarlo", "source_contributions", "SourceContributions", "sound", "write_sound",
+    "RecordOptions", "LevelOptions", "MonteCarlo", "source_contributions",
+    "ContributionOptions", "SourceContributions", "sound", "write_sound",
     "model_warnings", "record_warnings", "contribution_warnings",
 ]  # fmt: skip

@@ -4,6 +4,7 @@ Bearings are drawn and shaken a batch at a time, all by one compiled program. Sp
 are taken outside of it, and of a record only its levels are kept.
 """
 
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +19,7 @@ from ..design.checks import check, count, is_traced, of_class
 from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
+from ..numerics.units import unit
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
@@ -93,20 +95,48 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
     return eqx.tree_at(lambda m: (m.element.bearing, m.errors), model, changed)
 
 
+@dataclasses.dataclass(frozen=True)
+class RecordOptions:
+    """Lengths of vibration records of many bearings.
+
+    Attributes:
+        turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
+        batch: Number of bearings at once.
+    """
+
+    turns: int = 8
+    settle: int = 2
+    samples: int = 2048
+    steps: int | None = None
+    batch: int = 16
+
+
+@dataclasses.dataclass(frozen=True)
+class LevelOptions:
+    """How levels are taken of records.
+
+    Attributes:
+        bands: Bands; `None`: `octave_bands()`.
+        window: Window of the spectra; `None`: `Hann()`, since a record does not repeat
+            itself: the cage turns by no whole number.
+        reference: Acceleration of 0 dB [m/s²].
+    """
+
+    bands: Bands | None = None
+    window: AbstractWindow | None = None
+    reference: Any = dataclasses.field(
+        default=REFERENCE_ACCELERATION, metadata=unit("m/s²")
+    )
+
+
 def monte_carlo(
     model: NoiseModel,
     tolerances: Tolerances,
     n: int,
     key: Array,
     *,
-    turns: int = 8,
-    settle: int = 2,
-    samples: int = 2048,
-    steps: int | None = None,
-    batch: int = 16,
-    bands: Bands | None = None,
-    window: AbstractWindow | None = None,
-    reference: Any = REFERENCE_ACCELERATION,
+    records: RecordOptions | None = None,
+    levels: LevelOptions | None = None,
     on_records: OnRecords | None = None,
     progress: Progress | None = None,
 ) -> MonteCarlo:
@@ -119,12 +149,8 @@ def monte_carlo(
         tolerances: Scatter of the bearings.
         n: Number of bearings.
         key: Key of `jax.random`; the same gives the same bearings.
-        turns, settle, samples, steps: As in `vibration`; `steps` of the model as it is.
-        batch: Number of bearings at once.
-        bands: `None`: `octave_bands()`.
-        window: Window of the spectra; `None`: `Hann()`, since a record does not repeat
-            itself: the cage turns by no whole number.
-        reference: Acceleration of 0 dB [m/s²].
+        records: Lengths of records, and bearings at once; `None`: `RecordOptions()`.
+        levels: Bands, window and reference of levels; `None`: `LevelOptions()`.
         on_records: Called with the records of each batch, which are not kept.
         progress: Called after each batch.
 
@@ -134,17 +160,19 @@ def monte_carlo(
 
     Fails: a bearing as `vibration` does; its levels are NaN.
     """
-    counts = turns, settle, samples, steps
-    records = Records(model, tolerances, n, *counts, "monte_carlo")
+    given = RecordOptions() if records is None else records
+    made = Records(model, tolerances, n, given, "monte_carlo")
     keys = jax.random.split(key, n)
-    bands = octave_bands() if bands is None else bands
-    window = Hann() if window is None else window
+    asked = LevelOptions() if levels is None else levels
+    bands = octave_bands() if asked.bands is None else asked.bands
+    window = Hann() if asked.window is None else asked.window
+    reference = asked.reference
     shaft = model.shaft_speed / (2.0 * jnp.pi)
 
-    def levels(acceleration, failed):
-        lines = spectrum(acceleration, turns / shaft, shaft, window=window)
+    def levels_of(acceleration, failed):
+        lines = spectrum(acceleration, given.turns / shaft, shaft, window=window)
         total = level(total_root_mean_square(lines), reference)
-        highest = bandwidth(samples, shaft)
+        highest = bandwidth(given.samples, shaft)
         each = jnp.moveaxis(band_levels(lines, bands, reference, highest), 0, 1)
         return (
             jnp.where(failed[:, None], jnp.nan, total),
@@ -152,12 +180,12 @@ def monte_carlo(
         )
 
     found = []
-    for part, acceleration, result in records.batches(keys, batch, progress):
+    for part, acceleration, result in made.batches(keys, progress):
         if on_records is not None:
             on_records(acceleration[:part], result[:part])
         failed = result != int(Result.CONVERGED)
         heard = jnp.where(failed[:, None, None], 0.0, acceleration)
-        one = *levels(jnp.moveaxis(heard, 0, 1), failed), result
+        one = *levels_of(jnp.moveaxis(heard, 0, 1), failed), result
         found.append([np.asarray(a)[:part] for a in one])
     total, each, result = (
         jnp.asarray(np.concatenate(a)) for a in zip(*found, strict=True)
@@ -197,7 +225,7 @@ def _together(one: FormErrors, other: FormErrors) -> FormErrors:
 class Records:
     """Vibration records of random bearings, batch by batch."""
 
-    def __init__(self, model, tolerances, n, turns, settle, samples, steps, owner):
+    def __init__(self, model, tolerances, n, options, owner):
         """Check the arguments, which are those of `monte_carlo`."""
         of_class(owner, "model", model, NoiseModel, "a NoiseModel")
         of_class(owner, "tolerances", tolerances, Tolerances, "Tolerances")
@@ -206,29 +234,30 @@ class Records:
         for row in rows_of(model.element.bearing):
             tolerances.check(row.bearing)
         count(owner, "n", n)
-        count(owner, "samples", samples)
+        count(owner, "samples", options.samples)
+        count(owner, "batch", options.batch)
         shaft = model.shaft_speed
         check(owner, "speed", shaft > 0, "another than 0", shaft, "rad/s")
+        steps, samples = options.steps, options.samples
         steps = needed_steps(model, samples) if steps is None else steps
         self.given = model, tolerances
-        self.counts = turns, settle, samples, steps
-        self.owner = owner
+        self.counts = options.turns, options.settle, samples, steps
+        self.batch = options.batch
 
-    def parts(self, n: int, batch: int):
+    def parts(self, n: int):
         """Yield the number of bearings of each batch, padding left out, and indices."""
-        count(self.owner, "batch", batch)
-        size = min(batch, n)
+        size = min(self.batch, n)
         for begin in range(0, n, size):
             # The last batch is filled up: one shape, one program.
             at = np.minimum(np.arange(begin, begin + size), n - 1)
             yield min(size, n - begin), at
 
-    def batches(self, keys, batch, progress=None, factors=None):
+    def batches(self, keys, progress=None, factors=None):
         """Yield the number of bearings, accelerations and result codes by batch."""
         # Factors of all sources, so that one program serves all calls.
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
-        for part, at in self.parts(len(keys), batch):
+        for part, at in self.parts(len(keys)):
             yield part, *_records(*self.given, factors, *raw(keys[at]), self.counts)
             if progress is not None:
                 progress(int(at[-1]) + 1, len(keys))

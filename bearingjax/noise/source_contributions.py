@@ -13,6 +13,7 @@ of its sources: shares sum to more than the mean square
     (`SourceContributions.together`).
 """
 
+import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -26,10 +27,11 @@ from ..design.checks import check
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .monte_carlo import Progress, Records, raw, sampled_model, typed
+from .monte_carlo import Progress, RecordOptions, Records, raw, sampled_model, typed
 from .scatter import Tolerances
 from .spectrum import Hann, spectrum
 from .vibration import bandwidth, vibration
@@ -118,21 +120,42 @@ class SourceContributions(eqx.Module):
         return tuple(self.sources[k] for k in np.argsort(-np.asarray(values)))
 
 
+@dataclasses.dataclass(frozen=True)
+class ContributionOptions:
+    """What the contributions of sources are of, and how they are found.
+
+    Attributes:
+        direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
+            `None`: all directions together.
+        bands: Bands of which the parts are wanted too; `None`: none.
+        factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
+            gives the exact effect of halving.
+        gradient: Whether shares by derivatives are wanted: about the time of five more
+            runs.
+
+    Raises:
+        ValueError: For another direction or factor.
+    """
+
+    direction: Any = None
+    bands: Bands | None = None
+    factor: float = dataclasses.field(default=0.0, metadata=unit("1"))
+    gradient: bool = True
+
+    def __post_init__(self):
+        inside = 0.0 <= self.factor < 1.0
+        check(self, "factor", inside, "from 0 to below 1")
+        _directions(self.direction)
+
+
 def source_contributions(
     model: NoiseModel,
     tolerances: Tolerances,
     n: int,
     key: Array,
     *,
-    direction: Any = None,
-    bands: Bands | None = None,
-    factor: float = 0.0,
-    gradient: bool = True,
-    turns: int = 8,
-    settle: int = 2,
-    samples: int = 2048,
-    steps: int | None = None,
-    batch: int = 16,
+    records: RecordOptions | None = None,
+    options: ContributionOptions | None = None,
     unchanged: Iterable[tuple[Array, Array]] | None = None,
     progress: Progress | None = None,
 ) -> SourceContributions:
@@ -142,41 +165,29 @@ def source_contributions(
     smaller, and once with derivatives.
 
     Args:
-        model, tolerances, n, key, turns, settle, samples, steps, batch: As in
-            `monte_carlo`; the key may also be the `MonteCarlo.keys` of n bearings (n,).
-        direction: 0, 1, 2 along x, y, z, or a vector along which the rig listens (3,);
-            `None`: all directions together.
-        bands: Bands of which the parts are wanted too; `None`: none.
-        factor: By which a source is made smaller, from 0 (off) to below 1 [1]: 0.5
-            gives the exact effect of halving.
-        gradient: Whether shares by derivatives are wanted: about the time of five more
-            runs.
+        model, tolerances, n, key, records: As in `monte_carlo`; the key may also be the
+            `MonteCarlo.keys` of n bearings (n,).
+        options: What is compared; `None`: `ContributionOptions()`.
         unchanged: Records of these bearings, and maybe more, without any change, as
             `monte_carlo` hands them to `on_records`; `None`: they are made anew.
         progress: Called after each batch.
 
     Raises:
-        TypeError, ValueError: As `monte_carlo`; without any source; for another
-            direction or factor; for another number of keys, or fewer unchanged records.
+        TypeError, ValueError: As `monte_carlo`; without any source; for another number
+            of keys, or fewer unchanged records.
         FloatingPointError: If no bearing has a result in all runs.
     """
-    records = Records(
-        model, tolerances, n, turns, settle, samples, steps, "source_contributions"
-    )
+    given = RecordOptions() if records is None else records
+    asked = ContributionOptions() if options is None else options
+    factor, bands, gradient = asked.factor, asked.bands, asked.gradient
+    turns, samples = given.turns, given.samples
+    made = Records(model, tolerances, n, given, "source_contributions")
     sources = tolerances.sources
     if not sources:
         raise ValueError(
             "source_contributions: `tolerances` is without a source; give at least one."
         )
-    along = _directions(direction)
-    check(
-        "source_contributions",
-        "factor",
-        0.0 <= factor < 1.0,
-        "from 0 to below 1",
-        factor,
-        "",
-    )
+    along = _directions(asked.direction)
     # A plain key has an axis of its own.
     many = key.ndim > (not jnp.issubdtype(key.dtype, jax.dtypes.prng_key))
     keys = key if many else jax.random.split(key, n)
@@ -220,17 +231,17 @@ def source_contributions(
             f" {n}."
         )
     for change in changes:
-        made = records.batches(keys, batch, report_progress, change)
+        made = made.batches(keys, report_progress, change)
         runs.append(summarised((a[:part], r[:part]) for part, a, r in made))
         done += n
     squares, in_bands, solved = (np.array(a) for a in zip(*runs, strict=True))
     fine = np.all(solved, axis=0)
     slopes = []
     if gradient:
-        for part, at in records.parts(n, batch):
-            slope = _slopes(*records.given, *raw(keys[at]), records.counts, along)
+        for part, at in made.parts(n):
+            slope = _slopes(*made.given, *raw(keys[at]), made.counts, along)
             slopes.append([slope[name][:part] for name in sources])
-            report_progress(min(len(slopes) * batch, n), n)
+            report_progress(min(len(slopes) * given.batch, n), n)
     if not fine.any():
         raise FloatingPointError(
             f"source_contributions: of {n} bearings none has a result in all runs;"
@@ -283,7 +294,7 @@ def _directions(direction: Any) -> np.ndarray:
     vector = np.asarray(direction, dtype=float)
     right = vector.shape == (3,) and np.isfinite(vector).all() and vector.any()
     check(
-        "source_contributions",
+        "ContributionOptions",
         "direction",
         right,
         "0, 1, 2, a vector or None",

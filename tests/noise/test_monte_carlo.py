@@ -13,9 +13,11 @@ from bearingjax.design import Harmonics
 from bearingjax.design.form_error import Surface
 from bearingjax.design.tolerance import running_accuracy
 from bearingjax.noise import (
+    ContributionOptions,
     Hann,
     NoiseModel,
     RandomWaves,
+    RecordOptions,
     SourceContributions,
     Tolerances,
     contribution_warnings,
@@ -55,7 +57,7 @@ SMALL = Tolerances(
     outer_axial=RandomWaves(2e-9, 5, 9),
     inner_outwards=RandomWaves(5e-9, 2, 9, 0.5),
 )
-HOW = dict(turns=1, settle=3, samples=128, steps=6, batch=3)
+HOW = RecordOptions(turns=1, settle=3, samples=128, steps=6, batch=3)
 
 
 def test_waves_have_the_root_mean_square_asked_for():
@@ -126,7 +128,9 @@ def test_sample_errors_scales_each_source_alone():
 def test_levels_are_those_of_each_bearing_alone():
     """Four bearings in batches of three: the last batch is filled up."""
     seen = []
-    found = monte_carlo(MODEL, SMALL, 4, KEY, progress=lambda *a: seen.append(a), **HOW)
+    found = monte_carlo(
+        MODEL, SMALL, 4, KEY, progress=lambda *a: seen.append(a), records=HOW
+    )
     assert seen == [(3, 4), (4, 4)]
     assert found.level.shape == (4, 3) and found.failed == 0
     assert found.bands.shape == (4, len(octave_bands().centre), 3)
@@ -152,7 +156,7 @@ def test_levels_are_those_of_each_bearing_alone():
 
 @pytest.mark.slow
 def test_source_contributions_by_switching_off_and_by_gradient_agree_for_small_errors():
-    found = source_contributions(MODEL, SMALL, 6, KEY, **HOW)
+    found = source_contributions(MODEL, SMALL, 6, KEY, records=HOW)
     assert found.used == 6 and found.sources == SMALL.sources
     assert found.ranking == found.ranking_by_gradient
     # Of six bearings the sources' motions are not quite independent of each other.
@@ -164,25 +168,26 @@ def test_source_contributions_by_switching_off_and_by_gradient_agree_for_small_e
     np.testing.assert_allclose(
         found.gain_together({first: 0.5}), np.max(found.gain(0.5)), rtol=ROUNDING
     )
-    half = source_contributions(MODEL, SMALL, 6, KEY, factor=0.5, gradient=False, **HOW)
+    options = ContributionOptions(factor=0.5, gradient=False)
+    half = source_contributions(MODEL, SMALL, 6, KEY, records=HOW, options=options)
     assert half.ranking == found.ranking
     assert half.by_gradient is None
 
 
 @pytest.mark.slow
 def test_source_contributions_along_a_line_and_by_band():
-    bands, how = octave_bands(), HOW | {"turns": 4, "gradient": False}
-    found = source_contributions(
-        MODEL, SMALL, 3, KEY, direction=(0, 0, 2.0), bands=bands, **how
-    )
+    bands, how = octave_bands(), dataclasses.replace(HOW, turns=4)
+    options = ContributionOptions((0, 0, 2.0), bands, gradient=False)
+    found = source_contributions(MODEL, SMALL, 3, KEY, records=how, options=options)
     # From the first of five bearings whose records without any change are at hand.
     records, shares = [], []
-    counts = {k: how[k] for k in ("turns", "settle", "samples", "steps")}
+    counts = {k: getattr(how, k) for k in ("turns", "settle", "samples", "steps")}
     levels = monte_carlo(
-        MODEL, SMALL, 5, KEY, **counts, batch=3, on_records=lambda *r: records.append(r)
+        MODEL, SMALL, 5, KEY, records=how, on_records=lambda *r: records.append(r)
     )
+    alone = {"records": how, "options": ContributionOptions(2, gradient=False)}
     axial = source_contributions(
-        MODEL, SMALL, 3, levels.keys[:3], direction=2, **how,
+        MODEL, SMALL, 3, levels.keys[:3], **alone,
         unchanged=records, progress=lambda *done: shares.append(done),
     )  # fmt: skip
     assert [len(r) for _, r in records] == [3, 2]
@@ -191,9 +196,9 @@ def test_source_contributions_along_a_line_and_by_band():
     np.testing.assert_allclose(found.share, axial.share, rtol=ROUNDING)
     assert axial.by_band is None
     with pytest.raises(ValueError, match="has 2 records; it needs 3"):
-        source_contributions(MODEL, SMALL, 3, KEY, **how, unchanged=records[1:])
+        source_contributions(MODEL, SMALL, 3, KEY, **alone, unchanged=records[1:])
     with pytest.raises(ValueError, match="has 2 keys; it must have 3"):
-        source_contributions(MODEL, SMALL, 3, levels.keys[:2], **how)
+        source_contributions(MODEL, SMALL, 3, levels.keys[:2], **alone)
     every = [sampled_model(MODEL, SMALL, k) for k in jax.random.split(KEY, 3)]
     heard = np.array([vibration(m, **counts).acceleration[:, 2] for m in every])
     square = heard.var(axis=1)
@@ -203,7 +208,7 @@ def test_source_contributions_along_a_line_and_by_band():
     held = np.isfinite(parts[0])
     assert held.any() and not held.all() and np.all(parts[:, held] <= 1.0)
     with pytest.raises(ValueError, match="a vector or None"):
-        source_contributions(MODEL, SMALL, 3, KEY, direction=3, **HOW)
+        ContributionOptions(direction=3)
 
 
 def test_contribution_warnings_for_products_of_sources():
@@ -222,13 +227,13 @@ def test_contribution_warnings_for_products_of_sources():
 
 def test_monte_carlo_rejects_invalid_tolerances():
     with pytest.raises(ValueError, match="room between two neighbours"):
-        monte_carlo(MODEL, Tolerances(spacing=1.0), 2, KEY, **HOW)
+        monte_carlo(MODEL, Tolerances(spacing=1.0), 2, KEY, records=HOW)
     with pytest.raises(ValueError, match="no source 'elements'"):
         SMALL.scaled({"elements": 0.0})
     with pytest.raises(ValueError, match="first order, or more"):
         RandomWaves(1e-6, 5, 4)
     with pytest.raises(ValueError, match="without a source"):
-        source_contributions(MODEL, Tolerances(), 2, KEY, **HOW)
+        source_contributions(MODEL, Tolerances(), 2, KEY, records=HOW)
     for keys in (jax.random.split(KEY, 3), jax.random.split(jax.random.PRNGKey(3), 3)):
         with pytest.raises(ValueError, match="has 3 keys; it must have 2"):
-            source_contributions(MODEL, SMALL, 2, keys, **HOW)
+            source_contributions(MODEL, SMALL, 2, keys, records=HOW)

@@ -210,7 +210,7 @@ def test_simulate_reports_failure_and_invalid_arguments():
         ({"frequency": -0.9}, "`frequency` is -0.9 rad/s"),
         ({"start": ([0.0, 0.0], [0.0])}, r"displacement of `start` has the shape \(2,"),
         (
-            {"options": IntegrationOptions(derivatives="both")},
+            {"options": IntegrationOptions(1e-6, 9, "both")},
             "must be reverse or forward",
         ),
         ({"options": IntegrationOptions(0.0)}, "`tolerance` is 0"),

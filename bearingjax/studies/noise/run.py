@@ -10,11 +10,14 @@ import numpy as np
 from ...design import rows_of
 from ...noise import (
     ContactStates,
+    ContributionOptions,
+    LevelOptions,
     Line,
     MonteCarlo,
     NameRule,
     NaturalModes,
     PeakRule,
+    RecordOptions,
     SourceContributions,
     Spectrum,
     Vibration,
@@ -185,10 +188,10 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
-    counts = task.counts | {"steps": steps}
     given = task.line, tolerances
     key = jax.random.key(task.seed)
     batch = min(16, task.bearings)
+    records = RecordOptions(**task.counts, steps=steps, batch=batch)
     # Each source is switched off once: this takes about as long as the levels.
     fewer = max(-(-task.bearings // len(tolerances.sources)), batch)
     unchanged = [] if fewer <= _KEPT else None
@@ -210,11 +213,8 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
         *given,
         task.bearings,
         key,
-        **counts,
-        bands=task.bands,
-        window=task.window,
-        reference=task.reference,
-        batch=batch,
+        records=records,
+        levels=LevelOptions(task.bands, task.window, task.reference),
         on_records=keep,
         progress=progress(0),
     )
@@ -225,11 +225,8 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
             *given,
             fewer,
             levels.keys[:fewer],
-            **counts,
-            direction=along,
-            bands=task.bands,
-            gradient=False,
-            batch=batch,
+            records=records,
+            options=ContributionOptions(along, task.bands, gradient=False),
             unchanged=unchanged,
             progress=progress(task.bearings),
         )
