@@ -474,7 +474,7 @@ def test_outputs_of_a_function_are_a_dict_of_arrays():
     solution = SimpleNamespace(converged=jnp.asarray(False), result=1, unrestrained=-1)
 
     def outputs(kept):
-        task = sweep_program.Task(SolveOptions(), lambda _: kept, False)
+        task = sweep_program.Task(bj.Support(), SolveOptions(), lambda _: kept, False)
         return task.outputs(solution)
 
     with pytest.raises(TypeError, match="`outputs` returns a list; .* dict of arrays"):
