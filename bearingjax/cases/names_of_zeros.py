@@ -1,6 +1,5 @@
 """Names of the numbers of a sweep that are zero in every case."""
 
-from ..design import AbstractRollerBearing
 from ..design.bearing_set import bearings_of
 from ..design.rib import RIB_NAMES
 from ..element.bearing_element import BearingElement
@@ -43,6 +42,4 @@ def structural_zeros(
 
 
 def _ribs(element: BearingElement) -> set[str]:
-    bearings = list(bearings_of(element.bearing))
-    rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
-    return {name for bearing in rollers for name in bearing.ribs.present}
+    return {name for row in bearings_of(element.bearing) for name in row.rib_names}

@@ -16,7 +16,6 @@ import numpy as np
 
 from ..design import (
     AbstractBearing,
-    AbstractRollerBearing,
     AngularContactBallBearing,
     BearingSet,
     CrossedRollerRow,
@@ -38,7 +37,6 @@ from ..design import (
 )
 from ..design.checks import check, in_range, is_traced, positive
 from ..life import row_rating
-from ..life.rating import nominal_contact_angle
 from ..life.row_rating import BallKind, BallRow, RollerRow, Rows
 from ..numerics.compiled.programs import program
 from ..numerics.types import as_real
@@ -185,11 +183,11 @@ class GeometryEstimate(eqx.Module):
         """Description of the estimate and its misfit, also used for printing."""
         row = rows_of(self.bearing)[0].bearing
         name, size = row.noun, float(row.element_diameter)
-        rollers = isinstance(row, AbstractRollerBearing)
-        angle = np.rad2deg(float(nominal_contact_angle(row)))
+        length = row.element_length
+        angle = np.rad2deg(float(row.nominal_contact_angle))
         text = (
             f"Estimate: {row.n_elements} {name}s of {1e3 * size:.4g} mm"
-            + (f" by {1e3 * float(row.roller_length):.4g} mm" if rollers else "")
+            + (f" by {1e3 * float(length):.4g} mm" if length is not None else "")
             + f" a row, pitch diameter {1e3 * float(row.pitch_diameter):.5g} mm,"
             f" contact angle {angle:.4g}°."
             f" C {100 * self.dynamic_error:+.1f} %, C0 {100 * self.static_error:+.1f} %"
@@ -257,7 +255,7 @@ def estimate_geometry(
             improved classes are; what agrees better is taken, and `raised` says which.
             Of other types a factor of the maker should be divided out. Four-point
             bearings: of two rows
-            (`rating.arc_rows`).
+            (`rated_rows`).
         static_capacity: Basic static load rating C0 [N].
         contact_angle: Angle of angular contact, four-point, tapered (outer raceway),
             spherical roller and spherical thrust roller bearings [rad]; `None`:

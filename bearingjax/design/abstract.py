@@ -1,7 +1,8 @@
 """Base class of ball and roller bearings."""
 
 import abc
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -30,10 +31,20 @@ class AbstractBearing(eqx.Module):
         is_thrust: Whether it is a thrust bearing between two washers.
         aligns: Whether it is a row of a self-aligning bearing, with the centre of its
             spherical outer raceway in the origin.
+        is_crossed: Whether it is a row of a crossed roller bearing.
+        bears_radially: Whether it carries radial load; cylindrical roller thrust
+            bearings do not.
+        tilts_alone: Whether its rings tilt freely where it is the only row.
+        rated_rows: Number of rows that the standards count in it: 2 for four-point
+            balls, each of which bears on two pairs of arcs.
         rated_fields: Names of the fields on which its load ratings depend.
     """
 
     aligns: ClassVar[bool] = False
+    is_crossed: ClassVar[bool] = False
+    bears_radially: ClassVar[bool] = True
+    tilts_alone: ClassVar[bool] = False
+    rated_rows: ClassVar[int] = 1
 
     pitch_diameter: eqx.AbstractVar[Scalar]
     first_azimuth: eqx.AbstractVar[Scalar]
@@ -90,6 +101,89 @@ class AbstractBearing(eqx.Module):
         """Largest play between the rings, radial or axial [m]; may be negative."""
 
     @property
+    @abc.abstractmethod
+    def nominal_contact_angle(self) -> Scalar:
+        """Nominal contact angle of the standards [rad].
+
+        Zero for a deep groove ball bearing of any clearance; for a tapered roller
+        bearing the angle of its outer raceway; for a mounted bearing the angle of the
+        drawing.
+        """
+
+    @property
+    @abc.abstractmethod
+    def touching_angle(self) -> Scalar:
+        """Angle from the radial plane at which elements touch the outer ring [rad].
+
+        0 where balls touch at the bottom; and of angular contact, where what balls grow
+        along the axis takes no clearance, but moves the ring that touches them.
+        """
+
+    @property
+    @abc.abstractmethod
+    def clearance(self) -> Scalar:
+        """Radial internal clearance, between the ends of its radial play [m].
+
+        Of angular contact bearings 2A (1 - cos α0), A the distance of the groove
+        centres. A tapered roller stays with the inner ring and its large rib. Radial
+        motion of the outer ring closes the gap by the cosine of the outer raceway's
+        angle.
+        """
+
+    @abc.abstractmethod
+    def with_clearance(self, clearance: Scalar) -> Any:
+        """Return the row with another radial internal clearance.
+
+        Of an angular contact bearing it is the free contact angle that changes: grooves
+        that come nearer radially are met at a smaller angle.
+
+        Args:
+            clearance: Radial internal clearance as in `clearance` [m].
+
+        Raises:
+            ValueError: If the bearing does not allow it: an angular contact bearing
+                needs some, or there is no contact angle.
+        """
+
+    @property
+    @abc.abstractmethod
+    def raceway_diameters(self) -> tuple[Scalar, Scalar]:
+        """Diameters of inner and outer raceway where the elements touch them [m]."""
+
+    @property
+    @abc.abstractmethod
+    def deviation_bounds(self) -> tuple[Scalar, ...]:
+        """Upper bounds of the size of raceway deviations [m]."""
+
+    @property
+    def element_length(self) -> Scalar | None:
+        """Length of the rollers [m]; `None` of balls."""
+        return None
+
+    @property
+    def axial_senses(self) -> frozenset[int]:
+        """Senses in which it carries axial load on its inner ring: 1 along +z, -1."""
+        return frozenset({1} if self.holds_axially else ())
+
+    @property
+    def shoulders(self) -> tuple[Scalar, ...]:
+        """Heights of the shoulders that are known [m]; none of rollers."""
+        return ()
+
+    @property
+    def rib_names(self) -> tuple[str, ...]:
+        """Names of the ribs that are there; none of balls."""
+        return ()
+
+    def rated_as(self, drawing: "AbstractBearing") -> "AbstractBearing":
+        """Return the row with the nominal contact angle of its drawing.
+
+        Args:
+            drawing: The row before its clearance changed.
+        """
+        return self
+
+    @property
     def rings(self) -> Material:
         """Material of the rings."""
         return self.material if self.ring_material is None else self.ring_material
@@ -101,3 +195,14 @@ class AbstractBearing(eqx.Module):
         instance(self, "material", Material)
         instance(self, "ring_material", Material, None)
         instance(self, "published", Published, None)
+
+
+def nearest_entry(table: Mapping[type, Any], bearing: AbstractBearing) -> Any:
+    """Entry of the nearest class of a bearing in a table by class; `None`: none.
+
+    Args:
+        table: Entries by class, such as constants or functions of another package.
+        bearing: The row.
+    """
+    bases = type(bearing).__mro__
+    return next((table[base] for base in bases if base in table), None)

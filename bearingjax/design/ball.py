@@ -8,6 +8,7 @@ positive contact angle α carries an inner-ring load along +z.
 """
 
 import abc
+import dataclasses
 import math
 from typing import Annotated, ClassVar, NamedTuple
 
@@ -167,6 +168,35 @@ class AbstractBallBearing(AbstractBearing):
     @abc.abstractmethod
     def grooves(self) -> tuple[Groove, ...]:
         """All raceway arcs that a ball may touch, outer ring first."""
+
+    @property
+    def nominal_contact_angle(self) -> Scalar:
+        return self.free_contact_angle
+
+    @property
+    def touching_angle(self) -> Scalar:
+        return self.free_contact_angle
+
+    def with_clearance(self, clearance):
+        return dataclasses.replace(self, radial_internal_clearance=clearance)
+
+    @property
+    def raceway_diameters(self) -> tuple[Scalar, Scalar]:
+        across = self.ball_diameter * self.free_cosine
+        return self.pitch_diameter - across, self.pitch_diameter + across
+
+    @property
+    def deviation_bounds(self) -> tuple[Scalar, ...]:
+        return self.centre_distances
+
+    @property
+    def axial_senses(self) -> frozenset[int]:
+        return frozenset({1} if self.is_one_sided else {1, -1})
+
+    @property
+    def shoulders(self) -> tuple[Scalar, ...]:
+        both = self.outer_shoulder, self.inner_shoulder
+        return tuple(height for height in both if height is not None)
 
     @property
     def holds_axially(self) -> bool:

@@ -1,5 +1,6 @@
 """The types of ball bearings: what each adds to `AbstractBallBearing`."""
 
+import dataclasses
 import math
 from typing import ClassVar
 
@@ -49,6 +50,24 @@ class DeepGrooveBallBearing(AbstractBallBearing):
     @property
     def free_cosine(self):
         return jnp.minimum(1.0, 1.0 - 0.5 * self.clearance / self.centre_distance)
+
+    @property
+    def nominal_contact_angle(self):
+        return as_real(0.0)
+
+    @property
+    def touching_angle(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    def with_clearance(self, clearance):
+        return dataclasses.replace(
+            self, radial_internal_clearance=clearance, contact_angle=None
+        )
+
+    @property
+    def raceway_diameters(self):
+        pitch, size = self.pitch_diameter, self.ball_diameter
+        return pitch - size, pitch + size
 
     @property
     def grooves(self):
@@ -119,8 +138,39 @@ class AngularContactBallBearing(AbstractBallBearing):
         return jnp.cos(self.contact_angle)
 
     @property
+    def nominal_contact_angle(self):
+        return _nominal(self)
+
+    @property
+    def touching_angle(self):
+        return jnp.zeros_like(self.pitch_diameter)
+
+    @property
     def clearance(self):
         return clearance_of(self.contact_angle, self.centre_distance)
+
+    def with_clearance(self, clearance):
+        quarter = clearance / (4.0 * self.centre_distance)
+        known = concrete(clearance, quarter)
+        if known is not None:
+            allowed = (
+                f"above 0 and below {0.5 * known[0] / known[1]:.6g} m"
+                if known[1]
+                else "above 0 m"
+            )
+            check(
+                "with_radial_clearance",
+                "clearance",
+                0.0 < known[1] < 0.5,
+                f"{allowed}: an angular contact bearing with less has no contact angle",
+                clearance,
+                "m",
+            )
+        angle = 2.0 * jnp.arcsin(jnp.sqrt(quarter))
+        return dataclasses.replace(self, contact_angle=angle)
+
+    def rated_as(self, drawing):
+        return _rated_as(self, drawing)
 
     @property
     def is_one_sided(self):
@@ -191,6 +241,7 @@ class FourPointBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    rated_rows: ClassVar[int] = 2
     rated_fields = (*AbstractBallBearing.rated_fields, "shim_angle")
 
     shim_angle: Scalar = eqx.field(
@@ -206,6 +257,13 @@ class FourPointBallBearing(AbstractBallBearing):
     @property
     def clearance(self):
         return self.radial_internal_clearance
+
+    @property
+    def nominal_contact_angle(self):
+        return _nominal(self)
+
+    def rated_as(self, drawing):
+        return _rated_as(self, drawing)
 
     @property
     def free_cosine(self):
@@ -357,6 +415,17 @@ def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:
     Source: Harris, Rolling Bearing Analysis, geometry of ball bearings.
     """
     return 4.0 * centre_distance * jnp.sin(0.5 * contact_angle) ** 2
+
+
+def _nominal(bearing):
+    rated = bearing.rated_contact_angle
+    return bearing.free_contact_angle if rated is None else rated
+
+
+def _rated_as(bearing, drawing):
+    return dataclasses.replace(
+        bearing, rated_contact_angle=drawing.nominal_contact_angle
+    )
 
 
 def _check_rated(bearing):

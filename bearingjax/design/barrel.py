@@ -57,6 +57,9 @@ class AbstractBarrelBearing(AbstractRollerBearing):
     def gap(self):
         return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
 
+    def with_clearance(self, clearance):
+        return eqx.tree_at(lambda b: b.radial_internal_clearance, self, clearance)
+
     @property
     def holds_axially(self) -> bool:
         return True
@@ -192,6 +195,8 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    tilts_alone: ClassVar[bool] = True
+
     @property
     def _centres(self):
         """Distance of the centres of both arcs when rollers touch both raceways, and
@@ -268,6 +273,7 @@ class SphericalThrustRollerBearing(_AbstractSphere):
     """
 
     is_thrust: ClassVar[bool] = True
+    tilts_alone: ClassVar[bool] = True
 
     profile_offset: Scalar = eqx.field(
         converter=as_real, metadata=unit("m"), kw_only=True, default=0.0
@@ -306,6 +312,7 @@ class CylindricalThrustRollerBearing(AbstractRollerBearing):
     """
 
     is_thrust: ClassVar[bool] = True
+    bears_radially: ClassVar[bool] = False
     caged: ClassVar[bool] = True
 
     @property
@@ -364,6 +371,10 @@ class CrossedRollerRow(AbstractRollerBearing):
     """
 
     caged: ClassVar[bool] = True
+    is_crossed: ClassVar[bool] = True
+
+    def with_clearance(self, clearance):
+        return eqx.tree_at(lambda b: b.radial_internal_clearance, self, clearance)
 
     @property
     def axis_angle(self):

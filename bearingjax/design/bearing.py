@@ -122,6 +122,42 @@ class AbstractRollerBearing(AbstractBearing):
         return jnp.cos(self.axis_angle)
 
     @property
+    def nominal_contact_angle(self) -> Scalar:
+        # The load of a taper leaves through its outer raceway, which has no rib.
+        return self.axis_angle + self.half_angle
+
+    @property
+    def touching_angle(self) -> Scalar:
+        return self.axis_angle + self.half_angle
+
+    @property
+    def clearance(self) -> Scalar:
+        return 4.0 * self.gap / jnp.cos(self.touching_angle)
+
+    def with_clearance(self, clearance):
+        # The clearance of a taper is along the normal.
+        own = clearance * jnp.cos(self.touching_angle)
+        return eqx.tree_at(lambda b: b.radial_internal_clearance, self, own)
+
+    @property
+    def raceway_diameters(self) -> tuple[Scalar, Scalar]:
+        axis, half = self.axis_angle, self.half_angle
+        pitch, size = self.pitch_diameter, self.roller_diameter
+        return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
+
+    @property
+    def deviation_bounds(self) -> tuple[Scalar, ...]:
+        return (0.5 * self.roller_diameter,)
+
+    @property
+    def element_length(self) -> Scalar:
+        return self.roller_length
+
+    @property
+    def rib_names(self) -> tuple[str, ...]:
+        return self.ribs.present
+
+    @property
     def holds_axially(self) -> bool:
         pairs = ("outer_minus", "inner_plus"), ("outer_plus", "inner_minus")
         return any(set(pair) <= set(self.ribs.present) for pair in pairs)
@@ -255,6 +291,15 @@ class CylindricalRollerBearing(AbstractRollerBearing):
 
     Traced: all fields but `n_rollers`.
     """
+
+    @property
+    def axial_senses(self) -> frozenset[int]:
+        ribs = self.ribs
+        paths = {
+            1: (ribs.inner_minus, ribs.outer_plus),
+            -1: (ribs.inner_plus, ribs.outer_minus),
+        }
+        return frozenset(sense for sense, pair in paths.items() if None not in pair)
 
 
 class NeedleRollerBearing(AbstractRollerBearing):

@@ -1,6 +1,7 @@
 """Sets of bearings: rows side by side on one shaft, in one housing."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -280,6 +281,26 @@ def bearings_of(bearing: AbstractBearing | BearingSet) -> tuple[AbstractBearing,
     return (bearing,)
 
 
+def with_bearings(
+    bearing: AbstractBearing | BearingSet, new: Iterable[AbstractBearing]
+) -> Any:
+    """Return the set with other bearings in its rows, or the other single bearing.
+
+    Args:
+        bearing: A bearing, or a set.
+        new: The bearing of each row.
+    """
+    if isinstance(bearing, BearingSet):
+        return eqx.tree_at(lambda b: [r.bearing for r in b.rows], bearing, list(new))
+    (only,) = new
+    return only
+
+
+def has_separate_rings(bearing: AbstractBearing | BearingSet) -> bool:
+    """Whether it is a set of bearings, each with rings of its own."""
+    return isinstance(bearing, BearingSet) and not shares_rings(bearing)
+
+
 def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rings tilt freely, as in a self-aligning bearing."""
     return all(row.aligns for row in bearings_of(bearing))
@@ -294,7 +315,7 @@ def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
     rows = list(bearings_of(bearing))
     if all(row.aligns for row in rows):
         return True
-    return len(rows) <= 2 and all(isinstance(row, CrossedRollerRow) for row in rows)
+    return len(rows) <= 2 and all(row.is_crossed for row in rows)
 
 
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:

@@ -60,9 +60,7 @@ def largest_deviation(bearing: Any) -> float | None:
     Args:
         bearing: A single row.
     """
-    balls = bearing.is_ball
-    sizes = bearing.centre_distances if balls else (0.5 * bearing.roller_diameter,)
-    numbers = concrete(*sizes)
+    numbers = concrete(*bearing.deviation_bounds)
     return None if numbers is None else min(numbers)
 
 

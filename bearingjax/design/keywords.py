@@ -74,7 +74,7 @@ def both_rows(
     """
     if not shares_rings(bearing):
         return bearing
-    if isinstance(bearing, CrossedRollerRow):
+    if bearing.is_crossed:
         return BearingSet.crossed(bearing)
     return BearingSet.self_aligning(bearing, staggered=staggered)
 

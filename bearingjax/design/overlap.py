@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 from .ball import AbstractBallBearing
-from .barrel import CrossedRollerRow
 from .checks import concrete
 
 
@@ -20,7 +19,7 @@ def overlap(one: Any, other: Any) -> bool:
             return False
         apart = math.hypot(mine[0] - others[0], mine[1] - others[1])
         return apart < (mine[2] + others[2]) * (1.0 - 1e-9)
-    if all(isinstance(row.bearing, CrossedRollerRow) for row in (one, other)):
+    if one.bearing.is_crossed and other.bearing.is_crossed:
         return False  # one behind the other in the same groove
     mine, others = _corners(one), _corners(other)
     if mine is None or others is None:

@@ -7,6 +7,7 @@ order, are not in these standards: makers agree them with their customers.
 from typing import Annotated, Any, NamedTuple
 
 from ..numerics.units import unit
+from .abstract import AbstractBearing
 from .checks import one_of, positive
 
 _MICRON = 1e-6
@@ -97,6 +98,8 @@ _ROLLERS = {
 }
 
 ROLLER_GRADES = tuple(_ROLLERS)
+ELEMENT_GRADES = {"ball": BALL_GRADES, "roller": ROLLER_GRADES}
+"""Grades of the rolling elements by their noun."""
 """Names of the grades of cylindrical rollers, the best one first."""
 
 LARGEST_ROLLER = 0.018
@@ -127,6 +130,21 @@ def roller_grade(name: str, diameter: Any) -> RollerGrade:
             f" {LARGEST_ROLLER:g} m or less, for which tolerances are known."
         )
     return RollerGrade(*_scale(found))
+
+
+def element_grade(name: str, bearing: AbstractBearing) -> BallGrade | RollerGrade:
+    """Deviations allowed of the rolling elements of a bearing.
+
+    Args:
+        name: One of `ELEMENT_GRADES` of its rolling elements.
+        bearing: A single row.
+
+    Raises:
+        ValueError: As `ball_grade` and `roller_grade`.
+    """
+    if bearing.is_ball:
+        return ball_grade(name)
+    return roller_grade(name, bearing.element_diameter)
 
 
 class RunningAccuracy(NamedTuple):

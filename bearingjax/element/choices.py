@@ -17,7 +17,6 @@ from ..contact.coupled import CoupledSlices
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
-from ..design.ball_types import SelfAligningBallRow
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
@@ -225,7 +224,7 @@ class BallChoices(AbstractChoices):
 
     @classmethod
     def of(cls, rows, point_law=None, raceway_control=None, kinematics=None):
-        aligning = any(isinstance(row.bearing, SelfAligningBallRow) for row in rows)
+        aligning = any(row.bearing.aligns for row in rows)
         default = Finite() if aligning else Linearised()
         return cls(
             point_law=point_law or FreeAngle(),
@@ -237,13 +236,12 @@ class BallChoices(AbstractChoices):
         kinematics, bearing = self.kinematics, part.bearing
         kinematics.check("ball")
         name = type(kinematics).__name__
-        if isinstance(bearing, SelfAligningBallRow) and not kinematics.turns_far:
+        if bearing.aligns and not kinematics.turns_far:
             raise ValueError(
                 f"BearingElement: `kinematics` is {name}(), with which a self-aligning"
                 " bearing would resist its tilt; use Finite()."
             )
-        one_sided = isinstance(bearing, AbstractBallBearing) and bearing.is_one_sided
-        if kinematics.holds_angles and not one_sided:
+        if kinematics.holds_angles and len(bearing.axial_senses) > 1:
             raise ValueError(
                 f"BearingElement: `kinematics` is {name}(), which is for balls of one"
                 " contact angle: of angular contact and thrust bearings."

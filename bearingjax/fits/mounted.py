@@ -9,17 +9,11 @@ are neglected: pitch and ball diameters, by a ten thousandth.
 from dataclasses import replace
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 
-from ..design.ball import AbstractBallBearing
 from ..design.ball_types import (
     AngularContactBallBearing,
-    DeepGrooveBallBearing,
-    FourPointBallBearing,
 )
-from ..design.barrel import AbstractBarrelBearing, CrossedRollerRow
-from ..design.bearing import AbstractRollerBearing
 from ..design.bearing_set import (
     AbstractBearing,
     BearingSet,
@@ -27,7 +21,7 @@ from ..design.bearing_set import (
     rows_of,
     shares_rings,
 )
-from ..design.checks import check, concrete, number, of_class
+from ..design.checks import number, of_class
 from ..numerics.types import Scalar, as_real
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state
 
@@ -49,14 +43,7 @@ def raceway_diameters(bearing: AbstractBearing) -> tuple[Scalar, Scalar]:
         TypeError: If it is a thrust bearing or no bearing.
     """
     check_radial("raceway_diameters", bearing)
-    pitch = bearing.pitch_diameter
-    size = bearing.element_diameter
-    if isinstance(bearing, AbstractRollerBearing):
-        axis, half = bearing.axis_angle, bearing.half_angle
-        return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
-    bottom = isinstance(bearing, DeepGrooveBallBearing)
-    across = size if bottom else size * bearing.free_cosine
-    return pitch - across, pitch + across
+    return bearing.raceway_diameters
 
 
 def radial_clearance(bearing: AbstractBearing) -> Scalar:
@@ -73,19 +60,7 @@ def radial_clearance(bearing: AbstractBearing) -> Scalar:
         TypeError: If it is a thrust bearing or no bearing.
     """
     check_radial("radial_clearance", bearing)
-    if isinstance(bearing, AbstractRollerBearing):
-        return 4.0 * bearing.gap / _outer_cosine(bearing)
-    assert isinstance(bearing, AbstractBallBearing)
     return bearing.clearance
-
-
-def _outer_angle(rollers):
-    """Angle of the outer raceway of rollers to the axis [rad]."""
-    return rollers.axis_angle + rollers.half_angle
-
-
-def _outer_cosine(rollers):
-    return jnp.cos(_outer_angle(rollers))
 
 
 def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
@@ -106,33 +81,7 @@ def with_radial_clearance(bearing: AbstractBearing, clearance: Any) -> Any:
     check_radial("with_radial_clearance", bearing)
     clearance = as_real(clearance)
     number("with_radial_clearance", "clearance", clearance, "m")
-    if isinstance(bearing, AngularContactBallBearing):
-        quarter = clearance / (4.0 * bearing.centre_distance)
-        known = concrete(clearance, quarter)
-        if known is not None:
-            allowed = (
-                f"above 0 and below {0.5 * known[0] / known[1]:.6g} m"
-                if known[1]
-                else "above 0 m"
-            )
-            check(
-                "with_radial_clearance",
-                "clearance",
-                0.0 < known[1] < 0.5,
-                f"{allowed}: an angular contact bearing with less has no contact angle",
-                clearance,
-                "m",
-            )
-        return replace(bearing, contact_angle=2.0 * jnp.arcsin(jnp.sqrt(quarter)))
-    if isinstance(bearing, DeepGrooveBallBearing):
-        return replace(bearing, radial_internal_clearance=clearance, contact_angle=None)
-    if isinstance(bearing, AbstractBallBearing):
-        return replace(bearing, radial_internal_clearance=clearance)
-    # The clearance of a taper is along the normal, that of barrel and crossed rollers
-    # radial.
-    radial = isinstance(bearing, AbstractBarrelBearing | CrossedRollerRow)
-    own = clearance if radial else clearance * _outer_cosine(bearing)
-    return eqx.tree_at(lambda b: b.radial_internal_clearance, bearing, own)
+    return bearing.with_clearance(clearance)
 
 
 def with_bearing_dimensions(
@@ -155,23 +104,10 @@ def with_bearing_dimensions(
         "inner_raceway": inner,
         "outer_raceway": outer,
         "radial_clearance": radial_clearance(row),
-        "contact_angle": _touching_angle(row),
+        "contact_angle": row.touching_angle,
     }
     missing = {k: v for k, v in own.items() if getattr(mounting, k) is None}
     return replace(mounting, **missing)
-
-
-def _touching_angle(row: AbstractBearing) -> Scalar:
-    """Angle from the radial plane at which elements touch the outer ring [rad].
-
-    0 where balls touch at the bottom; and of angular contact, where what balls grow
-    along the axis takes no clearance, but moves the ring that touches them.
-    """
-    if isinstance(row, DeepGrooveBallBearing | AngularContactBallBearing):
-        return jnp.zeros_like(row.pitch_diameter)
-    if isinstance(row, AbstractBallBearing):
-        return row.free_contact_angle
-    return _outer_angle(row)
 
 
 def mounted(
@@ -229,15 +165,8 @@ def _states(bearing: BearingSet, mounting, conditions) -> list[FitState]:
 
 def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:
     """Return a row with its clearance after fits."""
-    new = with_radial_clearance(bearing, state.radial_clearance)
-    if not isinstance(new, AngularContactBallBearing | FourPointBallBearing):
-        return new
     # Load ratings are made with the angle of the drawing, whatever the fits.
-    before: Any = bearing
-    drawn = before.rated_contact_angle
-    if drawn is None:
-        drawn = before.free_contact_angle
-    return replace(new, rated_contact_angle=drawn)
+    return with_radial_clearance(bearing, state.radial_clearance).rated_as(bearing)
 
 
 def _mounted_row(row: SetRow, state: FitState, shift) -> SetRow:

@@ -1,19 +1,18 @@
 """Films of the contacts of a solved bearing: thickness over roughness."""
 
-from typing import Any
-
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, contact_modulus, rows_of
+from ..design import contact_modulus, rows_of
+from ..design.abstract import nearest_entry
 from ..design.checks import of_class, positive
 from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from ..statics.solution import BallSolution, Solution, check_single
+from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
 
 _SIDES = (1.0, -1.0)
 """Signs of outer and inner raceway: outside and inside of the pitch circle."""
@@ -75,7 +74,7 @@ def films(
     for size, row in pairs:
         mine = slice(begin, begin + size)
         begin += size
-        of_row = _of_balls if isinstance(solution, BallSolution) else _of_rollers
+        of_row = nearest_entry(_FILMS, solution)
         parts.append(of_row(solution, row.bearing, mine, state))
     entrainment, central, minimum = (
         jnp.concatenate(values) for values in zip(*parts, strict=True)
@@ -145,18 +144,15 @@ def _thickness(formula, entrainment, load, sizes, modulus):
     return entrainment, *(jnp.where(carried, film, jnp.inf) for film in found)
 
 
-def _diameter(bearing: Any):
-    if isinstance(bearing, AbstractBallBearing):
-        return bearing.ball_diameter
-    return bearing.roller_diameter
-
-
 def _radius(bearing, cosine, sides):
     """Radius of contacts about the axis [m]."""
-    return 0.5 * (bearing.pitch_diameter + sides * _diameter(bearing) * cosine)
+    return 0.5 * (bearing.pitch_diameter + sides * bearing.element_diameter * cosine)
 
 
 def _rolling_radius(bearing, cosine, sides):
     """Relative radius of curvature in rolling direction [m]."""
-    diameter = _diameter(bearing)
+    diameter = bearing.element_diameter
     return 0.5 * diameter * (1.0 + sides * diameter * cosine / bearing.pitch_diameter)
+
+
+_FILMS = {BallSolution: _of_balls, RollerSolution: _of_rollers}

@@ -5,6 +5,7 @@ scatter about them by some tens of per cent; seals are not in them. What rolling
 elements that slip really do is `bearingjax.skid`.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -29,14 +30,14 @@ from ..design import (
     ThrustBallBearing,
     rows_of,
 )
+from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.checks import check, of_class, one_of, positive
 from ..life.equivalent_load import equivalent_load
-from ..life.rating import nominal_contact_angle
 from ..life.rating import static_capacity as rated
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from ..statics.solution import BallSolution, Solution, check_single
+from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
 
 SUPPLIES = ("grease", "oil_mist", "oil_bath", "oil_jet")
 """Types of lubricant supply; a jet counts as an oil bath with a vertical shaft."""
@@ -196,6 +197,19 @@ def unit_loads(solution: Solution) -> list[tuple[Scalar, Scalar, Any]]:
     return [(*_directions(load), load) for load in loads]
 
 
+def _outer_of_balls(solution, mine, bearing):
+    """Loads of the outer raceway contacts of a row [N], and their angles [rad]."""
+    half = solution.contact_load.shape[1] // 2
+    return solution.contact_load[mine, :half], solution.contact_angle[mine, :half]
+
+
+def _outer_of_rollers(solution, mine, bearing):
+    return solution.roller_load[mine, :1], bearing.nominal_contact_angle
+
+
+_OUTER = {BallSolution: _outer_of_balls, RollerSolution: _outer_of_rollers}
+
+
 def _row_loads(solution) -> list[Any]:
     """Resultant force of the outer raceway contacts of every row, without ribs."""
     found, begin = [], 0
@@ -203,13 +217,7 @@ def _row_loads(solution) -> list[Any]:
     for size, row in pairs:
         mine = slice(begin, begin + size)
         begin += size
-        if isinstance(solution, BallSolution):
-            half = solution.contact_load.shape[1] // 2
-            load = solution.contact_load[mine, :half]
-            angle = solution.contact_angle[mine, :half]
-        else:
-            load = solution.roller_load[mine, :1]
-            angle = row.bearing.axis_angle + row.bearing.half_angle
+        load, angle = nearest_entry(_OUTER, solution)(solution, mine, row.bearing)
         across = jnp.sum(load * jnp.cos(angle), axis=1)
         azimuth = solution.azimuth[mine]
         found.append(
@@ -256,8 +264,7 @@ def _constants(row, supply) -> tuple[_Kind, float]:
     Raises:
         ValueError: If they are not known.
     """
-    named = [_KINDS[base] for base in type(row).__mro__ if base in _KINDS]
-    kind = named[0] if named else None
+    kind = nearest_entry(_KINDS, row)
     viscous = None if kind is None else kind.viscous[SUPPLIES.index(supply)]
     if kind is None or viscous is None:
         where = "" if kind is None else f" with `supply` {supply!r}"
@@ -272,20 +279,36 @@ def _directed_load(row, radial, axial):
     """Load F of the formula for M1 [N]."""
     if row.is_thrust:
         return axial
-    if isinstance(row, DeepGrooveBallBearing):
-        return jnp.maximum(radial, 3.0 * axial - 0.1 * radial)
-    if isinstance(row, AbstractBallBearing):
-        cot = 1.0 / jnp.tan(nominal_contact_angle(row))
-        return jnp.maximum(radial, 0.9 * axial * cot - 0.1 * radial)
-    if isinstance(row, TaperedRollerBearing):
-        cot = 1.0 / jnp.tan(nominal_contact_angle(row))
-        return jnp.maximum(radial, 0.8 * axial * cot)
-    if isinstance(row, SphericalRollerRow):
-        thrust = axial / (1.5 * jnp.tan(nominal_contact_angle(row)))
-        flat = thrust <= radial
-        share = jnp.where(flat, thrust / jnp.where(radial > 0, radial, 1.0), 0.0)
-        return jnp.where(flat, (1.0 + 0.6 * share**3) * radial, 1.6 * thrust)
-    return radial
+    return nearest_entry(_DIRECTED, row)(row.nominal_contact_angle, radial, axial)
+
+
+def _of_deep_groove(angle, radial, axial):
+    return jnp.maximum(radial, 3.0 * axial - 0.1 * radial)
+
+
+def _of_other_balls(angle, radial, axial):
+    return jnp.maximum(radial, 0.9 * axial * (1.0 / jnp.tan(angle)) - 0.1 * radial)
+
+
+def _of_tapers(angle, radial, axial):
+    return jnp.maximum(radial, 0.8 * axial * (1.0 / jnp.tan(angle)))
+
+
+def _of_spherical(angle, radial, axial):
+    thrust = axial / (1.5 * jnp.tan(angle))
+    flat = thrust <= radial
+    share = jnp.where(flat, thrust / jnp.where(radial > 0, radial, 1.0), 0.0)
+    return jnp.where(flat, (1.0 + 0.6 * share**3) * radial, 1.6 * thrust)
+
+
+_DIRECTED: dict[type, Callable[..., Scalar]] = {
+    AbstractBearing: lambda angle, radial, axial: radial,
+    AbstractBallBearing: _of_other_balls,
+    DeepGrooveBallBearing: _of_deep_groove,
+    TaperedRollerBearing: _of_tapers,
+    SphericalRollerRow: _of_spherical,
+}
+"""Loads F of the formula for M1 by class, of contact angle, radial and axial load."""
 
 
 def _directions(load):

@@ -7,6 +7,8 @@ bearings of a series; of other makers they are an estimate as Palmgren's are
 (`friction_torque`).
 """
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -15,6 +17,7 @@ from jaxtyping import Array, Float
 
 from ..catalogue.entry import CatalogueEntry
 from ..design import (
+    AbstractBearing,
     AngularContactBallBearing,
     CylindricalRollerBearing,
     CylindricalThrustRollerBearing,
@@ -28,9 +31,9 @@ from ..design import (
     ToroidalRollerBearing,
     rows_of,
 )
+from ..design.abstract import nearest_entry
 from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
-from ..life.rating import nominal_contact_angle
 from ..life.rating import static_capacity as rated
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -316,79 +319,39 @@ def skf_friction_torque(
     dry = jnp.exp(-2.6e-8 * _power(flow, 1.4) * d_mean)
     film = OILS[oil] if kind.film is None else kind.film
     sliding = dry * _BOUNDARY + (1.0 - dry) * film
-    parts = []
+    parts, variables = [], nearest_entry(_VARIABLES, first)
     for row, (radial, axial, _) in zip(
         units_of(bearing), unit_loads(solution), strict=True
     ):
         capacity = rated(row) if static_capacity is None else as_real(static_capacity)
-        given = kind.series[series], d_mean, radial, axial, rpm, capacity, flow
-        parts.append(_variables(first, *given))
+        angle = first.nominal_contact_angle
+        one = _Unit(d_mean, radial, axial, rpm, capacity, flow, angle)
+        parts.append(variables(kind.series[series], one))
     of_rolling, of_sliding = (jnp.stack(v) for v in zip(*parts, strict=True))
     torques = 1e-3 * rolling * of_rolling, 1e-3 * sliding * of_sliding
     return SkfFriction(*torques, speed, series, assumed)
 
 
-def _variables(bearing, row, d, radial, axial, rpm, capacity, flow=0.0):
-    """G_rr and G_sl of a unit, in mm and N."""
-    if isinstance(bearing, DeepGrooveBallBearing):
-        return _deep_groove(row, d, radial, axial, capacity)
-    if isinstance(bearing, ThrustBallBearing):
-        r1, s1 = row
-        return (
-            r1 * d**1.83 * _power(axial, 0.54),
-            s1 * d**0.05 * _power(axial, 4 / 3),
-        )
-    if isinstance(bearing, CylindricalRollerBearing):
-        r1, s1, s2 = row
-        rolling = r1 * d**2.41 * _power(radial, 0.31)
-        return rolling, s1 * d**0.9 * axial + s2 * d * radial
-    if isinstance(bearing, TaperedRollerBearing):
-        r1, r2, s1, s2 = row
-        thrust = 0.4 / jnp.tan(nominal_contact_angle(bearing)) * axial
-        rolling = r1 * d**2.38 * _power(radial + r2 * thrust, 0.31)
-        return rolling, s1 * d**0.82 * (radial + s2 * thrust)
-    if isinstance(bearing, CylindricalThrustRollerBearing):
-        r1, s1 = row
-        return r1 * d**2.38 * _power(axial, 0.31), s1 * d**0.62 * axial
-    if isinstance(bearing, ToroidalRollerBearing):
-        r1, r2, s1, s2 = row
-        # SKF passes between forms that differ by up to 9 % there; the lesser do not.
-        light, heavy = _power(radial, 0.54), _power(radial, 0.31)
-        rolling = jnp.minimum(r1 * d**1.97 * light, r2 * d**2.37 * heavy)
-        slid = s1 * d**-0.19 * _power(radial, 5 / 3)
-        return rolling, jnp.minimum(slid, s2 * d**1.05 * radial)
-    if isinstance(bearing, SphericalRollerRow):
-        r1, r2, r3, r4, s1, s2, s3, s4 = row
-        point = r1 * d**1.85 * _power(radial + r2 * axial, 0.54)
-        line = r3 * d**2.3 * _power(radial + r4 * axial, 0.31)
-        slid = s1 * d**0.25 * _power(radial**4 + s2 * axial**4, 1 / 3)
-        lined = s3 * d**0.94 * _power(radial**3 + s4 * axial**3, 1 / 3)
-        return jnp.minimum(point, line), jnp.minimum(slid, lined)
-    if isinstance(bearing, SphericalThrustRollerBearing):
-        r1, r2, r3, r4, s1, s2, s3, s4, s5 = row
-        point = r1 * d**1.96 * _power(radial + r2 * axial, 0.54)
-        line = r3 * d**2.39 * _power(radial + r4 * axial, 0.31)
-        slid = s1 * d**-0.35 * (_power(radial, 5 / 3) + s2 * _power(axial, 5 / 3))
-        least = jnp.minimum(slid, s3 * d**0.89 * (radial + axial))
-        # The rib slides as long as no film parts it from the rollers.
-        rib = s4 * d**0.76 * (radial + s5 * axial) * jnp.exp(-1e-6 * flow**1.4 * d)
-        return jnp.minimum(point, line), least + rib
-    r1, r2, r3, s1, s2, s3 = row
-    aligning = isinstance(bearing, SelfAligningBallRow)
-    powers = (2.0, -0.12, 3.5) if aligning else (1.97, 0.26, 4.0)
-    turning = d ** powers[2] * rpm**2
-    rolling = r1 * d ** powers[0] * _power(radial + r3 * turning + r2 * axial, 0.54)
-    both = _power(radial + s3 * turning, 4 / 3) + s2 * _power(axial, 4 / 3)
-    return rolling, s1 * d ** powers[1] * both
+class _Unit(NamedTuple):
+    """A unit of the formulas: mean diameter [mm], radial and axial load [N], speed
+    [1/min], static capacity [N], viscosity times speed, contact angle [rad]."""
+
+    d: Any
+    radial: Any
+    axial: Any
+    rpm: Any
+    capacity: Any
+    flow: Any
+    angle: Any
 
 
-def _deep_groove(row, d, radial, axial, capacity):
+def _deep_groove(row, unit):
     """G_rr and G_sl of a deep groove ball bearing, in mm and N.
 
     SKF's forms with and without axial load do not join: G_sl grows by d^0.115, a half,
     with the first newton. An axial load at the level of round-off counts as zero.
     """
-    r1, r2, s1, s2 = row
+    (r1, r2, s1, s2), (d, radial, axial, _, capacity, *_) = row, unit
     loaded = axial > 1e-6 * radial
     share = jnp.where(loaded, axial, capacity) / capacity
     sine = jnp.sin(jnp.deg2rad(24.6 * share**0.24))
@@ -397,6 +360,81 @@ def _deep_groove(row, d, radial, axial, capacity):
     thrust = s1 * d**-0.145 * _power(both, 1 / 3)
     alone = s1 * d**-0.26 * _power(radial, 5 / 3)
     return rolling, jnp.where(loaded, thrust, alone)
+
+
+def _angular(row, unit, powers=(1.97, 0.26, 4.0)):
+    (r1, r2, r3, s1, s2, s3), (d, radial, axial, rpm, *_) = row, unit
+    turning = d ** powers[2] * rpm**2
+    rolling = r1 * d ** powers[0] * _power(radial + r3 * turning + r2 * axial, 0.54)
+    both = _power(radial + s3 * turning, 4 / 3) + s2 * _power(axial, 4 / 3)
+    return rolling, s1 * d ** powers[1] * both
+
+
+def _thrust_balls(row, unit):
+    (r1, s1), (d, _, axial, *_) = row, unit
+    return r1 * d**1.83 * _power(axial, 0.54), s1 * d**0.05 * _power(axial, 4 / 3)
+
+
+def _cylindrical(row, unit):
+    (r1, s1, s2), (d, radial, axial, *_) = row, unit
+    rolling = r1 * d**2.41 * _power(radial, 0.31)
+    return rolling, s1 * d**0.9 * axial + s2 * d * radial
+
+
+def _tapered(row, unit):
+    (r1, r2, s1, s2), (d, radial, axial, *_) = row, unit
+    thrust = 0.4 / jnp.tan(unit.angle) * axial
+    rolling = r1 * d**2.38 * _power(radial + r2 * thrust, 0.31)
+    return rolling, s1 * d**0.82 * (radial + s2 * thrust)
+
+
+def _thrust_rollers(row, unit):
+    (r1, s1), (d, _, axial, *_) = row, unit
+    return r1 * d**2.38 * _power(axial, 0.31), s1 * d**0.62 * axial
+
+
+def _toroidal(row, unit):
+    (r1, r2, s1, s2), (d, radial, *_) = row, unit
+    # SKF passes between forms that differ by up to 9 % there; the lesser do not.
+    light, heavy = _power(radial, 0.54), _power(radial, 0.31)
+    rolling = jnp.minimum(r1 * d**1.97 * light, r2 * d**2.37 * heavy)
+    slid = s1 * d**-0.19 * _power(radial, 5 / 3)
+    return rolling, jnp.minimum(slid, s2 * d**1.05 * radial)
+
+
+def _spherical(row, unit):
+    (r1, r2, r3, r4, s1, s2, s3, s4), (d, radial, axial, *_) = row, unit
+    point = r1 * d**1.85 * _power(radial + r2 * axial, 0.54)
+    line = r3 * d**2.3 * _power(radial + r4 * axial, 0.31)
+    slid = s1 * d**0.25 * _power(radial**4 + s2 * axial**4, 1 / 3)
+    lined = s3 * d**0.94 * _power(radial**3 + s4 * axial**3, 1 / 3)
+    return jnp.minimum(point, line), jnp.minimum(slid, lined)
+
+
+def _spherical_thrust(row, unit):
+    (r1, r2, r3, r4, s1, s2, s3, s4, s5), (d, radial, axial, _, _, flow, _) = row, unit
+    point = r1 * d**1.96 * _power(radial + r2 * axial, 0.54)
+    line = r3 * d**2.39 * _power(radial + r4 * axial, 0.31)
+    slid = s1 * d**-0.35 * (_power(radial, 5 / 3) + s2 * _power(axial, 5 / 3))
+    least = jnp.minimum(slid, s3 * d**0.89 * (radial + axial))
+    # The rib slides as long as no film parts it from the rollers.
+    rib = s4 * d**0.76 * (radial + s5 * axial) * jnp.exp(-1e-6 * flow**1.4 * d)
+    return jnp.minimum(point, line), least + rib
+
+
+_VARIABLES: dict[type, Callable[..., tuple[Any, Any]]] = {
+    AbstractBearing: _angular,
+    DeepGrooveBallBearing: _deep_groove,
+    SelfAligningBallRow: partial(_angular, powers=(2.0, -0.12, 3.5)),
+    ThrustBallBearing: _thrust_balls,
+    CylindricalRollerBearing: _cylindrical,
+    TaperedRollerBearing: _tapered,
+    CylindricalThrustRollerBearing: _thrust_rollers,
+    ToroidalRollerBearing: _toroidal,
+    SphericalRollerRow: _spherical,
+    SphericalThrustRollerBearing: _spherical_thrust,
+}
+"""G_rr and G_sl of a unit by class, of its constants and loads, in mm and N."""
 
 
 def _diameters(bearing, kind, given):

@@ -28,18 +28,18 @@ from jaxtyping import Array, Float
 from ..design import (
     AbstractBallBearing,
     AbstractBearing,
+    AbstractRollerBearing,
     AngularContactBallBearing,
     BearingSet,
-    CrossedRollerRow,
     FourPointBallBearing,
     SelfAligningBallRow,
-    SphericalThrustRollerBearing,
     rows_of,
 )
+from ..design.abstract import nearest_entry
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from .rating import nominal_contact_angle, published_factors, rated_axially
+from .rating import published_factors, rated_axially
 
 # Fa/(Z D²) in MPa, and Y of a single row, Y1, Y2 of two, at each (ISO 281, table 3).
 _RELATIVE = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)
@@ -168,17 +168,14 @@ def left_out(
     """
     rows = rows_of(bearing)
     row: Any = rows[0].bearing
-    angle = nominal_contact_angle(row)
+    angle = row.nominal_contact_angle
     flat = _is_flat(angle)
-    straight = jnp.where(angle > 0, 0.0, 1.0)
-    if isinstance(row, AbstractBallBearing):
-        straight = 0.0 * straight
+    straight = jnp.where(angle > 0, 0.0, nearest_entry(_LEFT_OUT, row))
     below = jnp.where(flat, 0.0, angle)
     reach = 0.5 * row.pitch_diameter * jnp.tan(below) - row.axial_place
     places = [r.position + (reach if r.mirrored else -reach) for r in rows]
     # Of a bearing that is rated axially it is far away, but for the centre of a sphere.
-    sphere = isinstance(row, SphericalThrustRollerBearing)
-    far = flat if sphere else rated_axially(bearing)
+    far = flat if row.tilts_alone else rated_axially(bearing)
     centre = jnp.where(far, 0.0, sum(places) / len(rows))
     across = load[3:5] + centre * jnp.stack([load[1], -load[0]])
     across = across * jnp.asarray([name in free for name in ("gx", "gy")], load.dtype)
@@ -192,7 +189,7 @@ def left_out(
 def _is_crossed(bearing) -> bool:
     """Whether it has crossed rollers of both orientations."""
     rows = rows_of(bearing)
-    crossed = all(isinstance(row.bearing, CrossedRollerRow) for row in rows)
+    crossed = all(row.bearing.is_crossed for row in rows)
     return crossed and len({row.mirrored for row in rows}) == 2
 
 
@@ -216,13 +213,10 @@ def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factor
     row = rows[0].bearing
     turned = sum(row.mirrored for row in rows)
     double = 0 < turned < len(rows)
-    angle = nominal_contact_angle(row)
-    if isinstance(row, AbstractBallBearing):
-        # Rows that share the axial load: all of radial contact, else those of a side.
-        sharing = len(rows), max(turned, len(rows) - turned)
-        radial = _of_balls(row, angle, double, sharing, axial)
-    else:
-        radial = _of_rollers(angle, double)
+    angle = row.nominal_contact_angle
+    # Rows that share the axial load: all of radial contact, else those of a side.
+    sharing = len(rows), max(turned, len(rows) - turned)
+    radial = nearest_entry(_RADIAL, row)(row, angle, double, sharing, axial)
     printed = published_factors(bearing)
     if printed is not None:
         y1, y2, y0 = printed[0]
@@ -235,7 +229,7 @@ def load_factors(bearing: AbstractBearing | BearingSet, axial: Scalar) -> Factor
     alone = jnp.stack([jnp.zeros_like(angle), jnp.ones_like(angle)])[None]
     thrust = [
         jnp.where(_is_flat(angle), alone, factors)
-        for factors in _of_thrust(angle, isinstance(row, AbstractBallBearing), double)
+        for factors in _of_thrust(angle, nearest_entry(_FIRST, row), double)
     ]
     steep = rated_axially(bearing)
     return Factors(
@@ -247,21 +241,31 @@ def _pairs(*pairs) -> Array:
     return jnp.stack([jnp.stack([jnp.asarray(v) for v in pair]) for pair in pairs])
 
 
-def _of_balls(row, angle, double, sharing, axial):
+def _pressure(row, axial):
+    """Axial load over n D² of balls [MPa]."""
+    return 1e-6 * axial / (row.n_balls * row.ball_diameter**2)
+
+
+def _of_self_aligning(row, angle, double, sharing, axial):
+    one, zero, cot = jnp.ones_like(angle), jnp.zeros_like(angle), 1.0 / jnp.tan(angle)
+    if double:
+        dynamic = _pairs((one, 0.42 * cot), (0.65 * one, 0.65 * cot))
+        return dynamic, _pairs((one, 0.44 * cot), (one, zero))
+    dynamic = _pairs((one, zero), (0.4 * one, 0.4 * cot))
+    return dynamic, _pairs((0.5 * one, 0.22 * cot), (one, zero))
+
+
+def _of_radial_contact(row, angle, double, sharing, axial):
     one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
-    pressure = 1e-6 * axial / (row.n_balls * row.ball_diameter**2)
-    if isinstance(row, SelfAligningBallRow):
-        cot = 1.0 / jnp.tan(angle)
-        if double:
-            dynamic = _pairs((one, 0.42 * cot), (0.65 * one, 0.65 * cot))
-            return dynamic, _pairs((one, 0.44 * cot), (one, zero))
-        dynamic = _pairs((one, zero), (0.4 * one, 0.4 * cot))
-        return dynamic, _pairs((0.5 * one, 0.22 * cot), (one, zero))
-    if not isinstance(row, AngularContactBallBearing | FourPointBallBearing):
-        # Radial contact: all rows share the axial load.
-        y = _along(_RELATIVE, _DEEP_GROOVE, pressure / sharing[0])
-        dynamic = _pairs((one, zero), (0.56 * one, y))
-        return dynamic, _pairs((0.6 * one, 0.5 * one), (one, zero))
+    # All rows share the axial load.
+    y = _along(_RELATIVE, _DEEP_GROOVE, _pressure(row, axial) / sharing[0])
+    dynamic = _pairs((one, zero), (0.56 * one, y))
+    return dynamic, _pairs((0.6 * one, 0.5 * one), (one, zero))
+
+
+def _of_angular_contact(row, angle, double, sharing, axial):
+    one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
+    pressure = _pressure(row, axial)
     degrees = jnp.degrees(angle)
 
     def of(values):
@@ -274,14 +278,14 @@ def _of_balls(row, angle, double, sharing, axial):
         return of(jnp.concatenate([jnp.stack(flat), steep]))
 
     # A four-point bearing holds both ways, as two rows do.
-    if double or isinstance(row, FourPointBallBearing):
+    if double or row.rated_rows == 2:
         dynamic = _pairs((one, y_of("y1")), (of(_X2), y_of("y2")))
         return dynamic, _pairs((one, of(_Y0_DOUBLE)), (one, zero))
     dynamic = _pairs((one, zero), (of(_X), y_of("y")))
     return dynamic, _pairs((0.5 * one, of(_Y0)), (one, zero))
 
 
-def _of_rollers(angle, double):
+def _of_rollers(row, angle, double, sharing, axial):
     one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
     tilted = angle > 0
     cot = jnp.where(tilted, 1.0 / jnp.tan(jnp.where(tilted, angle, 1.0)), 0.0)
@@ -294,20 +298,39 @@ def _of_rollers(angle, double):
     return dynamic, _pairs((0.5 * second, 0.22 * cot), (one, zero))
 
 
-def _of_thrust(angle, balls, double):
+def _thrust_balls(angle, tangent):
+    """X of the second pair, and the first pair, of thrust balls below 90 degrees."""
+    sine = jnp.sin(angle)
+    x = 1.25 * tangent * (1.0 - 2.0 / 3.0 * sine)
+    first = 20.0 / 13.0 * tangent * (1.0 - sine / 3.0)
+    return x, (first, (10.0 / 13.0) * (1.0 - sine / 3.0))
+
+
+def _thrust_rollers(angle, tangent):
+    return tangent, (1.5 * tangent, 0.67 * jnp.ones_like(angle))
+
+
+_RADIAL = {
+    AbstractBallBearing: _of_radial_contact,
+    AngularContactBallBearing: _of_angular_contact,
+    FourPointBallBearing: _of_angular_contact,
+    SelfAligningBallRow: _of_self_aligning,
+    AbstractRollerBearing: _of_rollers,
+}
+"""Factors X and Y, X0 and Y0 of radial bearings, by class."""
+
+_FIRST = {AbstractBallBearing: _thrust_balls, AbstractRollerBearing: _thrust_rollers}
+"""Factors of thrust bearings below 90 degrees, by class."""
+
+_LEFT_OUT = {AbstractBallBearing: 0.0, AbstractRollerBearing: 1.0}
+"""Part of an axial load that is left out at a contact angle of zero, by class [1]."""
+
+
+def _of_thrust(angle, first_of, double):
     """Thrust bearings below 90 degrees."""
     one = jnp.ones_like(angle)
     tangent = jnp.tan(jnp.where(_is_flat(angle), 0.0, angle))
-    if balls:
-        sine = jnp.sin(angle)
-        x = 1.25 * tangent * (1.0 - 2.0 / 3.0 * sine)
-        first = (
-            20.0 / 13.0 * tangent * (1.0 - sine / 3.0),
-            (10.0 / 13.0) * (1.0 - sine / 3.0),
-        )
-    else:
-        x = tangent
-        first = (1.5 * tangent, 0.67 * one)
+    x, first = first_of(angle, tangent)
     second = (x, one)
     dynamic = _pairs(first, second) if double else _pairs(second, second)
     static = (2.3 * tangent, one)

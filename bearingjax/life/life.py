@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import rows_of
+from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
 from ..design.checks import check, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
@@ -42,7 +43,6 @@ from .rating import (
     Ratings,
     check_alike,
     is_axial,
-    nominal_contact_angle,
     ratings,
     row_ratings,
 )
@@ -352,10 +352,15 @@ def solution_loads(
         ValueError: If a roller's positions are even in number, or make fewer than 30
             laminae.
     """
-    if isinstance(solution, BallSolution):
-        load = solution.contact_load
-        return load.reshape(load.shape[0], 2, -1)
-    assert isinstance(solution, RollerSolution)
+    return nearest_entry(_LOADS, solution)(solution, with_edges)
+
+
+def _loads_of_balls(solution, with_edges):
+    load = solution.contact_load
+    return load.reshape(load.shape[0], 2, -1)
+
+
+def _loads_of_rollers(solution, with_edges):
     points = solution.line_load.shape[-1]
     laminae = points // 2
     if points % 2 == 0 or laminae < LEAST_LAMINAE:
@@ -370,6 +375,9 @@ def solution_loads(
     if not with_edges:
         return load
     return load * jnp.asarray(edge_stress(laminae), load.dtype)[None, None]
+
+
+_LOADS = {BallSolution: _loads_of_balls, RollerSolution: _loads_of_rollers}
 
 
 @program(quick=True)
@@ -412,7 +420,7 @@ def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
     )
     lost = left_out(bearing, force, solution.free)
     # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
-    exponent = (3, 1) if kind is BALLS else (10, 3)
+    exponent = kind.basic
     ratio = equivalent.dynamic / rated.dynamic_capacity
     fields: dict[str, Any] = {
         "ratings": rated,
@@ -471,7 +479,7 @@ def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
     alone = row_ratings(bearing, rated)
     sizes = zip(bearings_of(bearing), alone, row_sizes, ends, strict=True)
     for row, (capacity, limit), size, end in sizes:
-        angle = nominal_contact_angle(row)
+        angle = row.nominal_contact_angle
         thrust = is_axial(row.is_thrust, angle)
         loaded = loads[int(end) - size : int(end)]
         fatigue = row_fatigue(row, capacity, angle, loaded, turning)

@@ -28,7 +28,7 @@ LARGEST_MOMENT = 0.1
 """Moment not included in P, over P times the pitch radius, that gives a warning [1]: it
 takes a third of the reference life of a 6308."""
 
-LEAST_LOAD_OF_BALLS, LEAST_LOAD_OF_ROLLERS = 0.01, 0.02
+LEAST_LOAD = {"ball": 0.01, "roller": 0.02}
 """Least load over C at which rolling elements are sure to roll [1].
 
 Source: rule of catalogues of rolling bearings (SKF), for want of a closer one.
@@ -161,8 +161,7 @@ def _most(ratings):
 
 
 def _least(bearing, ratings):
-    share = LEAST_LOAD_OF_BALLS if bearing.is_ball else LEAST_LOAD_OF_ROLLERS
-    return share * ratings.dynamic_capacity
+    return LEAST_LOAD[bearing.noun] * ratings.dynamic_capacity
 
 
 def _heavy_numbers(bearing, ratings, numbers):
@@ -194,7 +193,7 @@ LIFE_KINDS: dict[str, Kind] = {
         _light_numbers,
         lambda size: (
             f"of {100.0 * (1.0 - size):.3g} % of the least one that makers ask for,"
-            f" {LEAST_LOAD_OF_BALLS:g} C of ball and {LEAST_LOAD_OF_ROLLERS:g} C of"
+            f" {LEAST_LOAD['ball']:g} C of ball and {LEAST_LOAD['roller']:g} C of"
             " roller bearings: the rolling elements"
         ),
     ),

@@ -23,11 +23,12 @@ from ..design import (
     BearingSet,
     CylindricalThrustRollerBearing,
     DeepGrooveBallBearing,
-    FourPointBallBearing,
     SelfAligningBallRow,
     SetRow,
+    ThrustBallBearing,
     rows_of,
 )
+from ..design.abstract import nearest_entry
 from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, positive
 from ..design.published import close, is_as_published
@@ -188,7 +189,7 @@ def dynamic_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
     that face the same way count, of two unequal sides the weaker. Rows of cylindrical
     thrust rollers on several circles, facing the same way, may be unlike: C = Σ Z L
     (Σ (Z L/C_k)^(9/2))^(-2/9). A four-point bearing is rated as two rows, like the
-    factors of its equivalent load (`arc_rows`).
+    factors of its equivalent load (`rated_rows`).
 
     Args:
         bearing: Any bearing, or a set of alike ones. The contact angle is zero for deep
@@ -376,15 +377,10 @@ def _rate_part(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
     rows, (alone, reduction) = part.rows, part.alone
     axial = is_axial(part.is_thrust, rows.row.contact_angle)
     many = jnp.where(axial, rows.one_way, rows.count / alone)
-    dynamic = grown[0] * many ** _power(rows.row) / jnp.where(axial, 1.0, reduction)
+    dynamic = grown[0] * many**rows.row.power / jnp.where(axial, 1.0, reduction)
     scaled = jnp.stack([dynamic, *2 * [grown[1] * many]])
     published = part.holds & (part.published > 0)
     return jnp.where(published, part.published * scaled, plain), published
-
-
-def _power(row: BallRow | RollerRow) -> float:
-    """Power of the number of rows in C."""
-    return 0.7 if isinstance(row, BallRow) else 7.0 / 9.0
 
 
 def row_ratings(
@@ -397,7 +393,7 @@ def row_ratings(
         rated: Its ratings.
 
     Source: ISO 281: C = C_1 i^0.7 of i rows of balls, C_1 i^(7/9) of rollers; the
-        arcs of a four-point bearing count as two rows (`arc_rows`). Unlike rows of
+        arcs of a four-point bearing count as two rows (`rated_rows`). Unlike rows of
         thrust rollers have C in the ratio of their own, C_u in that of their C0.
     """
     parts = _parts(bearing)
@@ -410,7 +406,7 @@ def row_ratings(
         rows = first.rows
         axial = is_axial(first.is_thrust, rows.row.contact_angle)
         count = jnp.where(axial, rows.one_way, rows.count)
-        shares = [(count ** -_power(rows.row), 1.0 / count)] * len(rows_of(bearing))
+        shares = [(count**-rows.row.power, 1.0 / count)] * len(rows_of(bearing))
     return [
         (rated.dynamic_capacity * c, rated.fatigue_load_limit * limit)
         for c, limit in shares
@@ -423,8 +419,7 @@ def _limit(parts, static):
 
 
 def _limit_of(parts, static):
-    balls = isinstance(parts[0].rows.row, BallRow)
-    share, power = (22, 0.5) if balls else (8.2, 0.3)
+    share, power = parts[0].rows.row.limit
     pitch = jnp.max(jnp.stack([part.rows.row.pitch_diameter for part in parts]))
     return static / share / _large(pitch) ** power
 
@@ -446,14 +441,30 @@ def _large(pitch):
 
 def _row(bearing) -> BallRow | RollerRow:
     """The numbers that a row is rated by."""
-    angle, pitch = nominal_contact_angle(bearing), bearing.pitch_diameter
-    count = as_real(bearing.n_elements)
-    if isinstance(bearing, AbstractBallBearing):
-        osculation = bearing.outer_osculation, bearing.inner_osculation
-        return BallRow(count, bearing.ball_diameter, pitch, angle, osculation)
+    return nearest_entry(_ROWS, bearing)(bearing, as_real(bearing.n_elements))
+
+
+def _row_of_balls(bearing, count) -> BallRow:
+    angle, pitch = bearing.nominal_contact_angle, bearing.pitch_diameter
+    osculation = bearing.outer_osculation, bearing.inner_osculation
+    return BallRow(count, bearing.ball_diameter, pitch, angle, osculation)
+
+
+def _row_of_rollers(bearing, count) -> RollerRow:
+    angle, pitch = bearing.nominal_contact_angle, bearing.pitch_diameter
     diameter, length = bearing.roller_diameter, bearing.roller_length
     quality = as_real(rating_factor(bearing))
     return RollerRow(count, diameter, length, pitch, angle, quality)
+
+
+_ROWS = {AbstractBallBearing: _row_of_balls, AbstractRollerBearing: _row_of_rollers}
+
+
+_FACTORS = {
+    AbstractRollerBearing: 1.1,
+    AbstractBarrelBearing: 1.15,
+    CylindricalThrustRollerBearing: 1.0,
+}
 
 
 def rating_factor(bearing: AbstractBearing) -> float:
@@ -468,63 +479,22 @@ def rating_factor(bearing: AbstractBearing) -> float:
 
     Source: ISO 281:2007, tables 6 and 10.
     """
-    if isinstance(bearing, AbstractBarrelBearing):
-        return 1.15
-    return 1.0 if isinstance(bearing, CylindricalThrustRollerBearing) else 1.1
+    return nearest_entry(_FACTORS, bearing)
 
 
-def nominal_contact_angle(bearing: AbstractBearing) -> Scalar:
-    """Nominal contact angle of the standards [rad].
-
-    Zero for a deep groove ball bearing of any clearance; for a tapered roller bearing
-    the angle of its outer raceway; for a mounted bearing the angle of the drawing.
-
-    Args:
-        bearing: A single row.
-    """
-    if isinstance(bearing, DeepGrooveBallBearing):
-        return as_real(0.0)
-    rated = getattr(bearing, "rated_contact_angle", None)
-    if rated is not None:
-        return rated
-    if isinstance(bearing, AbstractRollerBearing):
-        # The load of a taper leaves through its outer raceway, which has no rib.
-        return bearing.axis_angle + bearing.half_angle
-    assert isinstance(bearing, AbstractBallBearing)
-    return bearing.free_contact_angle
-
-
-def arc_rows(bearing: AbstractBearing) -> int:
-    """Number of rows that the standards count in a row: 2 for four-point balls.
-
-    Under radial load each of their balls bears on two pairs of arcs, which tire as the
-    raceways of two rows do. The factors of their equivalent load are those of two rows
-    as well, so that under axial load alone, which one pair of arcs bears, the life is
-    that of a single row: C grows by 2^0.7 = 1.62, Y by 1.625. SKF and Schaeffler rate
-    them so; ratings of makers who count one row (GOST) are to be multiplied by 2^0.7
-    and 2 (C0).
-
-    Args:
-        bearing: A single row.
-
-    Source: SKF, general catalogue: P = Fr + 0.66 Fa or 0.6 Fr + 1.07 Fa, P0 = Fr +
-        0.58 Fa of bearings with 35 degrees, the factors of ISO 281, table 3, for two
-        rows; their C as of two rows (`benchmarks/catalogue_capacity.py`).
-    """
-    return 2 if isinstance(bearing, FourPointBallBearing) else 1
+_KINDS = {
+    AbstractBallBearing: (by_row.ANGULAR_CONTACT, by_row.ANGULAR_CONTACT),
+    DeepGrooveBallBearing: (by_row.ANGULAR_CONTACT, by_row.RADIAL_CONTACT_ROWS),
+    SelfAligningBallRow: (by_row.SELF_ALIGNING, by_row.SELF_ALIGNING),
+    ThrustBallBearing: (by_row.THRUST, by_row.THRUST),
+}
+"""Constants of the standards for balls, of a single row and of several rows."""
 
 
 def _kind(bearing, several) -> by_row.BallKind | None:
-    if isinstance(bearing, AbstractRollerBearing):
-        return None
-    kind = by_row.ANGULAR_CONTACT
-    if isinstance(bearing, SelfAligningBallRow):
-        kind = by_row.SELF_ALIGNING
-    elif bearing.is_thrust:
-        kind = by_row.THRUST
-    elif isinstance(bearing, DeepGrooveBallBearing) and several:
-        kind = by_row.RADIAL_CONTACT_ROWS
-    return kind
+    """Constants of the standards for balls; `None` for rollers."""
+    kinds = nearest_entry(_KINDS, bearing)
+    return None if kinds is None else kinds[several]
 
 
 def _parts(bearing) -> tuple[_Part, ...]:
@@ -536,8 +506,8 @@ def _rated_together(bearing) -> list[tuple[SetRow, ...]]:
     kinds, allowed = AbstractBearing | BearingSet, "a bearing or a BearingSet"
     of_class("load rating", "bearing", bearing, kinds, allowed)
     rows = rows_of(bearing)
-    flat = all(isinstance(r.bearing, CylindricalThrustRollerBearing) for r in rows)
-    if flat and len({row.mirrored for row in rows}) == 1:
+    radial = any(row.bearing.bears_radially for row in rows)
+    if not radial and len({row.mirrored for row in rows}) == 1:
         return [rows_of(row.bearing) for row in rows]
     return [rows]
 
@@ -561,10 +531,23 @@ def _are_alike(rows) -> Any:
 
 
 def _part(rows) -> _Part:
+    """Numbers of rows that are rated together.
+
+    Under radial load each ball of a four-point bearing bears on two pairs of arcs,
+    which tire as the raceways of two rows do (`rated_rows`). The factors of their
+    equivalent load are those of two rows as well, so that under axial load alone, which
+    one pair of arcs bears, the life is that of a single row: C grows by 2^0.7 = 1.62, Y
+    by 1.625. SKF and Schaeffler rate them so; ratings of makers who count one row
+    (GOST) are to be multiplied by 2^0.7 and 2 (C0).
+
+    Source: SKF, general catalogue: P = Fr + 0.66 Fa or 0.6 Fr + 1.07 Fa, P0 = Fr +
+        0.58 Fa of bearings with 35 degrees, the factors of ISO 281, table 3, for two
+        rows; their C as of two rows (`benchmarks/catalogue_capacity.py`).
+    """
     first, alike = rows[0].bearing, _are_alike(rows)
     sides = [sum(row.mirrored is side for row in rows) for side in (False, True)]
     one_way, kind = min(n for n in sides if n), _kind(first, len(rows) > 1)
-    count, arcs = len(rows), arc_rows(first)
+    count, arcs = len(rows), first.rated_rows
     # Of two pairs of arcs each bears one way.
     one_way = count if arcs == 2 else one_way
     counts = as_real(arcs * count), as_real(one_way)

@@ -25,13 +25,14 @@ Sources: ISO/TS 16281:2008, and ISO 16281:2025, formulas 29 to 33, as a public p
     (1947, 1952); ISO/TR 1281-1.
 """
 
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design import AbstractBallBearing, AbstractBearing
+from ..design import AbstractBallBearing, AbstractBearing, AbstractRollerBearing
+from ..design.abstract import nearest_entry
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
 from ..numerics.units import unit
@@ -53,6 +54,7 @@ class Fatigue(NamedTuple):
         reduction: C over that of evenly loaded contacts; radial and thrust bearings.
         lamina: Load by which a part of a radial bearing enters a_ISO, over that of
             statics.
+        basic: p of L10 = (C/P)^p of ISO 281.
     """
 
     load: tuple[int, int]
@@ -61,6 +63,7 @@ class Fatigue(NamedTuple):
     ratio: float
     reduction: tuple[float, float]
     lamina: float
+    basic: tuple[int, int]
 
     @property
     def share(self) -> tuple[int, int]:
@@ -69,8 +72,11 @@ class Fatigue(NamedTuple):
         return self.load[0] * self.spread[0], self.load[1] * self.spread[1]
 
 
-BALLS = Fatigue((3, 1), (10, 9), (0.389, 0.407), 1.044, (1.0, 1.0), 1.0)
-ROLLERS = Fatigue((4, 1), (9, 8), (0.364, 0.378), 1.038, (0.83, 0.73), 0.323 / 0.378)
+BALLS = Fatigue((3, 1), (10, 9), (0.389, 0.407), 1.044, (1.0, 1.0), 1.0, (3, 1))
+ROLLERS = Fatigue(
+    (4, 1), (9, 8), (0.364, 0.378), 1.038, (0.83, 0.73), 0.323 / 0.378, (10, 3)
+)
+_FATIGUE = {AbstractBallBearing: BALLS, AbstractRollerBearing: ROLLERS}
 
 
 class RowFatigue(NamedTuple):
@@ -93,7 +99,7 @@ class RowFatigue(NamedTuple):
 
 def exponents_of(bearing: AbstractBearing) -> Fatigue:
     """Exponents and constants of its rolling elements."""
-    return BALLS if bearing.is_ball else ROLLERS
+    return nearest_entry(_FATIGUE, bearing)
 
 
 def contact_capacities(
@@ -115,7 +121,8 @@ def contact_capacities(
     kind = exponents_of(bearing)
     thrust = is_axial(bearing.is_thrust, angle)
     many = bearing.n_elements * jnp.where(thrust, jnp.sin(angle), jnp.cos(angle))
-    weaker = _ring_ratio(bearing, angle) * jnp.where(thrust, 1.0, kind.ratio)
+    ratio = nearest_entry(_RING_RATIO, bearing)(bearing, angle)
+    weaker = ratio * jnp.where(thrust, 1.0, kind.ratio)
     outer, inner = (jnp.where(thrust, 1.0, j) for j in kind.radial)
     of_c = capacity / (many * jnp.where(thrust, *reversed(kind.reduction)))
     n, d = kind.share
@@ -128,16 +135,24 @@ def contact_capacities(
     )
 
 
-def _ring_ratio(bearing: Any, angle):
-    """Contact capacity of the inner over that of the outer raceway [1]."""
-    if not isinstance(bearing, AbstractBallBearing):
-        gamma = bearing.roller_diameter * jnp.cos(angle) / bearing.pitch_diameter
-        return ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)
+def _ratio_of_rollers(bearing, angle):
+    gamma = bearing.roller_diameter * jnp.cos(angle) / bearing.pitch_diameter
+    return ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)
+
+
+def _ratio_of_balls(bearing, angle):
     gamma = bearing.ball_diameter * jnp.cos(angle) / bearing.pitch_diameter
     outer, inner = (d + 0.5 * bearing.ball_diameter for d in bearing.centre_distances)
     less = [2.0 * r - bearing.ball_diameter for r in (outer, inner)]
     osculation = (inner / outer * less[0] / less[1]) ** 0.41
     return ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * osculation
+
+
+_RING_RATIO = {
+    AbstractBallBearing: _ratio_of_balls,
+    AbstractRollerBearing: _ratio_of_rollers,
+}
+"""Contact capacity of the inner over that of the outer raceway, by class [1]."""
 
 
 def row_fatigue(

@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 
 from ..contact.hertz import ellipse
-from ..numerics.types import Scalar
+from ..numerics.types import Flag, Scalar
 from ..numerics.units import unit
 
 _PER_MM = 1e3
@@ -60,6 +60,9 @@ SELF_ALIGNING = BallKind(1.0, (None, 0.53), (None, 0.53), 4600e6)
 THRUST = BallKind(0.90, (0.535, 0.535), (0.54, 0.54), 4200e6)
 
 
+Capacity = tuple[Scalar, Scalar, Scalar]
+
+
 class BallRow(NamedTuple):
     """Numbers of one row of balls.
 
@@ -76,6 +79,33 @@ class BallRow(NamedTuple):
     pitch_diameter: Annotated[Scalar, unit("m")]
     contact_angle: Annotated[Scalar, unit("rad")]
     osculation: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
+
+    @property
+    def power(self) -> float:
+        """Power of the number of rows in C [1]."""
+        return 0.7
+
+    @property
+    def limit(self) -> tuple[float, float]:
+        """C0 over C_u, and the power by which it grows with the pitch diameter [1]."""
+        return 22, 0.5
+
+    def capacity(self, rows: "Rows", is_thrust: bool, axial: Flag) -> Capacity:
+        """C of radial and steep rows, and C0 of an element [N].
+
+        Args:
+            rows, is_thrust: As in `capacities`.
+            axial: Whether the rows are rated axially.
+        """
+        kind = rows.kind
+        assert kind is not None
+        if kind.open[0] is not None:
+            # Only self-aligning bearings have other raceways when steep.
+            pairs = THRUST, kind
+            kind = jax.tree.map(lambda a, b: jnp.where(axial, a, b), *pairs)
+        rate = thrust_ball_dynamic if is_thrust else steep_ball_dynamic
+        dynamic = radial_ball_dynamic(self, kind, rows.count)
+        return dynamic, rate(self, kind, rows.one_way), ball_static(self, kind)
 
 
 class RollerRow(NamedTuple):
@@ -96,6 +126,25 @@ class RollerRow(NamedTuple):
     pitch_diameter: Annotated[Scalar, unit("m")]
     contact_angle: Annotated[Scalar, unit("rad")]
     quality: Annotated[Scalar | float, unit("1")] = 1.1
+
+    @property
+    def power(self) -> float:
+        """Power of the number of rows in C [1]."""
+        return 7.0 / 9.0
+
+    @property
+    def limit(self) -> tuple[float, float]:
+        """C0 over C_u, and the power by which it grows with the pitch diameter [1]."""
+        return 8.2, 0.3
+
+    def capacity(self, rows: "Rows", is_thrust: bool, axial: Flag) -> Capacity:
+        """C of radial and steep rows, and C0 of an element [N].
+
+        Args:
+            rows, is_thrust, axial: As in `BallRow.capacity`.
+        """
+        dynamic = radial_roller_dynamic(self, rows.count)
+        return dynamic, steep_roller_dynamic(self, rows.one_way), roller_static(self)
 
 
 class Rows(NamedTuple):
@@ -123,21 +172,7 @@ def capacities(rows: Rows, is_thrust: bool) -> tuple[Scalar, Scalar]:
     """
     row, angle = rows.row, rows.row.contact_angle
     axial = is_thrust | (angle > THRUST_ANGLE)
-    if isinstance(row, RollerRow):
-        dynamic = radial_roller_dynamic(row, rows.count)
-        steep = steep_roller_dynamic(row, rows.one_way)
-        load = roller_static(row)
-    else:
-        kind = rows.kind
-        assert kind is not None
-        if kind.open[0] is not None:
-            # Only self-aligning bearings have other raceways when steep.
-            pairs = THRUST, kind
-            kind = jax.tree.map(lambda a, b: jnp.where(axial, a, b), *pairs)
-        rate = thrust_ball_dynamic if is_thrust else steep_ball_dynamic
-        dynamic = radial_ball_dynamic(row, kind, rows.count)
-        steep = rate(row, kind, rows.one_way)
-        load = ball_static(row, kind)
+    dynamic, steep, load = row.capacity(rows, is_thrust, axial)
     radial = 0.2 * rows.count * jnp.cos(angle)
     share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
     return jnp.where(axial, steep, dynamic), row.count * load * share

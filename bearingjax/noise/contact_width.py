@@ -21,7 +21,8 @@ import numpy as np
 
 from ..contact.line import half_width
 from ..contact.point_law import ball_ellipses, balls_of
-from ..design import AbstractBallBearing, rows_of
+from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
+from ..design.abstract import nearest_entry
 from ..design.material import contact_modulus
 from ..numerics.compiled.programs import program
 from .dynamics.dynamic_row import of_rows
@@ -82,12 +83,21 @@ def contact_half_width(bearing: Any, load: np.ndarray) -> float:
 
 @program(quick=True)
 def _half_width(bearing, load):
-    if isinstance(bearing, AbstractBallBearing):
-        cosine = jnp.atleast_1d(bearing.free_cosine)
-        ellipses = ball_ellipses(balls_of(bearing), bearing.grooves, cosine)
-        return jnp.max(ellipses.semi_axes(load)[0])
+    return nearest_entry(_HALF_WIDTHS, bearing)(bearing, load)
+
+
+def _of_balls(bearing, load):
+    cosine = jnp.atleast_1d(bearing.free_cosine)
+    ellipses = ball_ellipses(balls_of(bearing), bearing.grooves, cosine)
+    return jnp.max(ellipses.semi_axes(load)[0])
+
+
+def _of_rollers(bearing, load):
     modulus = contact_modulus(bearing.material, bearing.rings)
     ratio = bearing.roller_diameter * jnp.cos(bearing.axis_angle)
     # The outer raceway is the flatter one.
     relative = 0.5 * bearing.roller_diameter * (1.0 + ratio / bearing.pitch_diameter)
     return half_width(load / bearing.roller_length, relative, modulus)
+
+
+_HALF_WIDTHS = {AbstractBallBearing: _of_balls, AbstractRollerBearing: _of_rollers}

@@ -267,11 +267,14 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     return total
 
 
+_BRIDGING = {"ball": 1.0, "roller": 0.5}
+
+
 def _surfaces(model: NoiseModel, found: DynamicRow) -> tuple[Surfaces, ...]:
     """Return the contact tracks of each row, with their averaging of waves."""
     if (widths := model.half_width) is None:
         return found.surfaces
-    p = 1.0 if model.element.bearing.is_ball else 0.5
+    p = _BRIDGING[model.element.bearing.noun]
     rows = zip(found.surfaces, widths, strict=True)
     return tuple(one.bridging(b, jnp.full_like(b, p)) for one, b in rows)
 

@@ -14,7 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design import BearingSet, rows_of
+from ..design import rows_of
+from ..design.bearing_set import with_bearings
 from ..design.checks import check, count, is_traced, of_class
 from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.compiled.programs import program
@@ -87,11 +88,8 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
         _together(own, one.errors)
         for own, one in zip(model.errors_of_rows, found, strict=True)
     )
-    if isinstance(bearing, BearingSet):
-        bearing = eqx.tree_at(lambda b: [row.bearing for row in b.rows], bearing, rows)
-    else:
-        (bearing,), (errors,) = rows, errors
-    changed = bearing, errors
+    errors = errors if len(parts) > 1 else errors[0]
+    changed = with_bearings(bearing, rows), errors
     return eqx.tree_at(lambda m: (m.element.bearing, m.errors), model, changed)
 
 

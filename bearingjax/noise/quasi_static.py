@@ -14,8 +14,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..design import BearingSet
-from ..design.bearing_set import bearings_of
+from ..design.bearing_set import bearings_of, with_bearings
 from ..design.checks import check, count, of_class
 from ..design.deviation import with_raceways
 from ..element.bearing_element import BearingElement
@@ -131,10 +130,7 @@ def at_instant(
             if deviations is None
             else with_raceways(row, of_rows(deviations, bearing)[k])
         )
-    if isinstance(bearing, BearingSet):
-        bearing = eqx.tree_at(rows, bearing, now)
-    else:
-        (bearing,) = now
+    bearing = with_bearings(bearing, now)
     return eqx.tree_at(lambda e: e.bearing, element, bearing)
 
 

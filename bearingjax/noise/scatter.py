@@ -23,7 +23,7 @@ from ..design import (
 )
 from ..design.checks import check, concrete, instance, non_negative, of_class
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
-from ..design.tolerance import RunningAccuracy, ball_grade, roller_grade
+from ..design.tolerance import RunningAccuracy, element_grade
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
@@ -222,10 +222,7 @@ class Tolerances(eqx.Module):
         owner, kinds = "Tolerances.of_grade", AbstractBearing | BearingSet
         of_class(owner, "bearing", bearing, kinds, "of balls or rollers")
         row = rows_of(bearing)[0].bearing
-        if row.is_ball:
-            found = ball_grade(grade)
-        else:
-            found = roller_grade(grade, row.element_diameter)
+        found = element_grade(grade, row)
 
         def waves(height, low, high):
             if height is None:

@@ -6,7 +6,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..element.balls.ball_speed import CentrifugalOnly
-from ..element.choices import BallChoices
 from ..numerics.implicit import stop_gradient
 from ..numerics.linear import combine_rows
 from ..numerics.result import Result
@@ -41,7 +40,7 @@ def static_start(
     between both rings: the moving one then lies anywhere.
     """
     element = model.small
-    if orbits and isinstance(element.choices, BallChoices):
+    if orbits and element.raceway_control is not None:
         # As here, where balls roll at the free contact angle whatever the load.
         choices = dataclasses.replace(
             element.choices, raceway_control=CentrifugalOnly()

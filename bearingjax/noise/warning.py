@@ -12,7 +12,6 @@ from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
 from ..element.balls.ball_inertia import ball_inertia, carried_loads
 from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
-from ..element.choices import BallChoices
 from ..numerics.result import Result
 from ..numerics.warning import Warning
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
@@ -296,10 +295,8 @@ def _gyroscopic(model, load) -> Iterator[Warning]:
 
     At the free contact angle, or at that of the axial load if it is larger.
     """
-    choices = model.element.choices
-    if not isinstance(choices, BallChoices):
-        return
-    if isinstance(choices.raceway_control, CentrifugalOnly):
+    control = model.element.raceway_control
+    if control is None or isinstance(control, CentrifugalOnly):
         return
     loads = of_rows(load, model.element.bearing, axis=1)
     for own, (where, bearing, _) in zip(loads, _rows(model), strict=True):

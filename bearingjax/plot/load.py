@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS
-from ..statics.solution import BallSolution, Solution
+from ..statics.solution import Solution
 from .panel import Ax, Axis, Curve, Panel, chart
 from .style import (
     COLOURS,
@@ -80,9 +80,9 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
     ax.grid(color="0.85")
     ax.set_axisbelow(True)
     every = _radial_labels(polar, azimuth, load, limit, 2 * len(rows) * width)
-    balls = isinstance(solution, BallSolution)
+    noun = solution.element.bearing.noun
     note = f"; circles every {every:g} {unit}" if every else ""
-    ax.set_title(f"{'Ball' if balls else 'Roller'} loads [{unit}]{note}")
+    ax.set_title(f"{noun.capitalize()} loads [{unit}]{note}")
     handles = handles if zone.all() else [*handles, unloaded]
     zone_legend(ax, handles, [str(handle.get_label()) for handle in handles])
     return ax

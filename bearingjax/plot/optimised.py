@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import AbstractRollerBearing, rows_of
+from ..design import rows_of
 from ..numerics.units import shown_count
 from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
@@ -57,7 +57,7 @@ def optimised(found: Optimised, title: str = "") -> Figure:
     if not shafts:
         found = _of_bearings(found)
         first = rows_of(found.element.bearing)[0].bearing
-        rollers = isinstance(first, AbstractRollerBearing)
+        rollers = first.element_length is not None
     names = "pa;ch" if rollers else "ch"
     height = 8.4 if rollers else 4.6
     figure = pyplot().figure(figsize=(12.0, height))

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..design import AbstractBearing, BearingSet
+from ..design.abstract import nearest_entry
 from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, RollerSolution, Solution
@@ -31,7 +32,7 @@ def overview(
     """
     rows = row_slices(solution)
     n = len(rows)
-    balls = isinstance(solution, BallSolution)
+    noun = solution.element.bearing.noun
     figure = pyplot().figure(figsize=(13.5, 5.1 + 3.3 * n))
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.08)
     heights = [4.3, 3.3 * n, 0.5]
@@ -40,25 +41,13 @@ def overview(
     section = upper.add_subplot(1, 2, 1)
     zone = upper.add_subplot(1, 2, 2, projection="polar")
     # Contact angles of all rows are compared in one picture.
+    along = [0 if noun == "ball" else k for k in range(n)]
     axes = lower.subplot_mosaic(
-        [[f"along{0 if balls else k}", f"outer{k}", f"inner{k}"] for k in range(n)]
+        [[f"along{along[k]}", f"outer{k}", f"inner{k}"] for k in range(n)]
     )
     cross_section(bearing, section)
     load_zone(solution, zone)
-    if isinstance(solution, BallSolution):
-        contact_angles(solution, axes["along0"])
-    for k, mine in enumerate(rows):
-        if isinstance(solution, RollerSolution):
-            ax = axes[f"along{k}"]
-            pressure_profiles(solution, ax, count=2, raceway="both", row=k)
-            # Both raceways of a row in one scale of colours.
-            top = float(np.max(np.asarray(solution.contact_pressure)[mine]))
-        for raceway in RACEWAYS:
-            ax = axes[f"{raceway}{k}"]
-            if isinstance(solution, RollerSolution):
-                pressure_map(solution, ax, raceway=raceway, row=k, top=top)
-            elif isinstance(solution, BallSolution):
-                ellipses(bearing, solution, raceway=raceway, row=k, ax=ax)
+    nearest_entry(_CONTACTS, solution)(bearing, solution, axes, rows)
     foot.text(
         0.5,
         0.5,
@@ -74,6 +63,27 @@ def overview(
     return figure
 
 
+def _contacts_of_balls(bearing, solution, axes, rows):
+    contact_angles(solution, axes["along0"])
+    for k in range(len(rows)):
+        for raceway in RACEWAYS:
+            ax = axes[f"{raceway}{k}"]
+            ellipses(bearing, solution, raceway=raceway, row=k, ax=ax)
+
+
+def _contacts_of_rollers(bearing, solution, axes, rows):
+    for k, mine in enumerate(rows):
+        pressure_profiles(solution, axes[f"along{k}"], count=2, raceway="both", row=k)
+        # Both raceways of a row in one scale of colours.
+        top = float(np.max(np.asarray(solution.contact_pressure)[mine]))
+        for raceway in RACEWAYS:
+            ax = axes[f"{raceway}{k}"]
+            pressure_map(solution, ax, raceway=raceway, row=k, top=top)
+
+
+_CONTACTS = {BallSolution: _contacts_of_balls, RollerSolution: _contacts_of_rollers}
+
+
 def _results(solution):
     """Return two lines of text: displacement, largest load and pressure, state."""
     q = np.asarray(solution.displacement)
@@ -83,7 +93,7 @@ def _results(solution):
     roller, ring = np.unravel_index(np.argmax(load), load.shape)
     azimuth = degrees(solution.azimuth)[roller]
     result = Result(int(solution.result)).label.replace("_", " ")
-    element = "ball" if isinstance(solution, BallSolution) else "roller"
+    element = solution.element.bearing.noun
     count = len(solution_warnings(solution))
     return (
         "inner against outer ring:  "

@@ -8,13 +8,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design import (
-    AbstractBallBearing,
     AbstractBearing,
     BearingSet,
-    CylindricalRollerBearing,
-    CylindricalThrustRollerBearing,
-    SphericalThrustRollerBearing,
-    ToroidalRollerBearing,
     rows_of,
 )
 from ..design.bearing_set import bearings_of, is_self_aligning
@@ -195,11 +190,10 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     """
     rows = list(bearings_of(bearing))
     axial = any(row.holds_axially for row in rows)
-    flat = all(isinstance(row, CylindricalThrustRollerBearing) for row in rows)
-    tilting = SphericalThrustRollerBearing | ToroidalRollerBearing
-    sphere = len(rows) == 1 and isinstance(rows[0], tilting)
+    radial = any(row.bears_radially for row in rows)
+    sphere = len(rows) == 1 and rows[0].tilts_alone
     tilts = () if sphere or is_self_aligning(bearing) else ("gx", "gy")
-    return (*(() if flat else ("ux", "uy")), *(("uz",) if axial else ()), *tilts)
+    return (*(("ux", "uy") if radial else ()), *(("uz",) if axial else ()), *tilts)
 
 
 def axial_senses(bearing: AbstractBearing | BearingSet) -> set[int]:
@@ -208,23 +202,11 @@ def axial_senses(bearing: AbstractBearing | BearingSet) -> set[int]:
     Args:
         bearing: The design.
     """
-    found: set[int] = set()
-    for row in rows_of(bearing):
-        part, sense = row.bearing, -1 if row.mirrored else 1
-        if not part.holds_axially:
-            continue
-        if isinstance(part, AbstractBallBearing):
-            found |= {sense} if part.is_one_sided else {1, -1}
-        elif isinstance(part, CylindricalRollerBearing):
-            ribs = part.ribs
-            paths = {
-                sense: (ribs.inner_minus, ribs.outer_plus),
-                -sense: (ribs.inner_plus, ribs.outer_minus),
-            }
-            found |= {s for s, pair in paths.items() if None not in pair}
-        else:
-            found.add(sense)
-    return found
+    return {
+        -sense if row.mirrored else sense
+        for row in rows_of(bearing)
+        for sense in row.bearing.axial_senses
+    }
 
 
 def check_held(

@@ -7,16 +7,13 @@ from typing import Any
 import numpy as np
 
 from ..design import (
-    AbstractBallBearing,
     AbstractBarrelBearing,
-    AbstractRollerBearing,
     AngularContactBallBearing,
     SphericalThrustRollerBearing,
     rows_of,
 )
 from ..design.bearing_set import bearings_of, is_self_aligning
 from ..element.bearing_element import BearingElement
-from ..element.choices import BallChoices, RollerChoices
 from ..element.inertia import Speed
 from ..element.kinematics import Linearised
 from ..numerics.units import shown_count
@@ -42,24 +39,19 @@ class SolutionKind(Kind):
 
 
 def _of_balls(element, speed):
-    return isinstance(element.choices, BallChoices)
+    return element.choices.elements == "balls"
 
 
 def _of_rollers(element, speed):
-    return isinstance(element.choices, RollerChoices)
+    return element.choices.elements == "rollers"
 
 
 def _has_ribs(element, speed):
-    bearings = list(bearings_of(element.bearing))
-    rollers = [b for b in bearings if isinstance(b, AbstractRollerBearing)]
-    return any(bearing.ribs.present for bearing in rollers)
+    return any(row.rib_names for row in bearings_of(element.bearing))
 
 
 def _has_shoulder(element, speed):
-    bearings = list(bearings_of(element.bearing))
-    balls = [b for b in bearings if isinstance(b, AbstractBallBearing)]
-    shoulders = [s for b in balls for s in (b.outer_shoulder, b.inner_shoulder)]
-    return any(shoulder is not None for shoulder in shoulders)
+    return any(row.shoulders for row in bearings_of(element.bearing))
 
 
 def _is_linearised(element, speed):

@@ -13,6 +13,7 @@ import numpy as np
 from ..design import (
     AbstractBallBearing,
     AbstractBearing,
+    AbstractRollerBearing,
     AngularContactBallBearing,
     BearingSet,
     CylindricalRollerBearing,
@@ -23,6 +24,7 @@ from ..design import (
     ToroidalRollerBearing,
     rows_of,
 )
+from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.material import contact_modulus
 from ..element.frame import FREEDOMS, RINGS
@@ -56,6 +58,20 @@ Source: catalogues: cylindrical rollers 3' to 4', tapered rollers 2' to 4', deep
 
 USUAL_TILT_OF_TOROIDAL_ROLLERS = math.radians(0.5)
 """Largest tilt of toroidal roller bearings that SKF allows for [rad] (catalogue)."""
+
+_USUAL_TILTS = {
+    AbstractBallBearing: USUAL_TILT_OF_BALLS,
+    AbstractRollerBearing: USUAL_TILT_OF_ROLLERS,
+    ToroidalRollerBearing: USUAL_TILT_OF_TOROIDAL_ROLLERS,
+    SphericalThrustRollerBearing: math.inf,
+}
+
+_STATIC_LIMITS = {
+    AbstractBallBearing: 4200e6,
+    SelfAligningBallRow: 4600e6,
+    AbstractRollerBearing: 4000e6,
+}
+"""Contact pressures of the basic static load rating by class [Pa]."""
 
 LARGEST_RADIAL_SHARE = 0.55
 """Radial over axial load of a spherical roller thrust bearing above which SKF asks for
@@ -101,7 +117,7 @@ _PLAUSIBLE = {
 def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
     """E* times the diameter of the rolling elements, the least of all rows [N/m]."""
     scales = [
-        _modulus(row.bearing) * _diameter(row.bearing) for row in rows_of(bearing)
+        _modulus(row.bearing) * row.bearing.element_diameter for row in rows_of(bearing)
     ]
     least = scales[0]
     for scale in scales[1:]:
@@ -111,11 +127,6 @@ def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
 
 def _modulus(bearing):
     return contact_modulus(bearing.material, bearing.rings)
-
-
-def _diameter(bearing):
-    balls = isinstance(bearing, AbstractBallBearing)
-    return bearing.ball_diameter if balls else bearing.roller_diameter
 
 
 def _of_balls(solution: Solution) -> BallSolution:
@@ -276,10 +287,7 @@ def static_limit(bearing: AbstractBearing | BearingSet) -> float:
 
     Source: ISO 76:2006, 3.2 and 3.3.
     """
-    if not bearing.is_ball:
-        return 4000e6
-    aligning = [isinstance(r.bearing, SelfAligningBallRow) for r in rows_of(bearing)]
-    return 4600e6 if all(aligning) else 4200e6
+    return min(nearest_entry(_STATIC_LIMITS, row) for row in bearings_of(bearing))
 
 
 def widths(solution: Solution) -> Any:
@@ -342,7 +350,7 @@ def _line_approach(solution):
     return _largest(
         solution,
         [
-            5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
+            5.0 * bearing.element_diameter * (pressure.max() / _modulus(bearing)) ** 2
             for bearing, pressure in _by_row(solution, solution.roller_pressure)
         ],
     )
@@ -418,14 +426,9 @@ def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
 
     None of bearings with a spherical raceway: their rings tilt freely.
     """
-    rows = list(bearings_of(bearing))
-    if all(isinstance(row, SphericalThrustRollerBearing) for row in rows):
-        return math.inf
     if is_self_aligning(bearing):
         return math.inf
-    if all(isinstance(row, ToroidalRollerBearing) for row in rows):
-        return USUAL_TILT_OF_TOROIDAL_ROLLERS
-    return USUAL_TILT_OF_BALLS if bearing.is_ball else USUAL_TILT_OF_ROLLERS
+    return min(nearest_entry(_USUAL_TILTS, row) for row in bearings_of(bearing))
 
 
 def tilt_in_words(solution: Solution, share: Any) -> str:

@@ -178,7 +178,7 @@ def test_equivalent_loads_have_the_printed_axial_factors():
     static = float(equivalent_load(bj.load_bearing("23024 CC"), LOAD).static)
     assert static == pytest.approx(2e3 + 2.8 * 4e3, rel=ROUNDING)
     # The maker's angle, not that of the clearance with which one was measured.
-    angle = rating.nominal_contact_angle(bj.load_bearing("176211"))
+    angle = bj.load_bearing("176211").nominal_contact_angle
     assert float(angle) == pytest.approx(np.deg2rad(26), rel=ROUNDING)
 
 

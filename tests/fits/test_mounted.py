@@ -23,7 +23,6 @@ from bearingjax.fits import (
     with_radial_clearance,
 )
 from bearingjax.fits.mounted import raceway_diameters, row_shifts
-from bearingjax.life.rating import nominal_contact_angle
 
 MICRON = 1e-6
 BALLS = {
@@ -210,7 +209,7 @@ def test_ratings_keep_the_angle_of_the_drawing():
         again = bj.fits.mounted(once, replace(SEATS, shaft_interference=2 * MICRON))
         for found in (once, again):
             assert float(found.free_contact_angle) < drawn - 0.01
-            assert float(nominal_contact_angle(found)) == near(drawn)
+            assert float(found.nominal_contact_angle) == near(drawn)
     with pytest.raises(ValueError, match="`rated_contact_angle` is 2 rad; it must"):
         replace(ANGULAR, rated_contact_angle=2.0)
 

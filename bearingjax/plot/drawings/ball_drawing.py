@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...design import AbstractBallBearing, DeepGrooveBallBearing, SelfAligningBallRow
+from ...design import AbstractBallBearing
 from ..style import COLOURS, RACEWAYS, SMALL, Axes
 from .ball_section import SHOULDER, ball_row, contour
 from .dimension import (
@@ -42,7 +42,7 @@ def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size) -> None:
         *_shoulders(ax, bearing, lines),
         *_angles(ax, bearing),
     ]
-    if isinstance(bearing, SelfAligningBallRow):
+    if bearing.aligns:
         labels.append(_offset(ax, bearing, -corners[0, 1]))
     fit_view(ax, np.concatenate([corners, [one.at for one in labels]]), size)
     put_labels(ax, labels, size)
@@ -62,7 +62,7 @@ def _grooves(ax, bearing):
         groove = next(g for g in bearing.grooves if g.on_outer is (name == "outer"))
         centre = 1e3 * np.array([float(groove.axial), float(groove.radial)])
         size = float(groove.radius)
-        if isinstance(bearing, SelfAligningBallRow) and name == "outer":
+        if bearing.aligns and name == "outer":
             turn = float(bearing.groove_axis) + 0.05
             at = centre + 1e3 * size * np.array([np.sin(turn), np.cos(turn)])
             text = f"{field}: none\nsphere of radius {quantity(size, 'm')}"
@@ -99,7 +99,7 @@ def _shoulders(ax, bearing, lines):
     aside, across = (1, 0) if thrust else (0, 1)
     diameter = 1e3 * float(bearing.ball_diameter)
     for name, sign in (("outer", 1.0), ("inner", -1.0)):
-        if name == "outer" and isinstance(bearing, SelfAligningBallRow):
+        if name == "outer" and bearing.aligns:
             text = "outer_shoulder: none\nthe raceway is a sphere"
             yield Label(text, lines[name][0])
             continue
@@ -172,8 +172,8 @@ def ball_clearance_view(ax: Axes, bearing, size) -> None:
     fit_view(ax, rings, size, (0.9, 0.96))
     text = label(bearing, "radial_internal_clearance")
     if bearing.radial_internal_clearance is None:
-        follows = isinstance(bearing, DeepGrooveBallBearing) and bearing.contact_angle
-        why = "from the contact angle" if follows is not None else "no clearance"
+        given = bearing.contact_angle is not None
+        why = "from the contact angle" if given else "no clearance"
         value = quantity(bearing.clearance, "m")
         text = f"radial_internal_clearance = {value}, {why}"
     ax.set_title(clearance_title(text, gap, times), fontsize=SMALL)

@@ -6,7 +6,6 @@ from ...design import (
     AbstractBallBearing,
     AbstractBearing,
     BearingSet,
-    SelfAligningBallRow,
     rows_of,
 )
 from ..style import COLOURS, GREY, ROLLER, SMALL, Ax, Axes, axes_or_new
@@ -151,7 +150,7 @@ def contour(bearing, name, reach=np.inf) -> np.ndarray:
     Returns:
         z and r about the ball's centre.
     """
-    if isinstance(bearing, SelfAligningBallRow):
+    if bearing.aligns:
         return _aligning(bearing, name)
     line = _raceway(bearing, name, 1.0 if name == "outer" else -1.0, reach)
     return line[:, ::-1] if bearing.is_thrust else line

@@ -8,12 +8,14 @@ import equinox as eqx
 
 from ...design import (
     RIB_NAMES,
+    AbstractBallBearing,
     AbstractBearing,
     AbstractRollerBearing,
     BearingSet,
     Material,
     Straight,
 )
+from ...design.abstract import nearest_entry
 from ...numerics.units import unit
 from ..style import Figure, head, pyplot
 from .ball_drawing import ball_clearance_view, dimensioned_balls
@@ -165,8 +167,7 @@ def _alike(one, other):
 
 def _strips(bearing):
     """Return strips: section and view along the axis, smaller views, text."""
-    rollers = isinstance(bearing, AbstractRollerBearing)
-    first, others = _of_rollers(bearing) if rollers else _of_balls(bearing)
+    first, others = nearest_entry(_VIEWS, bearing)(bearing)
     others += [
         (lambda ax, _, name=name: deviation_view(ax, bearing, name), True)
         for name in DEVIATIONS
@@ -258,3 +259,6 @@ def _of_material(material: Material | None):
         return "as the rolling elements"
     fields = (field.name for field in dataclasses.fields(material))
     return ", ".join(label(material, name) for name in fields)
+
+
+_VIEWS = {AbstractBallBearing: _of_balls, AbstractRollerBearing: _of_rollers}

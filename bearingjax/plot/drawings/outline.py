@@ -6,7 +6,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...contact import Palmgren
-from ...design.barrel import CrossedRollerRow
 from ...design.bearing import AbstractRollerBearing
 from ...design.profile import drops
 from ...element.constants import contact_constants
@@ -111,7 +110,7 @@ def section(bearing: AbstractRollerBearing) -> Section:
     if bearing.is_thrust:
         faces = faces[0], min(faces[1], max(high, 0.8 * centre[1]))
     body = _BODY * diameter
-    if isinstance(bearing, CrossedRollerRow):
+    if bearing.is_crossed:
         rings = [_groove(sign, diameter, gap, body) for sign in (1.0, -1.0)]
     else:
         rings = [

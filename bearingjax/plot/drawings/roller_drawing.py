@@ -1,5 +1,7 @@
 """Dimensions of one row of rollers: section, clearance, ribs and profiles."""
 
+from typing import Any
+
 import numpy as np
 
 from ...design import (
@@ -8,6 +10,7 @@ from ...design import (
     Straight,
     TaperedRollerBearing,
 )
+from ...design.abstract import nearest_entry
 from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Axes, towards_white
 from .ball_drawing import clearance_title
 from .dimension import (
@@ -47,17 +50,14 @@ def dimensioned_rollers(
     """
     seen = [roller_row(ax, parts)]
     labels = [*_sizes(ax, bearing, parts), *_straight(bearing, parts)]
-    if isinstance(bearing, AbstractBarrelBearing):
-        labels += _barrel(ax, bearing, parts)
-    if isinstance(bearing, TaperedRollerBearing):
-        labels += _angles(ax, bearing, parts)
-        seen.append(parts.axis + np.array([0.3 * parts.length, 0.0]))
+    more, beyond, column = nearest_entry(_SHAPES, bearing)
+    labels += more(ax, bearing, parts)
+    if beyond:
+        seen.append(parts.axis + np.array([beyond * parts.length, 0.0]))
     if len(parts.rib_points):
         ax.plot(*parts.rib_points.T, "o", color="black", markersize=5, zorder=7)
     else:
         labels.append(Label("ribs: none", parts.axis[0]))
-    # Names of radii are long.
-    column = 0.29 if isinstance(bearing, AbstractBarrelBearing) else 0.25
     fit_view(ax, np.concatenate(seen), size, (0.98 - 2.0 * column, 0.86))
     put_labels(ax, labels, size, column)
     ax.set_title("Axial section, to scale; ring bodies schematic")
@@ -226,3 +226,12 @@ def rib_view(
     put_labels(ax, labels, size, _RIB_COLUMN)
     words = [f"ribs.{one}" for one in names]
     ax.set_title("\n".join(map(", ".join, (words[:2], words[2:]))), fontsize=11)
+
+
+_SHAPES: dict[type, tuple[Any, float, float]] = {
+    AbstractRollerBearing: (lambda *_: (), 0.0, 0.25),
+    AbstractBarrelBearing: (_barrel, 0.0, 0.29),
+    TaperedRollerBearing: (_angles, 0.3, 0.25),
+}
+"""Labels of a shape of rollers, room along its axis over the length of a roller, and
+width of the columns of labels, by class: names of radii are long."""

@@ -6,7 +6,6 @@ from ...design import (
     AbstractBearing,
     AbstractRollerBearing,
     BearingSet,
-    CrossedRollerRow,
     rows_of,
 )
 from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Ax, Axes, axes_or_new
@@ -172,7 +171,7 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
 def _set_section(ax, rows):
     """Draw all rows of a set; pitch circle and contact angle of the first one."""
     corners = []
-    crossed = isinstance(rows[0].bearing, CrossedRollerRow)
+    crossed = rows[0].bearing.is_crossed
     for k, row in enumerate(rows):
         at = np.array([1e3 * float(row.position), 0.0])
         sense = np.array([-1.0 if row.mirrored else 1.0, 1.0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...design import AbstractBallBearing, BearingSet, CrossedRollerRow
+from ...design import AbstractBallBearing, BearingSet
 from ...design.bearing_set import is_self_aligning
 from ..style import INNER, SMALL, Axes
 from .ball_section import ball_row, row_position
@@ -171,7 +171,7 @@ def _draw(ax, row, bearing):
 
 
 def _is_crossed(bearing):
-    return isinstance(bearing.rows[0].bearing, CrossedRollerRow)
+    return bearing.rows[0].bearing.is_crossed
 
 
 def _spring(row, name):

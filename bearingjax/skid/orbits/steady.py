@@ -11,6 +11,8 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
+from ...design import AbstractBallBearing, AbstractRollerBearing
+from ...design.abstract import nearest_entry
 from ...design.bearing_set import pitch_radius
 from ...design.checks import is_traced
 from ...element.inertia import Speed
@@ -169,6 +171,12 @@ def failure_message(found: SteadyMotion) -> str:
     return f"{int(found.steps)} steps; {out}, {power}"
 
 
+_ORBITS: dict[type, Any] = {
+    AbstractBallBearing: BallOrbit,
+    AbstractRollerBearing: RollerOrbit,
+}
+
+
 @program(quick=True)
 def end_state(
     model: SkidModel,
@@ -193,7 +201,7 @@ def end_state(
     bearing = model.bearing
     turn = jnp.asarray(2.0 * np.pi * np.arange(count) / count, model.temperature.dtype)
     balance = balance_of(case, pitch_radius(bearing))
-    kind = BallOrbit if bearing.is_ball else RollerOrbit
+    kind = nearest_entry(_ORBITS, bearing)
     solved = solution.result == int(Result.CONVERGED)
     ring = solution.displacement[balance.moving] / balance.scale
     rolling = jnp.zeros(count * kind.n_own + kind.n_common, ring.dtype)

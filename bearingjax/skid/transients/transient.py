@@ -14,6 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ...design import AbstractBallBearing, AbstractRollerBearing
+from ...design.abstract import nearest_entry
 from ...design.bearing_set import pitch_radius
 from ...design.checks import check, count, integration, is_traced, one_of
 from ...element.inertia import Speed
@@ -256,7 +258,7 @@ def _skid(environment, solution, start, times, duration, options):
         )
         lost = jnp.where(away, int(Result.NO_LOAD_PATH), int(Result.CONVERGED))
         result = jnp.maximum(result, lost.astype(result.dtype))
-    kind = SkidHistory if environment.model.bearing.is_ball else SkidRollerHistory
+    kind, _ = nearest_entry(_HISTORIES, environment.model.bearing)
     return kind(
         solution=solution,
         time=times,
@@ -281,17 +283,9 @@ def _report(environment, time, state):
     rolling = jax.vmap(partial(equations_of_motion(balls.ball).rolling, speed=speed))(
         balls.ball
     )
-    of_balls = {}
-    if environment.model.bearing.is_ball:
-        angle, spin = balls.ball.angle, balls.moving.spin
-        of_balls = {"contact_angle": angle, "contact_spin": spin}
-    else:
-        conditions = jax.vmap(partial(conditions_of, environment.model))
-        of_balls = {
-            "conditions": conditions(balls.ball, balls.moving, balls.pulls.film)
-        }
+    _, more = nearest_entry(_HISTORIES, environment.model.bearing)
     return dict(
-        **of_balls,
+        **more(environment, balls),
         azimuth=balls.azimuth,
         contact_load=balls.ball.load,
         rolling_orbit_speed=rolling.orbit,
@@ -306,3 +300,20 @@ def _report(environment, time, state):
         + 0.5 * environment.model.cage.inertia * state.cage_speed**2,
         potential_energy=potential,
     )
+
+
+def _more_of_balls(environment, balls):
+    return {"contact_angle": balls.ball.angle, "contact_spin": balls.moving.spin}
+
+
+def _more_of_rollers(environment, rollers):
+    conditions = jax.vmap(partial(conditions_of, environment.model))
+    pulls = rollers.pulls
+    return {"conditions": conditions(rollers.ball, rollers.moving, pulls.film)}
+
+
+_HISTORIES: dict[type, Any] = {
+    AbstractBallBearing: (SkidHistory, _more_of_balls),
+    AbstractRollerBearing: (SkidRollerHistory, _more_of_rollers),
+}
+"""Class of the history, and its entries at an instant that the other has not."""

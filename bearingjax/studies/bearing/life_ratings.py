@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Iterable
 from typing import Any
 
-from ...design import BearingSet, rows_of
-from ...design.bearing_set import shares_rings
+from ...design import rows_of
+from ...design.bearing_set import has_separate_rings
 from ...life.life import LifeConditions
 from ...life.rating import GIVEN, PUBLISHED
 from .read_scene import Scene
@@ -58,7 +58,7 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
     if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
         words = "published for the bearing of its rows"
     rows = ""
-    if isinstance(bearing, BearingSet) and not shares_rings(bearing):
+    if has_separate_rings(bearing):
         rows = f", of one row; for {len(rows_of(bearing))} rows"
     # A plain size has the ratings of the improved design that it is listed as.
     listed = "".join(f"; {note}" for note in entry.notes if " is listed as " in note)

@@ -7,7 +7,6 @@ from ...design import (
     AbstractProfile,
     AbstractRollerBearing,
     BearingSet,
-    CrossedRollerRow,
     Material,
     Rib,
     Ribs,
@@ -59,7 +58,7 @@ def with_both_rows(
     staggered = (
         not shares_rings(bearing)
         or bearing.is_ball
-        or isinstance(bearing, CrossedRollerRow)
+        or bearing.is_crossed
         or table.flag("staggered", True)
     )
     with table.building():
@@ -74,11 +73,7 @@ def two_row_name(bearing: AbstractBearing) -> str:
     """
     if bearing.is_ball:
         return "self-aligning"
-    return (
-        "crossed roller"
-        if isinstance(bearing, CrossedRollerRow)
-        else "spherical roller"
-    )
+    return "crossed roller" if bearing.is_crossed else "spherical roller"
 
 
 def required_numbers(kind: str) -> tuple[str, ...]:

@@ -1,6 +1,5 @@
 """The [fit] and [temperature] tables of a scene: seats of a bearing, temperatures."""
 
-import dataclasses
 from typing import Any, NamedTuple
 
 import jax
@@ -13,7 +12,12 @@ from ...design import (
     TaperedRollerBearing,
     rows_of,
 )
-from ...design.bearing_set import shares_rings
+from ...design.bearing_set import (
+    bearings_of,
+    has_separate_rings,
+    shares_rings,
+    with_bearings,
+)
 from ...element import Speed
 from ...files.quantity import SceneError, scene_number
 from ...files.schema import Keys, read_keys, scene_key
@@ -362,16 +366,8 @@ def read_fits(
 
 
 def _with_clearance(bearing, clearance):
-    if not isinstance(bearing, BearingSet):
-        return with_radial_clearance(bearing, clearance)
-    return BearingSet(
-        tuple(
-            dataclasses.replace(
-                row, bearing=with_radial_clearance(row.bearing, clearance)
-            )
-            for row in bearing.rows
-        )
-    )
+    rows = [with_radial_clearance(row, clearance) for row in bearings_of(bearing)]
+    return with_bearings(bearing, rows)
 
 
 def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
@@ -417,7 +413,7 @@ def _taper(keys: FitKeys, catalogue: FromCatalogue | None) -> float:
 def _width(keys: FitKeys, bearing, catalogue, taper: float) -> dict[str, float]:
     """Return the ring width, required for a set whose rows have separate rings."""
     key, own = "ring_width", catalogue.entry.width if catalogue else None
-    apart = isinstance(bearing, BearingSet) and not shares_rings(bearing)
+    apart = has_separate_rings(bearing)
     mean = taper > 0.0 and own is not None
     if not (apart or mean) and keys.ring_width is None:
         return {}

@@ -11,10 +11,12 @@ from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ...cases.sweep import Sweep
 from ...cases.sweep_table import columns
+from ...design import rows_of
 from ...design.published import with_published
 from ...files.quantity import SceneError
 from ...life.life import LIFE_OUTPUTS, turns_against_load
 from ...life.rating import Ratings, ratings
+from ...life.reference_life import exponents_of
 from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...numerics.warning import Warning
@@ -208,7 +210,9 @@ def equivalent_load(run: LifeRun) -> float:
     Args:
         run: Run with all cases solved.
     """
-    power = 3.0 if run.table.scene.element.bearing.is_ball else 10.0 / 3.0
+    row = rows_of(run.table.scene.element.bearing)[0].bearing
+    over, under = exponents_of(row).basic
+    power = over / under
     life = float(run.lives["basic_rating_life"].rating_life) / 1e6
     return float(run.ratings.dynamic_capacity) * life ** (-1.0 / power)
 

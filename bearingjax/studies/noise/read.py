@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ...design import BearingSet, CylindricalThrustRollerBearing, FormErrors, rows_of
+from ...design import FormErrors, rows_of
+from ...design.bearing_set import bearings_of, with_bearings
 from ...element import FREEDOMS, RINGS
 from ...element.bearing_element import BearingElement
 from ...files.scene_file import find_scene, parse_bearing
@@ -151,7 +152,7 @@ def read_noise(
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")
     row = rows_of(scene.element.bearing)[0].bearing
-    if isinstance(row, CylindricalThrustRollerBearing):
+    if not row.bears_radially:
         problem = "'cylindrical_thrust_roller' has no noise here: it does not hold the"
         raise top.table("bearing").error("type", f"{problem} shaking ring radially")
     _check_operating(operating, scene)
@@ -236,12 +237,8 @@ def _nominal(element: BearingElement) -> BearingElement:
         return dataclasses.replace(bearing, **mine) if mine else bearing
 
     bearing: Any = element.bearing
-    if isinstance(bearing, BearingSet):
-        rows = [
-            dataclasses.replace(row, bearing=even(row.bearing)) for row in bearing.rows
-        ]
-        return dataclasses.replace(element, bearing=BearingSet(tuple(rows)))
-    return dataclasses.replace(element, bearing=even(bearing))
+    rows = map(even, bearings_of(bearing))
+    return dataclasses.replace(element, bearing=with_bearings(bearing, rows))
 
 
 def _without_supports(scene: Scene, moving: str) -> dict[str, Any]:

@@ -7,10 +7,10 @@ from typing import Any
 from ...design import rows_of
 from ...design.tolerance import (
     BALL_GRADES,
+    ELEMENT_GRADES,
     ROLLER_GRADES,
     TOLERANCE_CLASSES,
-    ball_grade,
-    roller_grade,
+    element_grade,
     running_accuracy,
 )
 from ...files.schema import Keys, scene_key
@@ -111,7 +111,7 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
     """
     table, grade = keys.table, keys.grade
     if grade is not None:
-        table.choice("grade", BALL_GRADES if bearing.is_ball else ROLLER_GRADES)
+        table.choice("grade", ELEMENT_GRADES[bearing.noun])
     runouts = _runouts(keys)
     given: dict[str, Any] = {
         name: value for name in _OWN if (value := getattr(keys, name)) is not None
@@ -147,17 +147,12 @@ def read_tolerance(keys: ToleranceKeys, bearing: Any) -> tuple[Tolerances, Tight
 
 def _next_grade(grade: str | None, bearing: Any) -> Tighter:
     """Return the next better grade of rolling elements, if there is one."""
-    ball = bearing.is_ball
-    grades = BALL_GRADES if ball else ROLLER_GRADES
+    grades = ELEMENT_GRADES[bearing.noun]
     if grade is None or grade == grades[0]:
         return ()
     name = grades[grades.index(grade) - 1]
-    if ball:
-        better, worse = ball_grade(name), ball_grade(grade)
-    else:
-        row: Any = rows_of(bearing)[0].bearing
-        diameter = row.roller_diameter
-        better, worse = (roller_grade(one, diameter) for one in (name, grade))
+    row = rows_of(bearing)[0].bearing
+    better, worse = (element_grade(one, row) for one in (name, grade))
     factors = {
         "diameter": better.lot_variation / worse.lot_variation,
         "elements": better.form / worse.form,

@@ -14,7 +14,7 @@ from ...report.report_model import (
     load_text,
 )
 from ..bearing.read_lubricant import TRACTIONS, describe_oil
-from ..solve.report import ball_row, by_ring, roller_row
+from ..solve.report import by_ring, describe_row
 from .output import at_balls, each_ball, rolling_cage_speed
 from .run import SkidRun
 
@@ -40,13 +40,12 @@ def skid_report(run: SkidRun) -> Report:
 
 def _bearing(run):
     task, model = run.task, run.task.model
-    row = ball_row if model.bearing.is_ball else roller_row
     named = {kind: name for name, kind in TRACTIONS.items()}
     load = load_text(task.scene.load)
     speed, varies = task.speed, "" if task.loads is None else ", varying in time"
     return "\n".join(
         [
-            *row(model.bearing, task.name),
+            *describe_row(model.bearing, task.name),
             f"load on the {task.scene.moving_ring} ring: {load or 'none'}{varies};"
             f" inner ring {rpm(speed.inner)}, outer ring {rpm(speed.outer)}",
             f"{task.oil} at {describe_oil(model.lubricant, float(model.temperature))};"

@@ -11,18 +11,20 @@ import numpy as np
 
 from ...cases.sweep_table import ROUND_OFF
 from ...design import (
+    AbstractBallBearing,
     AbstractBarrelBearing,
     AbstractBearing,
+    AbstractRollerBearing,
     BearingSet,
-    CrossedRollerRow,
     TaperedRollerBearing,
     rows_of,
 )
+from ...design.abstract import nearest_entry
 from ...design.bearing_set import bearings_of
 from ...element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
 from ...numerics.units import shown_count
 from ...report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
-from ...statics.solution import BallSolution, Solution
+from ...statics.solution import BallSolution, RollerSolution, Solution
 from ...statics.warning_sizes import ends_over
 from ..bearing.fit_report import (
     ACROSS_TAPERS,
@@ -90,7 +92,7 @@ def bearing_text(
         solution: If given, springs are described too.
     """
     lines = []
-    crossed = isinstance(rows_of(bearing)[0].bearing, CrossedRollerRow)
+    crossed = rows_of(bearing)[0].bearing.is_crossed
     if isinstance(bearing, BearingSet) and not crossed:
         places = ", ".join(
             f"{1e3 * _place(row):.4g} mm{' (mirrored)' if row.mirrored else ''}"
@@ -101,8 +103,7 @@ def bearing_text(
             mounted = "" if scene.fits is None else ", which fits and warmth change"
             lines.append(f"ground to a preload of {scene.preload_force:.5g} N{mounted}")
         lines += [] if solution is None else _springs(bearing, solution)
-    tell = ball_row if bearing.is_ball else roller_row
-    parts = list(bearings_of(bearing))
+    parts, tell = list(bearings_of(bearing)), describe_row
     alike = len({"\n".join(tell(part, "")) for part in parts}) == 1
     if alike:
         own = tell(parts[0], "each row" if lines else scene.name)
@@ -151,7 +152,17 @@ def _kind(bearing):
     return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
 
 
-def ball_row(bearing, head) -> list[str]:
+def describe_row(bearing: AbstractBearing, head: str) -> list[str]:
+    """Describe type and sizes of a row.
+
+    Args:
+        bearing: The row.
+        head: First words.
+    """
+    return nearest_entry(_ROWS, bearing)(bearing, head)
+
+
+def _ball_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of balls."""
     pitch, diameter = (
         1e3 * float(x) for x in (bearing.pitch_diameter, bearing.ball_diameter)
@@ -178,7 +189,7 @@ def _osculation(value):
     return "of a sphere" if value is None else f"{float(value):.4g}"
 
 
-def roller_row(bearing, head) -> list[str]:
+def _roller_row(bearing, head) -> list[str]:
     """Describe type and sizes of a row of rollers."""
     size = [bearing.pitch_diameter, bearing.roller_diameter, bearing.roller_length]
     pitch, diameter, length = (1e3 * float(x) for x in size)
@@ -190,7 +201,7 @@ def roller_row(bearing, head) -> list[str]:
         f"{play}ribs: {ribs}; roller profile: {type(bearing.roller_profile).__name__}",
     ]
     axis, half = _angles(bearing)
-    if isinstance(bearing, CrossedRollerRow):
+    if bearing.is_crossed:
         lines.append(
             f"contact angle: {axis:.4g} deg, of every other roller -{axis:.4g}"
         )
@@ -201,18 +212,21 @@ def roller_row(bearing, head) -> list[str]:
         )
     elif axis:
         lines.append(f"contact angle: {axis:.4g} deg")
-    if isinstance(bearing, AbstractBarrelBearing):
-        radius = bearing.outer_raceway_radius
-        outer = "a sphere about the axis"
-        if radius is not None:
-            sphere = " (a sphere)" if hasattr(bearing, "contact_angle") else ""
-            outer = f"{1e3 * float(radius):.5g} mm{sphere}"
-        radii = bearing.roller_profile_radius, bearing.inner_raceway_radius
-        roller, inner = (f"{1e3 * float(one):.5g} mm" for one in radii)
-        lines.append(
-            f"profile radii: roller {roller}, raceways outer {outer}, inner {inner}"
-        )
-    return lines
+    return [*lines, *nearest_entry(_RADII, bearing)(bearing)]
+
+
+def _profile_radii(bearing):
+    radius = bearing.outer_raceway_radius
+    outer = "a sphere about the axis"
+    if radius is not None:
+        sphere = " (a sphere)" if hasattr(bearing, "contact_angle") else ""
+        outer = f"{1e3 * float(radius):.5g} mm{sphere}"
+    radii = bearing.roller_profile_radius, bearing.inner_raceway_radius
+    roller, inner = (f"{1e3 * float(one):.5g} mm" for one in radii)
+    return [f"profile radii: roller {roller}, raceways outer {outer}, inner {inner}"]
+
+
+_RADII = {AbstractRollerBearing: lambda _: [], AbstractBarrelBearing: _profile_radii}
 
 
 def _angles(bearing):
@@ -220,7 +234,7 @@ def _angles(bearing):
     half = 0.0
     if isinstance(bearing, TaperedRollerBearing):
         axis, half = bearing.roller_axis_angle, bearing.roller_half_angle
-    elif isinstance(bearing, CrossedRollerRow):
+    elif bearing.is_crossed:
         axis = 0.25 * np.pi
     elif hasattr(bearing, "contact_angle"):
         offset = float(getattr(bearing, "profile_offset", 0.0))
@@ -285,9 +299,8 @@ def without_round_off(values: Any) -> Any:
 
 
 def _elements(solution):
-    balls = isinstance(solution, BallSolution)
-    touching, grid = (_balls if balls else _rollers)(solution)
-    kind, open_ = "balls" if balls else "rollers", int((~touching).sum())
+    touching, grid = nearest_entry(_ELEMENTS, solution)(solution)
+    kind, open_ = f"{solution.element.bearing.noun}s", int((~touching).sum())
     away = f"{open_} of {len(touching)} {kind} are out of contact"
     return [*([grid] if touching.any() else []), *([away] if open_ else [])]
 
@@ -362,3 +375,7 @@ def _balls(solution):
         ratio = np.asarray(solution.kinematics.spin_to_roll).max(axis=1)
         columns.append(Column("spin/roll (larger)", ratio[shown], "", ".3f"))
     return touching, Grid(columns)
+
+
+_ROWS = {AbstractBallBearing: _ball_row, AbstractRollerBearing: _roller_row}
+_ELEMENTS = {BallSolution: _balls, RollerSolution: _rollers}
