@@ -14,7 +14,8 @@ A solve that fails
 
 - `no_load_path` names the freedom that nothing holds: turn the load round, add preload,
   or prescribe that freedom.
-- `step_limit` gives the residual: raise `max_steps`, or look at clearance and preload.
+- `step_limit` gives the residual: raise `SolveOptions(max_steps=...)`, or look at
+  clearance and preload.
 - `non_finite`: look for NaN, or loads, speeds and sizes of another scale.
 - `saddle`: finite kinematics only.
 - `grid_misfit` (half-space contacts): more than a thousandth of the load stands at the

@@ -238,7 +238,7 @@ def failure_message(solution: Solution, moving_ring: str) -> str:
             f"Step limit of the rolling elements: the rings balance to {residual:.1e}"
             f" of the load, rolling elements only to {local:.1e}: {cure}, or {more}."
         )
-    cure += ", or raise the step limit (`max_steps` of solve_load)"
+    cure += ", or raise the step limit (`SolveOptions(max_steps=...)`)"
     if not usual:
         cure += ", or use TrustRegionNewton() for the rolling elements"
     return (
