@@ -124,7 +124,7 @@ def solved(name, numbers, structure, quadrature=None):
     design = eqx.combine(numbers, structure)
     if name in SETS:
         element = bj.BearingElement(design, kinematics=SETS[name][1])
-        given = {"free": ("ux", "uy"), "throw": False}
+        given = {"support": bj.Support(("ux", "uy")), "throw": False}
         return bj.solve_load(element, HEAVY, **given).displacement[7]
     element = bj.BearingElement(design, quadrature=quadrature)
     return QUANTITIES[name](bj.solve_load(element, LOAD, throw=False))

@@ -6,7 +6,8 @@ and a path of loads (a spiral). With straight raceways the rollers rest midway; 
 crowned ones, outer and inner unlike, each takes Newton steps of its own.
 
 Ours is `bj.sweep` on one core: each case from the nearest one solved before, to the
-default tolerance and to looser ones, and from first contact (`near=False`). Beside it
+default tolerance and to looser ones, and from first contact
+(`Batches(near=False)`). Beside it
 on that core, in shuffled order, all from first contact: C with the same algorithm
 (`c_load.c`; it leaves open rollers out, and solves one case at a time), and a loop of
 `scipy.optimize.root`, which calls our compiled force and stiffness, or a NumPy bearing
@@ -201,15 +202,15 @@ class CLoad:
         return q, steps, failed
 
 
-def ours(element, loads, **choices):
+def ours(element, loads, tolerance=None, near=True):
     """As `CLoad`."""
     here = jax.devices()[:1]
     s = bj.sweep(
         element,
         loads,
         outputs=OUTPUTS,
-        batches=bj.cases.Batches(devices=here),
-        **choices,
+        options=bj.statics.SolveOptions(tolerance=tolerance),
+        batches=bj.cases.Batches(devices=here, near=near),
     )
     return s.displacement, s.iterations, int(np.sum(~s.converged))
 

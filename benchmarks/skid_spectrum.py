@@ -110,7 +110,7 @@ def over_orbit(radials, places):
     @jax.jit
     @jax.vmap
     def solve(radial):
-        given = {"speed": SPEED, "free": FREE, "places": places}
+        given = {"speed": SPEED, "support": bj.Support(FREE), "places": places}
         found = skid.steady(MODEL, load(radial), **given)
         sliding, borne = found.sliding_speed, found.contact_load
         return (

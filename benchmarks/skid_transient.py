@@ -241,8 +241,8 @@ def one_run(name, tolerances, rounds, smoke):
 @eqx.filter_jit
 def end(load, places):
     """End state: mean orbital speed [rad/s]."""
-    given = {"speed": SPEED, "free": FREE, "places": places, "throw": False}
-    return skid.steady(MODEL, load, **given).cage_speed
+    given = {"speed": SPEED, "support": Support(FREE), "places": places}
+    return skid.steady(MODEL, load, **given, throw=False).cage_speed
 
 
 def steady_row(name, smoke):

@@ -57,7 +57,7 @@ def element():
 
 def combined(element, radial, **how):
     load = shift(element).T @ np.array([radial, 0, 600.0, 0, 0, 0])
-    if "free" in how:
+    if "support" in how:
         # The locked tilts take the moment of the shifted load.
         load[3:] = 0.0
     return bj.solve_load(element, load, speed=SPEED, **how)

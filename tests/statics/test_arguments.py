@@ -87,23 +87,23 @@ def test_solve_load_rejects_invalid_load(load, text):
     [
         ({"prescribed": ["uz"]}, r"`prescribed` is \['uz'\]; it must be a dict"),
         ({"prescribed": "uz"}, "`prescribed` is 'uz'; it must be a dict"),
-        ({"prescribed": {"uz": "1 um"}}, "`prescribed` holds '1 um'; it must be six"),
+        ({"prescribed": {"uz": "1 um"}}, r"`prescribed\['uz'\]` is '1 um'; it must be"),
         ({"free": "ux"}, "`free` is 'ux'; it must be a list of names"),
     ],
 )
-def test_solve_load_rejects_invalid_prescribed_and_free(given, text):
-    with pytest.raises(TypeError, match=f"^solve_load: {text}"):
-        plain("solve_load")(ELEMENT, **given)
+def test_support_rejects_invalid_prescribed_and_free(given, text):
+    with pytest.raises(TypeError, match=f"^Support: {text}"):
+        bj.Support(**given)
+
+
+HELD = bj.Support(prescribed={"uz": 1e-6})
 
 
 @pytest.mark.parametrize(
     ("name", "given", "text"),
     [
-        ("solve_load", {"tolerance": 2.0}, "`tolerance` is 2; .* below 1"),
-        ("sweep", {"tolerance": 2.0}, "`tolerance` is 2; .* below 1"),
-        ("sweep", {"free": ["gz"]}, "`free` contains gz"),
-        ("optimise", {"solve_tolerance": 2.0}, "`solve_tolerance` is 2; .* below 1"),
-        ("optimise", {"free": ["uw"]}, "`free` names 'uw'; freedoms are ux, uy"),
+        ("sweep", {"support": HELD}, "`support` has displacements; give them to"),
+        ("optimise", {"support": HELD}, "`support` has displacements; give them to"),
         ("stiffness_table", {"fixed_ring": "left"}, "`fixed_ring` is 'left'"),
     ],
 )
