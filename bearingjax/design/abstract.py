@@ -197,12 +197,12 @@ class AbstractBearing(eqx.Module):
         instance(self, "published", Published, None)
 
 
-def nearest_entry(table: Mapping[type, Any], bearing: AbstractBearing) -> Any:
-    """Entry of the nearest class of a bearing in a table by class; `None`: none.
+def nearest_entry(table: Mapping[type, Any], instance: Any) -> Any:
+    """Entry of the nearest class of an object in a table by class; `None`: none.
 
     Args:
         table: Entries by class, such as constants or functions of another package.
-        bearing: The row.
+        instance: A bearing, or its solution.
     """
-    bases = type(bearing).__mro__
+    bases = type(instance).__mro__
     return next((table[base] for base in bases if base in table), None)

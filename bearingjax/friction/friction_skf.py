@@ -319,14 +319,13 @@ def skf_friction_torque(
     dry = jnp.exp(-2.6e-8 * _power(flow, 1.4) * d_mean)
     film = OILS[oil] if kind.film is None else kind.film
     sliding = dry * _BOUNDARY + (1.0 - dry) * film
-    parts, variables = [], nearest_entry(_VARIABLES, first)
+    parts = []
     for row, (radial, axial, _) in zip(
         units_of(bearing), unit_loads(solution), strict=True
     ):
         capacity = rated(row) if static_capacity is None else as_real(static_capacity)
-        angle = first.nominal_contact_angle
-        one = _Unit(d_mean, radial, axial, rpm, capacity, flow, angle)
-        parts.append(variables(kind.series[series], one))
+        given = kind.series[series], d_mean, radial, axial, rpm, capacity, flow
+        parts.append(_variables(first, *given))
     of_rolling, of_sliding = (jnp.stack(v) for v in zip(*parts, strict=True))
     torques = 1e-3 * rolling * of_rolling, 1e-3 * sliding * of_sliding
     return SkfFriction(*torques, speed, series, assumed)
@@ -435,6 +434,13 @@ _VARIABLES: dict[type, Callable[..., tuple[Any, Any]]] = {
     SphericalThrustRollerBearing: _spherical_thrust,
 }
 """G_rr and G_sl of a unit by class, of its constants and loads, in mm and N."""
+
+
+def _variables(bearing, row, d, radial, axial, rpm, capacity, flow=0.0):
+    """G_rr and G_sl of a unit of the bearing, in mm and N."""
+    angle = bearing.nominal_contact_angle
+    unit = _Unit(d, radial, axial, rpm, capacity, flow, angle)
+    return nearest_entry(_VARIABLES, bearing)(row, unit)
 
 
 def _diameters(bearing, kind, given):
