@@ -152,11 +152,11 @@ class AbstractBearing(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def deviation_bounds(self) -> tuple[Scalar, ...]:
+    def deviation_bounds(self) -> tuple[Any, ...]:
         """Upper bounds of the size of raceway deviations [m]."""
 
     @property
-    def element_length(self) -> Scalar | None:
+    def element_length(self) -> Any:
         """Length of the rollers [m]; `None` of balls."""
         return None
 
@@ -166,7 +166,7 @@ class AbstractBearing(eqx.Module):
         return frozenset({1} if self.holds_axially else ())
 
     @property
-    def shoulders(self) -> tuple[Scalar, ...]:
+    def shoulders(self) -> tuple[Any, ...]:
         """Heights of the shoulders that are known [m]; none of rollers."""
         return ()
 

@@ -186,7 +186,7 @@ class AbstractBallBearing(AbstractBearing):
         return self.pitch_diameter - across, self.pitch_diameter + across
 
     @property
-    def deviation_bounds(self) -> tuple[Scalar, ...]:
+    def deviation_bounds(self):
         return self.centre_distances
 
     @property
@@ -194,7 +194,7 @@ class AbstractBallBearing(AbstractBearing):
         return frozenset({1} if self.is_one_sided else {1, -1})
 
     @property
-    def shoulders(self) -> tuple[Scalar, ...]:
+    def shoulders(self):
         both = self.outer_shoulder, self.inner_shoulder
         return tuple(height for height in both if height is not None)
 

@@ -146,11 +146,11 @@ class AbstractRollerBearing(AbstractBearing):
         return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
 
     @property
-    def deviation_bounds(self) -> tuple[Scalar, ...]:
+    def deviation_bounds(self):
         return (0.5 * self.roller_diameter,)
 
     @property
-    def element_length(self) -> Scalar:
+    def element_length(self):
         return self.roller_length
 
     @property

@@ -144,14 +144,18 @@ def _thickness(formula, entrainment, load, sizes, modulus):
     return entrainment, *(jnp.where(carried, film, jnp.inf) for film in found)
 
 
+def _diameter(bearing):
+    return getattr(bearing, f"{bearing.noun}_diameter")
+
+
 def _radius(bearing, cosine, sides):
     """Radius of contacts about the axis [m]."""
-    return 0.5 * (bearing.pitch_diameter + sides * bearing.element_diameter * cosine)
+    return 0.5 * (bearing.pitch_diameter + sides * _diameter(bearing) * cosine)
 
 
 def _rolling_radius(bearing, cosine, sides):
     """Relative radius of curvature in rolling direction [m]."""
-    diameter = bearing.element_diameter
+    diameter = _diameter(bearing)
     return 0.5 * diameter * (1.0 + sides * diameter * cosine / bearing.pitch_diameter)
 
 

@@ -117,7 +117,7 @@ _PLAUSIBLE = {
 def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
     """E* times the diameter of the rolling elements, the least of all rows [N/m]."""
     scales = [
-        _modulus(row.bearing) * row.bearing.element_diameter for row in rows_of(bearing)
+        _modulus(row.bearing) * _diameter(row.bearing) for row in rows_of(bearing)
     ]
     least = scales[0]
     for scale in scales[1:]:
@@ -127,6 +127,10 @@ def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
 
 def _modulus(bearing):
     return contact_modulus(bearing.material, bearing.rings)
+
+
+def _diameter(bearing):
+    return getattr(bearing, f"{bearing.noun}_diameter")
 
 
 def _of_balls(solution: Solution) -> BallSolution:
@@ -350,7 +354,7 @@ def _line_approach(solution):
     return _largest(
         solution,
         [
-            5.0 * bearing.element_diameter * (pressure.max() / _modulus(bearing)) ** 2
+            5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
             for bearing, pressure in _by_row(solution, solution.roller_pressure)
         ],
     )

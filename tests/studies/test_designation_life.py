@@ -98,7 +98,8 @@ def test_life_of_22220_E_from_python_and_from_the_command(read, run, tmp_path):
     assert run("solve", tmp_path / "scene.toml", "--json", out).status == 0
     found = json.loads(out.read_text(encoding="utf-8"))
     element = bj.BearingElement(bj.load_bearing("22220 E"))
-    solution = bj.solve_load(element, list(scene.load), points=scene.points)
+    options = bj.statics.SolveOptions(points=scene.points)
+    solution = bj.solve_load(element, list(scene.load), options=options)
     life = bj.rating_life(element, solution)
     assert found["dynamic_capacity"] == pytest.approx(425e3, rel=1e-12)
     for name, number in told(scene, life.ratings).items():
