@@ -74,7 +74,7 @@ def both_rows(
     """
     if not shares_rings(bearing):
         return bearing
-    if bearing.is_crossed:
+    if isinstance(bearing, CrossedRollerRow):
         return BearingSet.crossed(bearing)
     return BearingSet.self_aligning(bearing, staggered=staggered)
 

@@ -181,7 +181,7 @@ def source_contributions(
     asked = ContributionOptions() if options is None else options
     factor, bands, gradient = asked.factor, asked.bands, asked.gradient
     turns, samples = given.turns, given.samples
-    made = Records(model, tolerances, n, given, "source_contributions")
+    drawn = Records(model, tolerances, n, given, "source_contributions")
     sources = tolerances.sources
     if not sources:
         raise ValueError(
@@ -231,15 +231,15 @@ def source_contributions(
             f" {n}."
         )
     for change in changes:
-        made = made.batches(keys, report_progress, change)
+        made = drawn.batches(keys, report_progress, change)
         runs.append(summarised((a[:part], r[:part]) for part, a, r in made))
         done += n
     squares, in_bands, solved = (np.array(a) for a in zip(*runs, strict=True))
     fine = np.all(solved, axis=0)
     slopes = []
     if gradient:
-        for part, at in made.parts(n):
-            slope = _slopes(*made.given, *raw(keys[at]), made.counts, along)
+        for part, at in drawn.parts(n):
+            slope = _slopes(*drawn.given, *raw(keys[at]), drawn.counts, along)
             slopes.append([slope[name][:part] for name in sources])
             report_progress(min(len(slopes) * given.batch, n), n)
     if not fine.any():
