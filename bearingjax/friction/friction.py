@@ -15,6 +15,7 @@ from jaxtyping import Array, Float
 from ..design import (
     AbstractBallBearing,
     AbstractBearing,
+    AbstractRollerBearing,
     AngularContactBallBearing,
     BearingSet,
     CylindricalRollerBearing,
@@ -37,7 +38,7 @@ from ..life.equivalent_load import equivalent_load
 from ..life.rating import static_capacity as rated
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
-from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
+from ..statics.solution import Solution, check_single
 
 SUPPLIES = ("grease", "oil_mist", "oil_bath", "oil_jet")
 """Types of lubricant supply; a jet counts as an oil bath with a vertical shaft."""
@@ -207,7 +208,10 @@ def _outer_of_rollers(solution, mine, bearing):
     return solution.roller_load[mine, :1], bearing.nominal_contact_angle
 
 
-_OUTER = {BallSolution: _outer_of_balls, RollerSolution: _outer_of_rollers}
+_OUTER = {
+    AbstractBallBearing: _outer_of_balls,
+    AbstractRollerBearing: _outer_of_rollers,
+}
 
 
 def _row_loads(solution) -> list[Any]:
@@ -217,7 +221,7 @@ def _row_loads(solution) -> list[Any]:
     for size, row in pairs:
         mine = slice(begin, begin + size)
         begin += size
-        load, angle = nearest_entry(_OUTER, solution)(solution, mine, row.bearing)
+        load, angle = nearest_entry(_OUTER, row.bearing)(solution, mine, row.bearing)
         across = jnp.sum(load * jnp.cos(angle), axis=1)
         azimuth = solution.azimuth[mine]
         found.append(
