@@ -29,6 +29,7 @@ from ..fits.fit_limits import (
     spherical_roller_clearance,
     toroidal_roller_clearance,
 )
+from ..fits.fits import Mounting
 from ..fits.iso286 import Limits
 from ..numerics.units import unit
 from .designation import Suffixes, compact, split_designation
@@ -146,6 +147,10 @@ class OtherRating(NamedTuple):
     source: str
 
 
+SAME_SIZE = 1e-3
+"""Difference of diameters over the diameter above which they count as different [1]."""
+
+
 @dataclasses.dataclass(frozen=True)
 class CatalogueEntry:
     """A bearing of the catalogue.
@@ -228,6 +233,23 @@ class CatalogueEntry:
     def class_limits(self) -> Callable[..., Limits] | None:
         """Clearance limits by class and bore; `None` for a type without classes."""
         return class_limits(self.type, self.taper)
+
+    def seat_warnings(self, mounting: Mounting) -> list[str]:
+        """Warnings about seats of other diameters than its own, a sentence each.
+
+        Args:
+            mounting: Its seats, concrete.
+        """
+        found = []
+        for name in ("bore", "outside_diameter"):
+            given, own = float(getattr(mounting, name)), getattr(self, name)
+            if abs(given - own) > SAME_SIZE * own:
+                found.append(
+                    f"fit: `{name}` is {1e3 * given:.5g} mm, but that of"
+                    f" {self.designation} is {1e3 * own:.5g} mm, which its friction and"
+                    " heat have; leave it out if it is not meant"
+                )
+        return found
 
     @property
     def bearing(self) -> Any:

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from ..design import rows_of
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
-from ..design.checks import check, in_range, of_class, positive
+from ..design.checks import check, concrete, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
@@ -135,6 +135,11 @@ class LifeConditions(eqx.Module):
         for name in ("dynamic_capacity", "static_capacity", "fatigue_load_limit"):
             if getattr(self, name) is not None:
                 positive(self, name)
+        limits = self.fatigue_load_limit, self.static_capacity
+        known = None if None in limits else concrete(*limits)
+        if known is not None:
+            allowed = f"below `static_capacity`, {known[1]:.6g} N"
+            check(self, "fatigue_load_limit", known[0] < known[1], allowed)
         # Single precision has 0.9 a little below it.
         in_range(self, "reliability", 0.9 - 1e-7, 1.0, include_low=True)
         if self.load_fixed_to not in FRAMES:
@@ -261,8 +266,9 @@ def rating_life(
         solution: Its solution. Of rollers every second position is the middle of a
             lamina: 101 `points` are 50 laminae.
         conditions: Ratings, lubrication and reliability; `None`: `LifeConditions()`.
-        speed: Ring speeds; `None`: those of the solution. Without any the inner ring
-            turns against a load fixed in space, and there is no life in hours.
+        speed: Ring speeds, if the solution has none; `None`: those of the solution.
+            Without any the inner ring turns against a load fixed in space, and there is
+            no life in hours.
         lamina_load: Load of every lamina on both raceways in place of the solution's
             [N], such as those of `refined_lamina_loads`. Concentrations of
             stress at the ends are then in it, whatever `edge_stress`.
@@ -300,6 +306,14 @@ def rating_life(
             " must be the bearing that was solved."
         )
     of_class("rating_life", "speed", speed, Speed | None, "a Speed")
+    if speed is not None and (own := solution.speed) is not None:
+        known = concrete(speed.inner, speed.outer, own.inner, own.outer)
+        if known is not None and not np.allclose(known[:2], known[2:], rtol=1e-6):
+            raise ValueError(
+                f"rating_life: `speed` is {known[0]:.6g} and {known[1]:.6g} rad/s"
+                f" (inner, outer), but the solution has {known[2]:.6g} and"
+                f" {known[3]:.6g} rad/s: leave `speed` out, or solve with it."
+            )
     if lamina_load is not None:
         shape = np.shape(lamina_load)
         wanted = (*solution.roller_load.shape, *shape[2:3])

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..catalogue.entry import CatalogueEntry
+from ..catalogue.entry import SAME_SIZE, CatalogueEntry
 from ..design.checks import check, finite, is_traced, of_shape, real_numbers
 from ..design.checks import count as whole
 from ..design.material import Material
@@ -25,9 +25,6 @@ from ..numerics.warning import Warning
 
 STATION_FREEDOMS = FREEDOMS[:5]
 """Freedoms of a cross-section, and of every station."""
-
-SAME_SIZE = 1e-3
-"""Difference of diameters over the bore above which shafts count as different [1]."""
 
 Matrices = tuple[
     Float[Array, "*element 10 10"],

@@ -29,6 +29,9 @@ from ..numerics.warning import Warning
 from .preload import SetPreload, is_opposed, preload, remaining_preload
 from .service_warning import MOST_DRIFT, preload_warnings, seat_warnings, speed_warnings
 
+_EXACT = 1e-9
+"""Length by which a size may miss its limits, by round-off [m]."""
+
 _LEAST = 1e-6
 """Force below which the preload counts as zero, by round-off [N]."""
 
@@ -256,11 +259,38 @@ class Installed(eqx.Module):
         states = self.fit_states()
         if states is None:
             return []
+        texts = self._limit_warnings(float(states.free))
         seats = states.mounted, states.operating, states.loosest
         speed = None
         if (c := self.conditions) is not None:
             speed = Speed(c.speed, c.outer_speed)
-        return seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
+        return texts + seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
+
+    def _limit_warnings(self, free: float) -> list[str]:
+        """Return warnings about sizes outside their limits, a sentence each."""
+        if self.mounting is None or self.limits is None:
+            return []
+        seats, limits = jax.device_get((self.mounting, self.limits))
+        sizes = {
+            "radial clearance before mounting": (free, *limits.clearance),
+            "interference of the shaft": (
+                seats.shaft_interference,
+                limits.shaft.lower - limits.bore.upper,
+                limits.shaft.upper - limits.bore.lower,
+            ),
+            "interference of the housing": (
+                seats.housing_interference,
+                limits.outside_diameter.lower - limits.housing.upper,
+                limits.outside_diameter.upper - limits.housing.lower,
+            ),
+        }
+        return [
+            f"fit: the {name} is {1e6 * size:.4g} µm, outside its limits,"
+            f" {1e6 * lower:.4g} to {1e6 * upper:.4g} µm: what is told over the"
+            " tolerances is of other bearings"
+            for name, (size, lower, upper) in sizes.items()
+            if not lower - _EXACT <= size <= upper + _EXACT
+        ]
 
     def held_clearance_warnings(
         self, speed: float, others: Iterable[float]

@@ -1096,6 +1096,10 @@ def test_single_precision_has_the_usual_reliability():
         ({"load_fixed_to": "shaft"}, "'shaft'.*'space', 'inner', 'outer'"),
         ({"edge_stress": "no"}, "`edge_stress` is 'no'.*True or False"),
         ({"fatigue_load_limit": np.nan}, "`fatigue_load_limit` is nan N"),
+        (
+            {"fatigue_load_limit": 30e3, "static_capacity": 8e3},
+            "`fatigue_load_limit` is 30000 N.*below `static_capacity`, 8000 N",
+        ),
     ],
 )
 def test_life_conditions_reject_invalid_arguments(conditions, what, untyped):
@@ -1114,6 +1118,11 @@ def test_rating_life_rejects_invalid_arguments(balls, rollers, untyped):
         bj.rating_life(element, several)
     with pytest.raises(TypeError, match="`speed` is a float; it must be a Speed"):
         bj.rating_life(element, solution, speed=150.0)
+    turning = eqx.tree_at(
+        lambda s: s.speed, solution, bj.Speed(100.0), is_leaf=lambda leaf: leaf is None
+    )
+    with pytest.raises(ValueError, match="`speed` is 150 .*the solution has 100 and 0"):
+        bj.rating_life(element, turning, speed=bj.Speed(150.0))
     other = roller_element(jnp.asarray([0.0, 1e3, 0.0, 0.0, 1e-4]))
     with pytest.raises(ValueError, match="`element` has .*Roller.* solution is of .*B"):
         bj.rating_life(other, solution)

@@ -17,7 +17,7 @@ BORE, OUTSIDE = PITCH - 2 * BALL, PITCH + 2 * BALL
 SEATS = bj.Mounting(BORE, OUTSIDE, 2 * OUTSIDE, 10e-6, 0.0)
 WARM = bj.FitConditions(shaft=30.0, inner_ring=40.0, elements=40.0, outer_ring=30.0)
 LIMITS = SizeLimits(
-    Limits(5e-6, 20e-6),
+    Limits(-5e-6, 20e-6),
     Limits(2e-6, 11e-6),
     Limits(-10e-6, 0.0),
     Limits(0.0, 15e-6),
@@ -51,7 +51,7 @@ def test_ranges_end_at_extreme_sizes():
     states = bj.Installed(BEARING, None, SEATS, WARM, LIMITS).fit_states()
     assert states is not None and states.operating_range is not None
     ends = []
-    for clearance, shaft, housing in ((5e-6, 21e-6, 0.0), (20e-6, 2e-6, -24e-6)):
+    for clearance, shaft, housing in ((-5e-6, 21e-6, 0.0), (20e-6, 2e-6, -24e-6)):
         sizes = dict(shaft_interference=shaft, housing_interference=housing)
         seats = bj.Mounting(
             BORE, OUTSIDE, 2 * OUTSIDE, **sizes, radial_clearance=clearance
@@ -98,6 +98,19 @@ def test_held_clearance_warnings_beyond_half_a_micron():
     (text,) = own.held_clearance_warnings(0.0, [1.01 * edge, 0.5 * edge])
     assert f"at {1.01 * edge * 30 / np.pi:.5g} rpm its fits leave" in text
     assert f"at 0 rpm, {1e6 * left(0.0):.4g} µm" in text
+
+
+def test_sizes_outside_their_limits_are_warned_of():
+    tight = eqx.tree_at(lambda m: m.shaft_interference, SEATS, 25e-6)
+    own = bj.Installed(BEARING, None, tight, None, LIMITS)
+    (text,) = own.seat_warnings()
+    assert "interference of the shaft is 25 µm, outside its limits, 2 to 21 µm" in text
+    loose = eqx.tree_at(lambda m: m.housing_interference, SEATS, -25e-6)
+    (text,) = bj.Installed(BEARING, None, loose, None, LIMITS).seat_warnings()
+    assert "of the housing is -25 µm, outside its limits, -24 to 0 µm" in text
+    narrow = LIMITS._replace(clearance=Limits(40e-6, 50e-6))
+    (text,) = bj.Installed(BEARING, None, SEATS, None, narrow).seat_warnings()
+    assert "clearance before mounting" in text and "40 to 50 µm" in text
 
 
 def test_limits_without_mounting_refused():

@@ -307,6 +307,14 @@ def test_rows_with_bearings_of_their_own_have_their_published_ratings(read):
     np.testing.assert_allclose(rated(scene), wanted, rtol=1e-12)
     origin = rating_origins(scene, rate(scene))["dynamic_capacity"]
     assert origin.startswith("published for the bearing of its rows, of one row; for 2")
+    # [bearing] is in none of the rows, unless one of them leaves its own out.
+    (text,) = scene.warnings
+    assert text.startswith(
+        "set: every row has a `bearing` of its own, so that [bearing]"
+    )
+    mixed = rows.replace(f'{own}position = "20', '[[set.rows]]\nposition = "20')
+    scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{mixed}')
+    assert scene.warnings == ()
 
 
 def test_sweep_over_rated_dimension_leaves_out_published_ratings(tmp_path):

@@ -149,6 +149,15 @@ def test_states_and_warnings_of_a_bearing_installed_by_hand(scene):
     np.testing.assert_allclose(*flat, rtol=1e-9)
 
 
+def test_seats_of_another_size_than_the_designation_are_warned_of(scene):
+    sizes = 'bore = "27 mm"\noutside_diameter = "52 mm"\n'
+    fit = f'{sizes}housing_diameter = "80 mm"\nshaft = "k5"\nhousing = "H7"\n'
+    text = f'[bearing]\ndesignation = "6205"\n[operating]\nload = {{}}\n[fit]\n{fit}'
+    (told,) = bj.read_scene(scene(text)).warnings
+    assert told.startswith("fit: `bore` is 27 mm, but that of 6205 is 25 mm, which its")
+    assert bj.read_scene(scene(text), ["fit.bore=25 mm"]).warnings == ()
+
+
 def test_fit_of_catalogue_bearing(scene):
     text = FIT.replace('bore = "25 mm"\noutside_diameter = "52 mm"\n', "").replace(
         'clearance = "CN"\n', ""

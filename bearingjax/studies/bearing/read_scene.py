@@ -269,6 +269,8 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     speeds = "limiting_speed", "reference_speed"
     if catalogue is not None:
         seats |= {name: getattr(catalogue.entry, name) for name in speeds}
+        if fits is not None:
+            warned += tuple(catalogue.entry.seat_warnings(seats["mounting"]))
     installed = Installed(element, preload, **seats)
     fixed_to = "space" if life is None else life.load_fixed_to
     warned += tuple(installed.seat_warnings(fixed_to))
