@@ -53,6 +53,14 @@ class Excitation(eqx.Module):
     shaft_frequency: Scalar
     result: Int[Array, " sample"]
 
+    @property
+    def failure_message(self) -> str:
+        """How many instants were not solved, in words; empty if all were."""
+        bad = int(jnp.sum(self.result != Result.CONVERGED))
+        if not bad:
+            return ""
+        return f"excitation: {bad} of {self.result.size} instants were not solved."
+
 
 def excitation(
     model: NoiseModel,
@@ -96,11 +104,9 @@ def excitation(
     if not throw:
         return found
 
-    def message():
-        bad = int(jnp.sum(found.result != Result.CONVERGED))
-        return f"excitation: {bad} of {found.result.size} instants were not solved."
-
-    return raise_unless_converged(found, found.result, message, "excitation")
+    return raise_unless_converged(
+        found, found.result, lambda: found.failure_message, "excitation"
+    )
 
 
 def at_instant(

@@ -10,7 +10,6 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.linear import combine_rows
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from ..statics import solution as statics_solution
 from .dynamics.element_positions import ElementPositions
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -81,7 +80,7 @@ def _carried_loads(system, motion) -> tuple[Scalar, Scalar]:
     return jnp.max(jnp.minimum(outer, inner)), jnp.max(jnp.maximum(outer, inner))
 
 
-def failure_message(model: NoiseModel) -> str:
+def describe_failure(model: NoiseModel) -> str:
     """Describe why a bearing has no equilibrium under its load.
 
     Args:
@@ -93,4 +92,4 @@ def failure_message(model: NoiseModel) -> str:
             "nothing presses the rolling elements between the rings, and the"
             f" {model.moving_ring} ring lies anywhere; add load or preload"
         )
-    return statics_solution.failure_message(solution, model.moving_ring)
+    return solution.failure_message

@@ -26,7 +26,7 @@ from .dynamics.cage import fastest_of_cage
 from .dynamics.stepping import HELD, step_motion
 from .model import NoiseModel
 from .natural import natural_modes
-from .static_start import failure_message, static_start
+from .static_start import describe_failure, static_start
 
 _STABLE = 2.5
 """Stability limit of the step: 2.78 radians of the fastest mode [rad]."""
@@ -202,7 +202,7 @@ def _failure(model: NoiseModel, result: int, steps: int) -> str:
             f"vibration: `steps` is {steps}, too few for the contacts under their"
             " largest load; the motion cannot be trusted."
         )
-    reason = failure_message(model)
+    reason = describe_failure(model)
     return f"vibration: the bearing finds no place under its load: {reason}."
 
 

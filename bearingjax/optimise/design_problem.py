@@ -22,7 +22,7 @@ from .measure import exact_of, least_size_of
 from .system import (
     AbstractSystem,
     Design,
-    failure_message,
+    describe_failure,
     has_loads,
     loads_of,
     ready,
@@ -265,7 +265,7 @@ def _fault(design: Design, found: Run) -> str:
         k = int(np.argmax(results))
         one = jax.tree.map(lambda leaf: leaf[k], found.solution)
         label = Result(int(results[k])).label
-        return f"case {k}: {label}: {failure_message(design, one)}"
+        return f"case {k}: {label}: {describe_failure(design, one)}"
     if not np.isfinite(found.measures).all():
         return f"a measure is not finite: {np.asarray(found.measures).tolist()}"
     if found.jacobian is not None and not np.isfinite(found.jacobian).all():

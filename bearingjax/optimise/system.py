@@ -10,7 +10,6 @@ import equinox as eqx
 from ..cases.cases import Cases, case_speed, solve_case
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.warning import Warning
-from ..statics import solution as statics_solution
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
@@ -60,7 +59,7 @@ class AbstractSystem(eqx.Module):
         """
 
     @abc.abstractmethod
-    def message(self, solved: Any) -> str:
+    def failure_message(self, solved: Any) -> str:
         """Reason why a case failed, in words.
 
         Args:
@@ -166,7 +165,7 @@ def has_loads(solved: Any) -> bool:
     return isinstance(solved, Solution) or hasattr(solved, "solution")
 
 
-def failure_message(design: Design, solved: Any) -> str:
+def describe_failure(design: Design, solved: Any) -> str:
     """Reason why a case failed, in words.
 
     Args:
@@ -177,6 +176,6 @@ def failure_message(design: Design, solved: Any) -> str:
     if loads is not None and (
         not isinstance(design, AbstractSystem) or int(loads.result)
     ):
-        return statics_solution.failure_message(loads, loads.moving_ring)
+        return loads.failure_message
     assert isinstance(design, AbstractSystem)
-    return design.message(solved)
+    return design.failure_message(solved)

@@ -50,6 +50,16 @@ class StaticEquilibriumOver(eqx.Module):
     result: Int[Array, ""]
 
     @property
+    def failure_message(self) -> str:
+        """Why they were not found, in words; empty if they were."""
+        if int(self.result) == Result.CONVERGED:
+            return ""
+        return (
+            f"static_equilibrium_over: {Result(int(self.result)).label} at one of the"
+            " speeds; `static_equilibrium` there says more."
+        )
+
+    @property
     def top_speed(self) -> Scalar:
         """Highest speed for which the springs hold [rad/s]."""
         first: Any = self.rotor.supports[0]
@@ -122,17 +132,12 @@ def static_equilibrium_over(
     every = _at_each(rotor, loads, speeds)
     found = _settled_over(rotor, top_speed, speeds, every)
 
-    def message():
-        label = Result(int(found.result)).label
-        return (
-            f"static_equilibrium_over: {label} at one of the speeds;"
-            " `static_equilibrium` there says more."
-        )
-
     if not throw:
         return found
     owner = "static_equilibrium_over"
-    return raise_unless_converged(found, found.result, message, owner)
+    return raise_unless_converged(
+        found, found.result, lambda: found.failure_message, owner
+    )
 
 
 def _at_each(rotor, loads, speeds) -> StaticEquilibrium:

@@ -57,7 +57,7 @@ def solve_system(system: ShaftSystem, *, throw: bool = True) -> SystemSolution:
         found = raise_unless_converged(
             found,
             found.result,
-            lambda: failure_message(system, found, place),
+            lambda: describe_failure(system, found, place),
             "solve_system",
         )
     return found
@@ -261,7 +261,7 @@ def _couple(system, rotors, points, power) -> Condensed:
     )
 
 
-def failure_message(system: ShaftSystem, found: SystemSolution, place: Any) -> str:
+def describe_failure(system: ShaftSystem, found: SystemSolution, place: Any) -> str:
     """Return the message on a system without equilibrium.
 
     Args:

@@ -202,6 +202,21 @@ class ThermalState(eqx.Module):
     steps: Int[Array, ""]
     result: Int[Array, ""]
 
+    @property
+    def failure_message(self) -> str:
+        """Why there is no thermal equilibrium, in words; empty if there is one."""
+        if int(self.result) == Result.CONVERGED:
+            return ""
+        if int(self.solution.result) not in (Result.CONVERGED, Result.NON_FINITE):
+            label = Result(int(self.solution.result)).label
+            return f"solve_heat: the shafts have no equilibrium when warm: {label}."
+        return (
+            "solve_heat: no thermal equilibrium within"
+            f" {HOTTEST:g} K above the surroundings: friction grows faster with"
+            " temperature than cooling. Give less preload or speed, more clearance, or"
+            " larger conductances."
+        )
+
 
 def solve_heat(
     system: ShaftSystem, network: HeatNetwork, *, throw: bool = True
@@ -263,24 +278,7 @@ def solve_heat(
     if not throw:
         return found
     return raise_unless_converged(
-        found, result, lambda: failure_message(found), "solve_heat"
-    )
-
-
-def failure_message(state: ThermalState) -> str:
-    """Return the message on a system without thermal equilibrium.
-
-    Args:
-        state: From `solve_heat`.
-    """
-    if int(state.solution.result) not in (Result.CONVERGED, Result.NON_FINITE):
-        label = Result(int(state.solution.result)).label
-        return f"solve_heat: the shafts have no equilibrium when warm: {label}."
-    return (
-        "solve_heat: no thermal equilibrium within"
-        f" {HOTTEST:g} K above the surroundings: friction grows faster with temperature"
-        " than cooling. Give less preload or speed, more clearance, or larger"
-        " conductances."
+        found, result, lambda: found.failure_message, "solve_heat"
     )
 
 

@@ -162,7 +162,7 @@ class ShaftDesign(AbstractSystem):
             friction=None if self.oils is None else jnp.stack(powers),
         )
 
-    def message(self, solved):
+    def failure_message(self, solved):
         return "the shafts find no equilibrium on their bearings"
 
     def warnings(self, cases, solved):

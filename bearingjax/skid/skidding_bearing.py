@@ -21,7 +21,7 @@ from ..statics.options import SolveOptions
 from ..statics.support import Support
 from .conditions import conditions
 from .model import SkidModel
-from .orbits.steady import check_places, end_state, enough_places, failure_message
+from .orbits.steady import check_places, end_state, enough_places
 from .orbits.steady_results import SteadyMotion
 from .warning import skid_warnings
 
@@ -75,14 +75,14 @@ class SkiddingBearing(AbstractSystem):
         whole = load_case(model.bearing, loaded.load, held, speed=speed)
         return end_state(model, solution, whole, speed, places)
 
-    def message(self, solved):
+    def failure_message(self, solved):
         if int(solved.result) == Result.GRID_MISFIT:
             count = self.model.bearing.n_elements
             return (
                 "its balls or rollers bear unlike loads: `places` must be a multiple"
                 f" of {count}"
             )
-        return f"no end state of skidding after {failure_message(solved)}"
+        return f"no end state of skidding: {solved.failure_message}"
 
     def warnings(self, cases, solved):
         still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)

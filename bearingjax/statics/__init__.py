@@ -40,7 +40,7 @@ Names
 -----
 
 - Load solves: `solve_load`, `Support`, `SolveOptions`, `Solution`, `BallSolution`,
-  `RollerSolution`, `Stats`, `failure_message`.
+  `RollerSolution`, `Stats`.
 - Preload and seats: `Installed`, `preload`, `remaining_preload`, `SetPreload`.
 - Stiffness: `linearise`, `OperatingPoint`, `restrained_freedoms`.
 - Half-space contact of one roller: `refine`, `Refined`.
@@ -54,14 +54,13 @@ from .options import SolveOptions
 from .preload import SetPreload, preload, remaining_preload
 from .refine import Refined, refine
 from .service_warning import seat_warnings, speed_warnings
-from .solution import BallSolution, RollerSolution, Solution, Stats, failure_message
+from .solution import BallSolution, RollerSolution, Solution, Stats
 from .support import Support, restrained_freedoms
 from .warning import warnings
 
 __all__ = [
     "solve_load", "Support", "SolveOptions", "Solution", "BallSolution",
-    "RollerSolution", "Stats",
-    "failure_message", "Installed", "preload", "remaining_preload", "SetPreload",
-    "linearise", "OperatingPoint", "restrained_freedoms", "refine", "Refined",
-    "warnings", "seat_warnings", "speed_warnings",
+    "RollerSolution", "Stats", "Installed", "preload", "remaining_preload",
+    "SetPreload", "linearise", "OperatingPoint", "restrained_freedoms", "refine",
+    "Refined", "warnings", "seat_warnings", "speed_warnings",
 ]  # fmt: skip

@@ -26,7 +26,6 @@ from .solution import (
     BallSolution,
     RollerSolution,
     Solution,
-    failure_message,
     no_load_path,
 )
 from .support import RESTRAINED, Support
@@ -165,7 +164,7 @@ def raise_if_failed(solution: Solution, owner: str) -> Solution:
     return raise_unless_converged(
         solution,
         solution.result,
-        lambda: failure_message(solution, solution.moving_ring),
+        lambda: solution.failure_message,
         owner,
         (solution.unrestrained, [no_load_path(solution, k) for k in range(6)]),
     )

@@ -134,6 +134,12 @@ class Solution(eqx.Module):
         """Whether the result code is `CONVERGED`."""
         return self.result == Result.CONVERGED
 
+    @property
+    def failure_message(self) -> str:
+        """Cause and cure of a failed solve of one case, in words; empty if it
+        converged."""
+        return _describe_failure(self)
+
     def to_xarray(self) -> Any:
         """Return all arrays with names and units, as an `xarray.Dataset`.
 
@@ -189,12 +195,11 @@ def no_load_path(solution: Solution, freedom: int) -> str:
     )
 
 
-def failure_message(solution: Solution, moving_ring: str) -> str:
-    """Cause and cure of a result, in words; for concrete, single solutions."""
+def _describe_failure(solution: Solution) -> str:
     result = Result(int(solution.result))
     stats = solution.stats
     if result is Result.CONVERGED:
-        return "converged"
+        return ""
     if result is Result.NO_LOAD_PATH:
         if int(solution.unrestrained) < 0:
             return (

@@ -175,8 +175,9 @@ def test_message_of_unconverged_end_state(evaluated):
     one = jax.tree.map(lambda leaf: leaf[0], solved)
     one = eqx.tree_at(lambda s: s.result, one, np.int32(lost))
     one = eqx.tree_at(lambda s: (s.steps, s.residual), one, (np.int32(300), 0.2))
-    want = "no end state of skidding after 300 steps; force out of balance 2.0e-01"
-    assert start.message(one).startswith(want)
+    want = "no end state of skidding: step_limit after 300 steps; force out of balance"
+    want = f"{want} 2.0e-01"
+    assert start.failure_message(one).startswith(want)
 
 
 @pytest.mark.slow

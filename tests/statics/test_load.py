@@ -18,7 +18,6 @@ from bearingjax.element import azimuths
 from bearingjax.lubrication import iso_vg
 from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.statics import load_result, warnings
-from bearingjax.statics.solution import failure_message
 from bearingjax.statics.warning import sizes
 from bearingjax.statics.warning_kinds import KINDS
 
@@ -185,8 +184,8 @@ def test_message_reports_round_off_of_rolling_elements(tapered):
                 times * s.roller_pressure,
             ),
         )
-        assert words in failure_message(late, "inner")
-        assert "SolveOptions" not in failure_message(late, "inner")
+        assert words in late.failure_message
+        assert "SolveOptions" not in late.failure_message
 
 
 @pytest.mark.slow
@@ -486,10 +485,7 @@ def test_a_load_on_a_held_freedom_is_not_dropped(crowned, held, why):
         jnp.asarray(load)
     )
     assert int(s.result) == bj.Result.NO_LOAD_PATH
-    assert (
-        "load has Mx, but gx of the inner ring is held"
-        in bj.statics.failure_message(s, "inner")
-    )
+    assert "load has Mx, but gx of the inner ring is held" in s.failure_message
     assert s.held == (("gx",) if "prescribed" in held else ("uz", "gx"))
 
 

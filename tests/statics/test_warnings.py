@@ -420,7 +420,7 @@ def test_message_for_displacement_far_outside_the_bearing(deep):
     for given, speed in ((1e9, STILL), (1.0, bj.Speed(inner=1e11))):
         s = solved(deep, given * np.array(load), speed, throw=False)
         assert bj.Result(int(s.result)) is bj.Result.NON_FINITE
-        text = bj.statics.failure_message(s, "inner")
+        text = s.failure_message
         assert "far outside the bearing" in text and "turn the load" not in text
     # Where nothing holds the load that is still the word.
     off = bj.solve_load(deep, [0, 0, 0, 0, 0, 5.0], speed=STILL, throw=False)
@@ -439,11 +439,11 @@ def test_step_limit_message_suggests_other_method_only(rollers):
     wide = changed(rollers, radial_internal_clearance=-1e-3)
     s = bj.solve_load(wide, [0, -4000.0, 0, 0, 0, 0], throw=False)
     if not s.converged:
-        assert "TrustRegionNewton" not in bj.statics.failure_message(s, "inner")
+        assert "TrustRegionNewton" not in s.failure_message
     limit = eqx.tree_at(lambda s: s.result, s, jnp.asarray(1, jnp.int32))
-    assert "TrustRegionNewton" not in bj.statics.failure_message(limit, "inner")
+    assert "TrustRegionNewton" not in limit.failure_message
     other = eqx.tree_at(lambda s: s.element.equilibrium, limit, bj.numerics.BFGS())
-    assert "TrustRegionNewton()" in bj.statics.failure_message(other, "inner")
+    assert "TrustRegionNewton()" in other.failure_message
 
 
 @pytest.mark.parametrize("name", ["cylindrical, crowned ends", "taper, large rib"])

@@ -73,6 +73,11 @@ class ContactSolution(eqx.Module):
     result: Int[Array, ""]
 
     @property
+    def failure_message(self) -> str:
+        """Cause and cure of a failed solve of one contact; empty if it converged."""
+        return _describe_failure(self)
+
+    @property
     def grid(self) -> Grid:
         """The cells."""
         return self.problem.grid
@@ -208,7 +213,7 @@ def solve_pressure(
     if not throw:
         return solution
     return raise_unless_converged(
-        solution, solution.result, lambda: failure_message(solution), "solve_pressure"
+        solution, solution.result, lambda: solution.failure_message, "solve_pressure"
     )
 
 
@@ -263,11 +268,10 @@ def _fits(grid, pressed):
     return (resolved & held) | ~jnp.any(pressed.touching)
 
 
-def failure_message(solution: ContactSolution) -> str:
-    """Cause and cure of a result, in words; for concrete, single solutions."""
+def _describe_failure(solution: ContactSolution) -> str:
     result = Result(int(solution.result))
     if result is Result.CONVERGED:
-        return "converged"
+        return ""
     if result is Result.NO_LOAD_PATH:
         return (
             "No pressure carries this: the load is negative, or the moment asks for a"

@@ -16,7 +16,6 @@ from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import as_real
 from ...numerics.warning import Warning
 from ...statics.linearise import OperatingPoint, linearise
-from ...statics.solution import failure_message
 from ...statics.support import Support, restrained_freedoms
 from ...statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 from .modes import speed_list
@@ -69,7 +68,7 @@ def stiffness_table(
         return (
             f"stiffness_table: speed {float(speeds[index]):g} rad/s:"
             f" {Result(int(result[index])).label}:"
-            f" {failure_message(point.solution, point.solution.moving_ring)}"
+            f" {point.solution.failure_message}"
         )
 
     return raise_unless_converged(stiffness, result, first_failure, "stiffness_table")

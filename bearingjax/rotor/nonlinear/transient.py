@@ -54,6 +54,26 @@ class History(eqx.Module):
     steps: Int[Array, ""]
     result: Int[Array, ""]
 
+    @property
+    def failure_message(self) -> str:
+        """How far a failed integration came, in words; empty if it came to the end."""
+        result = Result(int(self.result))
+        if result is Result.CONVERGED:
+            return ""
+        time, reached = stop_gradient((self.time, self.displacement[:, 0]))
+        seen = time[np.isfinite(reached)]
+        last = f"{float(seen[-1]):.3g} s" if len(seen) else "the first time"
+        cure = "Forces are not finite, or no step was small enough."
+        if result is Result.STEP_LIMIT:
+            cure = (
+                "Allow more `max_steps`; if the shaft has many elements, reduce the"
+                " rotor: their fastest vibrations force short steps."
+            )
+        return (
+            f"simulate: {result.label} after {int(self.steps)} steps, behind {last} of"
+            f" {float(time[-1]):.3g} s. {cure}"
+        )
+
 
 Start = tuple[Any, Any]
 """Displacement and velocity (n,) [m, rad], [m/s, rad/s]."""
@@ -119,7 +139,7 @@ def _integrated(system, table, start, force, times, duration, options, throw):
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: _message(found), "simulate"
+        found, found.result, lambda: found.failure_message, "simulate"
     )
 
 
@@ -187,23 +207,6 @@ def beginning(
 @program
 def _simulate(*given):
     return simulate_traced(*given)
-
-
-def _message(found):
-    time, reached = stop_gradient((found.time, found.displacement[:, 0]))
-    seen = time[np.isfinite(reached)]
-    last = f"{float(seen[-1]):.3g} s" if len(seen) else "the first time"
-    if int(found.result) == Result.STEP_LIMIT:
-        cure = (
-            " Allow more `max_steps`; if the shaft has many elements, reduce the rotor:"
-            " their fastest vibrations force short steps."
-        )
-    else:
-        cure = " Forces are not finite, or no step was small enough."
-    return (
-        f"simulate: {Result(int(found.result)).label} after {int(found.steps)} steps,"
-        f" behind {last} of {float(time[-1]):.3g} s.{cure}"
-    )
 
 
 def simulate_traced(

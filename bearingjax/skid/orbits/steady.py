@@ -26,7 +26,6 @@ from ..model import SkidModel
 from .ball_orbit import BallOrbit
 from .orbit_search import NO_TRACTION, derivatives, search, with_derivatives
 from .roller_orbit import RollerOrbit
-from .steady_results import SteadyMotion
 
 _PLACES = 96
 """Least number of places along an orbit."""
@@ -94,7 +93,10 @@ def steady(
     if not throw:
         return found
     return raise_unless_converged(
-        found, found.result, lambda: _message(found), "skid.steady"
+        found,
+        found.result,
+        lambda: f"skid.steady: {found.failure_message}.",
+        "skid.steady",
     )
 
 
@@ -153,22 +155,6 @@ def _is_pressed(solution):
     """Return whether any ball or roller is loaded by both rings."""
     loads = solution.roller_load
     return jnp.max(jnp.min(loads, axis=1)) > _PRESSED * jnp.max(loads)
-
-
-def _message(found):
-    label = Result(int(found.result)).label
-    return f"skid.steady: {label} after {failure_message(found)}."
-
-
-def failure_message(found: SteadyMotion) -> str:
-    """Describe how far a failed search came.
-
-    Args:
-        found: One end state, concrete.
-    """
-    out = f"force out of balance {float(found.residual):.1e} of the tractions"
-    power = f"power {abs(float(found.imbalance)):.1e} of the losses"
-    return f"{int(found.steps)} steps; {out}, {power}"
 
 
 _ORBITS: dict[type, Any] = {

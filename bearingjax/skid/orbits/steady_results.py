@@ -9,6 +9,7 @@ from jaxtyping import Array, Float, Int
 
 from ...element.inertia import Speed
 from ...numerics.linear import lengths
+from ...numerics.result import Result
 from ...numerics.types import Scalar, array_namespace
 from ...numerics.units import unit
 from ...statics.solution import BallSolution, RollerSolution
@@ -95,6 +96,16 @@ class SteadyMotion(eqx.Module):
     def slip(self) -> Float[Array | np.ndarray, "*n place"]:
         """1 - orbit/rolling orbit (place,) [1]; zero where rings are at rest."""
         return slip(self.orbit_speed, self.rolling_orbit_speed)
+
+    @property
+    def failure_message(self) -> str:
+        """How far a failed search of one end state came; empty if it converged."""
+        result = Result(int(self.result))
+        if result is Result.CONVERGED:
+            return ""
+        out = f"force out of balance {float(self.residual):.1e} of the tractions"
+        power = f"power {abs(float(self.imbalance)):.1e} of the losses"
+        return f"{result.label} after {int(self.steps)} steps; {out}, {power}"
 
     @property
     def imbalance(self) -> Float[Array | np.ndarray, "*n"]:

@@ -51,7 +51,6 @@ def _life_of_load(options) -> Outcome:
 
 def _life_of_cases(options, tools: Tools) -> Outcome:
     from .life_run import (
-        failure_message,
         life_columns,
         run_life,
         spectrum_as_dict,
@@ -86,5 +85,5 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
         draw_bearing,
         page=lambda: spectrum_page(done),
         table_on_page=True,
-        problems=[] if solved else [failure_message(done)],
+        problems=[] if solved else [done.failure_message],
     )

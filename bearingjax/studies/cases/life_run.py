@@ -64,6 +64,17 @@ class LifeRun:
         """Whether all cases were solved; otherwise there is no life."""
         return bool(self.solved.converged.all())
 
+    @property
+    def failure_message(self) -> str:
+        """The cases that were not solved, in words; empty if all were."""
+        codes = np.asarray(self.solved.result)
+        lost = np.flatnonzero(codes != Result.CONVERGED)
+        if not lost.size:
+            return ""
+        first = Result(int(codes[lost[0]])).label
+        many = f"{len(lost)} of {len(codes)} cases not solved"
+        return f"{many} (case {lost[0]}: {first})"
+
     @functools.cached_property
     def warnings(self) -> list[Warning]:
         """Warnings of the scene, of its cases and of their lives."""
@@ -323,11 +334,3 @@ def _by_case(run) -> list[Part]:
         ]
         parts += ["", Grid([Column("case", order), Column("what differs", apart)])]
     return parts
-
-
-def failure_message(run: LifeRun) -> str:
-    """List the cases that were not solved, in words."""
-    codes = np.asarray(run.solved.result)
-    lost = np.flatnonzero(codes != Result.CONVERGED)
-    first = Result(int(codes[lost[0]])).label
-    return f"{len(lost)} of {len(codes)} cases not solved (case {lost[0]}: {first})"

@@ -90,7 +90,6 @@ def run(options, tools: Tools) -> Outcome:
 
 def _why_lost(scene, cases) -> list[str]:
     """Return the reasons why loads of a contact were not solved, by load."""
-    from ...contact.halfspace.pressure import failure_message
     from ...numerics import Result
 
     found = []
@@ -98,5 +97,5 @@ def _why_lost(scene, cases) -> list[str]:
         if not case.solution.converged:
             where = f" {given['load']:.5g} N:" if scene.listed else ""
             label = Result(int(case.solution.result)).label
-            found.append(f"{label}:{where} {failure_message(case.solution)}")
+            found.append(f"{label}:{where} {case.solution.failure_message}")
     return found

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from ...contact.halfspace.pressure import failure_message
 from ...contact.slices import Compared, compared_warnings
 from ...numerics.result import Result
 from ...numerics.units import shown_count
@@ -66,7 +65,7 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
 def _status(solution) -> dict[str, Any]:
     return {
         "result": Result(int(solution.result)).label,
-        "message": failure_message(solution),
+        "message": solution.failure_message or "converged",
         "residual": solution.residual,
         "iterations": solution.steps,
     }

@@ -38,7 +38,7 @@ from ...noise import (
     vibration,
     with_bridged_waves,
 )
-from ...noise.static_start import failure_message
+from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
 from ...numerics.result import Result
 from ...numerics.warning import Warning
@@ -143,7 +143,7 @@ def run_noise(
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
-        words = f"standing under the load: {failure_message(model)}"
+        words = f"standing under the load: {describe_failure(model)}"
         return NoiseRun(task, result, words, warnings=task.warnings)
     if task.bridging:
         width = with_bridged_waves(model).half_width

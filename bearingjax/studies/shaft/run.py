@@ -25,7 +25,6 @@ from ...shafts import (
     bearing_hours,
     bearing_solutions,
     equilibrium,
-    heat,
     solve_duty,
     solve_heat,
     system_life,
@@ -204,7 +203,7 @@ def run_shafts(
             say("static equilibrium")
             found, place = searched_system(system)
             if not found.converged:
-                problem = equilibrium.failure_message(
+                problem = equilibrium.describe_failure(
                     system, jax.device_get(found), np.asarray(place)
                 )
         else:
@@ -212,7 +211,7 @@ def run_shafts(
             states = _thermal(task)
             found = states[0].solution
             if int(states[0].result) != Result.CONVERGED:
-                problem = heat.failure_message(states[0])
+                problem = states[0].failure_message
             else:
                 task = _warm(task, states[0])
     except ValueError as error:
@@ -310,7 +309,7 @@ def _duty(
         return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
     if states and lost[failed[0]]:
-        label = heat.failure_message(states[failed[0]])
+        label = states[failed[0]].failure_message
     many = f"{failed.size} of {len(cases)} cases not solved"
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 

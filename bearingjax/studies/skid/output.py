@@ -11,7 +11,6 @@ from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...skid.conditions import by_raceway
 from ...skid.transients.transient import CAUSES
-from ...statics.solution import failure_message
 from .run import SkidRun
 
 UNITS = {
@@ -175,7 +174,7 @@ def skid_message(run: SkidRun) -> str:
         run: From `run_skid`.
     """
     if not run.loads_solved:
-        return failure_message(run.found.solution, run.task.scene.moving_ring)
+        return run.found.solution.failure_message
     if run.converged:
         return "converged"
     steps = int(run.found.steps)

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...numerics.result import Result
 from ...report.json_output import run_json, to_json, write_numbers
-from ...statics.solution import BallSolution, failure_message
+from ...statics.solution import BallSolution
 from ..bearing.fit_report import fit_as_dict, preload_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
@@ -88,7 +88,7 @@ def solved_json(found: SolvedScene) -> dict[str, Any]:
     scene, solution = found.scene, found.numbers
     status = {
         "result": Result(int(solution.result)).label,
-        "message": failure_message(solution, scene.moving_ring),
+        "message": solution.failure_message or "converged",
         "residual": solution.stats.residual,
         "iterations": solution.stats.iterations,
     }

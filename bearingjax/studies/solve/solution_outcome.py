@@ -52,7 +52,6 @@ def why_unsolved(found) -> str:
         found: From `solve_scene`, not converged.
     """
     from ...numerics import Result
-    from ...statics.solution import failure_message
 
     label = Result(int(found.solution.result)).label
-    return f"{label}: {failure_message(found.solution, found.scene.moving_ring)}"
+    return f"{label}: {found.solution.failure_message}"
