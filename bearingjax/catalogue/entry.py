@@ -32,6 +32,7 @@ from ..fits.fit_limits import (
 from ..fits.fits import Mounting
 from ..fits.iso286 import Limits
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 from .designation import Suffixes, compact, split_designation
 
 CLEARANCES = {
@@ -234,8 +235,8 @@ class CatalogueEntry:
         """Clearance limits by class and bore; `None` for a type without classes."""
         return class_limits(self.type, self.taper)
 
-    def seat_warnings(self, mounting: Mounting) -> list[str]:
-        """Warnings about seats of other diameters than its own, a sentence each.
+    def seat_warnings(self, mounting: Mounting) -> list[Warning]:
+        """Warnings about seats of other diameters than its own.
 
         Args:
             mounting: Its seats, concrete.
@@ -244,11 +245,12 @@ class CatalogueEntry:
         for name in ("bore", "outside_diameter"):
             given, own = float(getattr(mounting, name)), getattr(self, name)
             if abs(given - own) > SAME_SIZE * own:
-                found.append(
+                words = (
                     f"fit: `{name}` is {1e3 * given:.5g} mm, but that of"
                     f" {self.designation} is {1e3 * own:.5g} mm, which its friction and"
                     " heat have; leave it out if it is not meant"
                 )
+                found.append(Warning("other_seat_size", words, given, own))
         return found
 
     @property

@@ -266,8 +266,8 @@ class Installed(eqx.Module):
             speed = Speed(c.speed, c.outer_speed)
         return texts + seat_warnings(*seats, speed=speed, load_fixed_to=load_fixed_to)
 
-    def _limit_warnings(self, free: float) -> list[str]:
-        """Return warnings about sizes outside their limits, a sentence each."""
+    def _limit_warnings(self, free: float) -> list[Warning]:
+        """Return warnings about sizes outside their limits."""
         if self.mounting is None or self.limits is None:
             return []
         seats, limits = jax.device_get((self.mounting, self.limits))
@@ -284,13 +284,18 @@ class Installed(eqx.Module):
                 limits.outside_diameter.upper - limits.housing.lower,
             ),
         }
-        return [
-            f"fit: the {name} is {1e6 * size:.4g} µm, outside its limits,"
-            f" {1e6 * lower:.4g} to {1e6 * upper:.4g} µm: what is told over the"
-            " tolerances is of other bearings"
-            for name, (size, lower, upper) in sizes.items()
-            if not lower - _EXACT <= size <= upper + _EXACT
-        ]
+        found = []
+        for name, (size, lower, upper) in sizes.items():
+            if lower - _EXACT <= size <= upper + _EXACT:
+                continue
+            words = (
+                f"fit: the {name} is {1e6 * size:.4g} µm, outside its limits,"
+                f" {1e6 * lower:.4g} to {1e6 * upper:.4g} µm: what is told over the"
+                " tolerances is of other bearings"
+            )
+            limit = float(lower if size < lower else upper)
+            found.append(Warning("outside_limits", words, float(size), limit))
+        return found
 
     def held_clearance_warnings(
         self, speed: float, others: Iterable[float]

@@ -223,7 +223,15 @@ def scene_of(
         warned += leftover_warnings(*found, varied)
     scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
     top.finish()
-    return dataclasses.replace(scene, inputs=top.echo())
+    inputs, warned = top.echo(), scene.warnings
+    rows = inputs.get("set", {}).get("rows", ())
+    if rows and all("bearing" in row for row in rows):
+        words = (
+            "set: every row has a `bearing` of its own, so that [bearing] is none of"
+            " them; write that of a row there, and leave it out of the row"
+        )
+        warned = (*warned, Warning("unused_bearing", words))
+    return dataclasses.replace(scene, inputs=inputs, warnings=warned)
 
 
 def read_element(
