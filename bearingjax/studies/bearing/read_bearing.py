@@ -1,7 +1,6 @@
 """The [bearing] and [set] tables of a scene: the design as drawn."""
 
 import difflib
-import warnings
 from typing import Any
 
 from ...catalogue.entry import catalogue_entry
@@ -228,10 +227,4 @@ def _set(table: Table, bearing: AbstractBearing) -> tuple[BearingSet, float | No
     if force is not None:
         with table.building():
             check_preload(pack, force)
-    if all(row.bearing is not bearing for row in pack.rows):
-        warnings.warn(
-            "set: every row has a `bearing` of its own, so that [bearing] is none of"
-            " them; write that of a row there, and leave it out of the row",
-            stacklevel=2,
-        )
     return pack, force
