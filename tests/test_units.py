@@ -3,6 +3,7 @@ docstrings."""
 
 import dataclasses
 import importlib
+import inspect
 import pkgutil
 import re
 import sys
@@ -19,6 +20,7 @@ from bearingjax.cases.output_labels import label_output
 from bearingjax.cases.sweep import SUMMARIES
 from bearingjax.files.quantity import KINDS, kind_of
 from bearingjax.numerics import units
+from bearingjax.numerics.labels import axes_of
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import (
     docstring,
@@ -73,6 +75,16 @@ def numbers(kind):
             converter = field.metadata.get("converter")
             if converter is as_real or "unit" in field.metadata:
                 yield field.name
+
+
+def with_axes():
+    """Classes of results that xarray gets."""
+    for module in pkgutil.walk_packages(bj.__path__, "bearingjax."):
+        if not module.name.startswith(OUTSIDE):
+            for kind in vars(importlib.import_module(module.name)).values():
+                own = isinstance(kind, type) and kind.__module__ == module.name
+                if own and hasattr(kind, "to_xarray"):
+                    yield kind
 
 
 @pytest.mark.parametrize("kind", list(with_units()), ids=lambda kind: kind.__name__)
@@ -163,6 +175,18 @@ def _tuples(module):
 def test_results_state_their_units(kind, names):
     for name in names:
         assert {"unit", "units"} & field_metadata(kind, name).keys(), name
+
+
+@pytest.mark.parametrize("kind", list(with_axes()), ids=lambda kind: kind.__name__)
+def test_results_name_their_axes_and_state_their_units(kind):
+    names = [*getattr(kind, "_fields", ()), *getattr(kind, "__dataclass_fields__", ())]
+    for name in names:
+        axes = axes_of(kind, name)
+        text = str(inspect.get_annotations(kind).get(name))
+        assert not any(axis.isdigit() for axis in axes or ()), name
+        real = re.search("Float|Complex", text) and not text.startswith("dict")
+        if real and (kind.__name__, name) != ("Spectrum", "amplitude"):
+            assert {"unit", "units"} & field_metadata(kind, name).keys(), name
 
 
 def tuples():

@@ -15,6 +15,7 @@ from ..numerics.types import Scalar
 FREEDOMS = name_axis("freedom", ("ux", "uy", "uz", "gx", "gy", "gz"))
 LOADS = name_axis("component", ("Fx", "Fy", "Fz", "Mx", "My", "Mz"))
 RINGS = name_axis("raceway", ("outer", "inner"))
+DIRECTIONS = name_axis("direction", "xyz")
 name_axis("section_freedom", ("u", "v", "theta"))
 name_axis("ring_component", (f"{ring}_{load}" for ring in RINGS for load in LOADS))
 for _axis in "ring_freedom", "moved_ring_freedom":

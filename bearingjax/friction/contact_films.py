@@ -10,6 +10,7 @@ from ..design.abstract import nearest_entry
 from ..design.checks import of_class, positive
 from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
+from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
@@ -33,6 +34,8 @@ class Films(eqx.Module):
     central: Float[Array, "element contact"] = eqx.field(metadata=unit("m"))
     minimum: Float[Array, "element contact"] = eqx.field(metadata=unit("m"))
     ratio: Float[Array, "element contact"] | None = eqx.field(metadata=unit("1"))
+
+    to_xarray = to_xarray
 
 
 def films(

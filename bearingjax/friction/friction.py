@@ -36,6 +36,7 @@ from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.checks import check, of_class, one_of, positive
 from ..life.equivalent_load import equivalent_load
 from ..life.rating import static_capacity as rated
+from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution, check_single
@@ -92,6 +93,8 @@ class Friction(eqx.Module):
     viscous_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))
     flange_torque: Float[Array, " row"] = eqx.field(metadata=unit("N m"))
     speed: Scalar = eqx.field(metadata=unit("rad/s"))
+
+    to_xarray = to_xarray
 
     @property
     def torque(self) -> Any:

@@ -35,6 +35,7 @@ from ..design.abstract import nearest_entry
 from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..life.rating import static_capacity as rated
+from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution
@@ -206,6 +207,8 @@ class SkfFriction(eqx.Module):
     speed: Scalar = eqx.field(metadata=unit("rad/s"))
     series: str = eqx.field(static=True)
     assumed: bool = eqx.field(static=True, default=False)
+
+    to_xarray = to_xarray
 
     @property
     def torque(self) -> Any:

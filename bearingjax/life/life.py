@@ -23,6 +23,7 @@ from ..element.frame import RINGS
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
+from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -224,6 +225,8 @@ class Life(eqx.Module):
     reliability_factor: Scalar = eqx.field(metadata=unit("1"))
     damage_share: Float[Array, "row raceway=2 track"] = eqx.field(metadata=unit("1"))
     turns_against_load: Float[Array, "raceway=2"] = eqx.field(metadata=unit("1"))
+
+    to_xarray = to_xarray
 
     @property
     def dynamic_capacity(self) -> Float[Array, "*case"]:

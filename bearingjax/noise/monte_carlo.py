@@ -19,6 +19,7 @@ from ..design.bearing_set import with_bearings
 from ..design.checks import check, count, is_traced, of_class
 from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.compiled.programs import program
+from ..numerics.labels import to_xarray
 from ..numerics.result import Result
 from ..numerics.units import unit
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
@@ -47,11 +48,13 @@ class MonteCarlo(eqx.Module):
         keys: Keys with which `sampled_model` reproduces each bearing (bearing,).
     """
 
-    level: Float[Array, "bearing 3"]
-    bands: Float[Array, "bearing band 3"]
-    centre: Float[Array, " band"]
+    level: Float[Array, "bearing direction=3"] = eqx.field(metadata=unit("dB"))
+    bands: Float[Array, "bearing band direction=3"] = eqx.field(metadata=unit("dB"))
+    centre: Float[Array, " band"] = eqx.field(metadata=unit("Hz"))
     result: Int[Array, " bearing"]
     keys: Array
+
+    to_xarray = to_xarray
 
     @property
     def failed(self) -> int:

@@ -21,6 +21,7 @@ from jaxtyping import Array, Float, Int
 from ..design import rows_of
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
+from ..numerics.labels import to_xarray
 from ..numerics.lapack import eigh
 from ..numerics.units import mixed, unit
 from .dynamics.system import NoiseSystem
@@ -51,6 +52,8 @@ class NaturalModes(NamedTuple):
     places: Annotated[Float[Array, "mode element m"], mixed("m", "rad")]
     ring_share: Annotated[Float[Array, " mode"], unit("1")]
     result: Int[Array, ""]
+
+    to_xarray = to_xarray
 
 
 def contact_stiffness(

@@ -23,7 +23,9 @@ from jaxtyping import Array, Complex, Float
 
 from ..design.checks import check, concrete, positive
 from ..numerics.compiled.programs import program
+from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, array_namespace, as_real
+from ..numerics.units import unit
 
 WHOLE_TURNS = 1e-3
 """Largest deviation of a record from a whole number of turns, without a window [1].
@@ -141,10 +143,12 @@ class Spectrum(eqx.Module):
     Traced: all fields but the window.
     """
 
-    frequency: Float[Array, " line"]
-    order: Float[Array, " line"]
+    frequency: Float[Array, " line"] = eqx.field(metadata=unit("Hz"))
+    order: Float[Array, " line"] = eqx.field(metadata=unit("1"))
     amplitude: Complex[Array, "line ..."]
     window: AbstractWindow
+
+    to_xarray = to_xarray
 
     @property
     def resolution(self) -> Scalar:

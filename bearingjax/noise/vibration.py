@@ -18,9 +18,10 @@ from jaxtyping import Array, Float, Int
 from ..design.checks import check, count, is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
+from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
-from ..numerics.units import unit
+from ..numerics.units import mixed, unit
 from ..statics.options import DEFAULT_TOLERANCE
 from .dynamics.cage import fastest_of_cage
 from .dynamics.stepping import HELD, step_motion
@@ -74,16 +75,22 @@ class Vibration(eqx.Module):
     Static: turns, steps.
     """
 
-    time: Float[Array, " time"]
-    displacement: Float[Array, "time k"]
-    acceleration: Float[Array, "time k"]
-    contact_load: Float[Array, "time element contact"]
-    azimuth: Float[Array, "time element"]
-    shaft_frequency: Scalar
+    time: Float[Array, " time"] = eqx.field(metadata=unit("s"))
+    displacement: Float[Array, "time ring_motion"] = eqx.field(
+        metadata=mixed("m", "rad")
+    )
+    acceleration: Float[Array, "time ring_motion"] = eqx.field(
+        metadata=mixed("m/s²", "rad/s²")
+    )
+    contact_load: Float[Array, "time element contact"] = eqx.field(metadata=unit("N"))
+    azimuth: Float[Array, "time element"] = eqx.field(metadata=unit("rad"))
+    shaft_frequency: Scalar = eqx.field(metadata=unit("Hz"))
     result: Int[Array, ""]
     turns: int = eqx.field(static=True)
     cage: CageMotion | None = None
     steps: int = eqx.field(static=True, default=0)
+
+    to_xarray = to_xarray
 
     @property
     def duration(self) -> Scalar:

@@ -17,13 +17,17 @@ from ..catalogue.entry import SAME_SIZE, CatalogueEntry
 from ..design.checks import check, finite, is_traced, of_shape, real_numbers
 from ..design.checks import count as whole
 from ..design.material import Material
-from ..element.frame import FREEDOMS
+from ..element.frame import FREEDOMS, LOADS, MOTION_UNITS
 from ..fits import Mounting
+from ..numerics.labels import name_axis
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import unit
 from ..numerics.warning import Warning
 
-STATION_FREEDOMS = FREEDOMS[:5]
+STATION_FREEDOMS = name_axis("station_freedom", FREEDOMS[:5])
+name_axis("moved_station_freedom", STATION_FREEDOMS)
+name_axis("station_component", LOADS[:5])
+STATION_UNITS = MOTION_UNITS[:5]
 """Freedoms of a cross-section, and of every station."""
 
 Matrices = tuple[

@@ -14,18 +14,22 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import number, of_class
+from ..element.frame import LOAD_UNITS
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, recall, stop_gradient, unless_failed
+from ..numerics.labels import to_xarray
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import mixed, unit
 from ..numerics.warning import Warning
 from .condensed import Condensed, Supported, condense
 from .loads import Motions, RotorLoads
-from .parts import LinearSupport
+from .parts import DAMPING_UNITS, STIFFNESS_UNITS, LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
+from .shaft import STATION_UNITS
 from .statics_words import describe_failure, equilibrium_warnings
 
 _FIRST_STEP = 1e-5
@@ -60,20 +64,32 @@ class StaticEquilibrium(eqx.Module):
         place: Where the search ended (motion,) [m, rad], even if it failed.
     """
 
-    displacement: Float[Array, "node 5"]
-    housing: Float[Array, "housing 3"]
-    support_load: Float[Array, "support 5"]
-    stiffness: Float[Array, "support 5 5"]
-    damping: Float[Array, "support 5 5"]
+    displacement: Float[Array, "node station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
+    housing: Float[Array, "housing direction=3"] = eqx.field(metadata=unit("m"))
+    support_load: Float[Array, "support station_component=5"] = eqx.field(
+        metadata=unit(LOAD_UNITS[:5])
+    )
+    stiffness: Float[Array, "support station_freedom=5 moved_station_freedom=5"] = (
+        eqx.field(metadata=unit(STIFFNESS_UNITS))
+    )
+    damping: Float[Array, "support station_freedom=5 moved_station_freedom=5"] = (
+        eqx.field(metadata=unit(DAMPING_UNITS))
+    )
     rotor: Rotor
-    motion: Float[Array, " motion"]
-    speed: Scalar
-    residual: Scalar
+    motion: Float[Array, " motion"] = eqx.field(metadata=mixed("m", "rad"))
+    speed: Scalar = eqx.field(metadata=unit("rad/s"))
+    residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
-    free: Float[Array, " motion"]
+    free: Float[Array, " motion"] = eqx.field(metadata=unit("1"))
     given: Rotor | None = None
-    place: Float[Array, " motion"] | None = None
+    place: Float[Array, " motion"] | None = eqx.field(
+        metadata=mixed("m", "rad"), default=None
+    )
+
+    to_xarray = to_xarray
 
     @property
     def failure_message(self) -> str:

@@ -20,6 +20,7 @@ from ..life.life_warning import life_sizes
 from ..life.rating import check_alike
 from ..life.reference_life import BALLS, exponents_of
 from ..numerics.compiled.programs import program
+from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..statics.solution import Solution
@@ -62,10 +63,10 @@ class DutyResult(eqx.Module):
             and its life that can arise, by name (case,); empty of springs.
     """
 
-    load: Float[Array | np.ndarray, "*case bearing 6"] = eqx.field(
+    load: Float[Array | np.ndarray, "*case bearing component=6"] = eqx.field(
         metadata=unit(LOAD_UNITS)
     )
-    displacement: Float[Array | np.ndarray, "*case bearing 6"] = eqx.field(
+    displacement: Float[Array | np.ndarray, "*case bearing freedom=6"] = eqx.field(
         metadata=unit(MOTION_UNITS)
     )
     misalignment: Float[Array | np.ndarray, "*case mesh"] = eqx.field(
@@ -82,6 +83,8 @@ class DutyResult(eqx.Module):
     friction: Float[Array | np.ndarray, "*case bearing"] | None = eqx.field(
         metadata=unit("W"), default=None
     )
+
+    to_xarray = to_xarray
 
 
 def solve_duty(

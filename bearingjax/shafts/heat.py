@@ -22,6 +22,7 @@ from ..element.inertia import Speed
 from ..fits import FitConditions
 from ..friction.reference_speed import heat_area
 from ..numerics.compiled.programs import program
+from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -198,9 +199,11 @@ class ThermalState(eqx.Module):
     system: ShaftSystem
     solution: SystemSolution
     slowest: Scalar = eqx.field(metadata=unit("1/s"))
-    residual: Scalar
+    residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
+
+    to_xarray = to_xarray
 
     @property
     def failure_message(self) -> str:

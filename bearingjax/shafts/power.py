@@ -47,10 +47,10 @@ class Mesh(eqx.Module):
 
     wheel: str = eqx.field(static=True)
     mate: str | None = eqx.field(static=True)
-    torque: Scalar
-    force: Float[Array, "3"]
-    place: Float[Array, "3"]
-    line: Float[Array, "3"]
+    torque: Scalar = eqx.field(metadata=unit("N m"))
+    force: Float[Array, "direction=3"] = eqx.field(metadata=unit("N"))
+    place: Float[Array, "direction=3"] = eqx.field(metadata=unit("m"))
+    line: Float[Array, "direction=3"] = eqx.field(metadata=unit("1"))
 
 
 class PowerFlow(eqx.Module):
@@ -67,13 +67,13 @@ class PowerFlow(eqx.Module):
         loss: Power lost in meshes and belts [W].
     """
 
-    speed: Float[Array, " shaft"]
+    speed: Float[Array, " shaft"] = eqx.field(metadata=unit("rad/s"))
     meshes: tuple[Mesh, ...]
-    coupling: Float[Array, " coupling"]
-    drive: Scalar
+    coupling: Float[Array, " coupling"] = eqx.field(metadata=unit("N m"))
+    drive: Scalar = eqx.field(metadata=unit("N m"))
     output: Any
     output_shaft: str | None = eqx.field(static=True)
-    loss: Scalar
+    loss: Scalar = eqx.field(metadata=unit("W"))
 
 
 def contacts(system: ShaftSystem) -> list[tuple[Contact, Contact | None]]:

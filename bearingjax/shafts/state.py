@@ -7,11 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.implicit import stop_gradient
+from ..numerics.labels import to_xarray
 from ..numerics.result import Result
 from ..numerics.types import Scalar
+from ..numerics.units import unit
 from ..rotor import STATION_FREEDOMS
+from ..rotor.parts import STIFFNESS_UNITS
 from ..rotor.rotor import N_STATION
+from ..rotor.shaft import STATION_UNITS
 from ..rotor.statics import at_equilibrium, softest
 from .power import PowerFlow
 from .system import ShaftSystem
@@ -35,11 +40,15 @@ class ShaftState(eqx.Module):
         speed: Speed of the shaft [rad/s].
     """
 
-    position: Float[Array, " side"]
-    displacement: Float[Array, "side 5"]
-    shear: Float[Array, "side 3"]
-    moment: Float[Array, "side 2"]
-    speed: Scalar
+    position: Float[Array, " side"] = eqx.field(metadata=unit("m"))
+    displacement: Float[Array, "side station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
+    shear: Float[Array, "side direction=3"] = eqx.field(metadata=unit("N"))
+    moment: Float[Array, "side moment_component=2"] = eqx.field(metadata=unit("N m"))
+    speed: Scalar = eqx.field(metadata=unit("rad/s"))
+
+    to_xarray = to_xarray
 
 
 class SystemSolution(eqx.Module):
@@ -55,7 +64,8 @@ class SystemSolution(eqx.Module):
             [m, rad].
         motion: Inner ring in each bearing, in the axes of the bearing (bearing, 5)
             [m, rad].
-        stiffness: Stiffness of each bearing, in the axes of its shaft (bearing, 5, 5).
+        stiffness: Stiffness of each bearing, in the axes of its shaft (bearing, 5, 5)
+            [N/m, N, N m].
         misalignment: Angle between the flanks of each mesh in the plane of action
             (mesh,) [rad]: by how much they part towards larger z of the wheel. Of a
             wheel with a mate outside the system that of the wheel alone.
@@ -68,17 +78,25 @@ class SystemSolution(eqx.Module):
     """
 
     shafts: tuple[ShaftState, ...]
-    load: Float[Array, "bearing 6"]
-    displacement: Float[Array, "bearing 6"]
-    housing: Float[Array, "seat freedom"]
-    motion: Float[Array, "bearing 5"]
-    stiffness: Float[Array, "bearing 5 5"]
-    misalignment: Float[Array, " mesh"]
+    load: Float[Array, "bearing component=6"] = eqx.field(metadata=unit(LOAD_UNITS))
+    displacement: Float[Array, "bearing freedom=6"] = eqx.field(
+        metadata=unit(MOTION_UNITS)
+    )
+    housing: Float[Array, "seat seat_freedom"] = eqx.field(metadata=unit(MOTION_UNITS))
+    motion: Float[Array, "bearing station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
+    stiffness: Float[Array, "bearing station_freedom=5 moved_station_freedom=5"] = (
+        eqx.field(metadata=unit(STIFFNESS_UNITS))
+    )
+    misalignment: Float[Array, " mesh"] = eqx.field(metadata=unit("rad"))
     power: PowerFlow
-    residual: Scalar
+    residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
-    free: Float[Array, " motion"]
+    free: Float[Array, " motion"] = eqx.field(metadata=unit("1"))
+
+    to_xarray = to_xarray
 
     @property
     def converged(self) -> Any:

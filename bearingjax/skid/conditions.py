@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..contact.point_law import ball_ellipses, balls_of
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
+from ..numerics.labels import to_xarray
 from ..numerics.units import unit
 from .ball_motion import BallState, sliding, tractions
 from .loaded import loaded_ball
@@ -39,7 +40,9 @@ class Conditions(NamedTuple):
     regime: Int[Array, "..."]
     outside_fluid_range: Bool[Array, "..."]
     shear: Annotated[Float[Array, "..."], unit("1")]
-    semi_axes: Annotated[Float[Array, "... 2"] | None, unit("m")] = None
+    semi_axes: Annotated[Float[Array, "... half_axis=2"] | None, unit("m")] = None
+
+    to_xarray = to_xarray
 
 
 def conditions_of(

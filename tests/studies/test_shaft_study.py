@@ -267,6 +267,11 @@ def test_worst_case_of_a_spectrum(tmp_path):
         run.hours[:2], 110 / (100 + 10 * np.array([5, 20])) / 10 / 3600 * 2 * np.pi
     )
     assert np.isinf(run.hours[3])
+    found = run.to_xarray()
+    assert found.damage.sel(bearing="B").values.tolist() == [1.0, 20.0, 99.0]
+    assert found["load"].dims == ("case", "bearing", "component")
+    assert found.speed.dims == ("case", "shaft") and found.damage.units == "1/rev"
+    np.testing.assert_array_equal(found.hours, run.hours)
 
 
 def test_result_of_what_runs_away(tmp_path):

@@ -16,9 +16,11 @@ from ...design.checks import check
 from ...numerics.compiled import batched_loop
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient
+from ...numerics.labels import to_xarray
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Count, Flag, Scalar, as_real
+from ...numerics.units import unit
 from .gradients import (
     AbstractPressureSolver,
     ConjugateGradients,
@@ -64,13 +66,15 @@ class ContactSolution(eqx.Module):
     """
 
     problem: Problem
-    pressure: Float[Array, "m n"]
-    approach: Scalar
-    tilt: Scalar
-    touching: Bool[Array, "m n"]
-    residual: Scalar
+    pressure: Float[Array, "across along"] = eqx.field(metadata=unit("Pa"))
+    approach: Scalar = eqx.field(metadata=unit("m"))
+    tilt: Scalar = eqx.field(metadata=unit("rad"))
+    touching: Bool[Array, "across along"]
+    residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
+
+    to_xarray = to_xarray
 
     @property
     def failure_message(self) -> str:

@@ -190,7 +190,7 @@ class BallKinematics(NamedTuple):
 
     orbit: Annotated[Float[Array, "*element"], unit("rad/s")]
     rotation: Annotated[Float[Array, "*element"], unit("rad/s")]
-    axis: Float[Array, "*element direction=2"]
+    axis: Float[Array, "*element sin_cos=2"]
     spin: Annotated[Float[Array, "*element raceway=2"], unit("rad/s")]
     roll: Annotated[Float[Array, "*element raceway=2"], unit("rad/s")]
 

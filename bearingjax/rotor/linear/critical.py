@@ -15,10 +15,13 @@ from ...design.checks import count as whole
 from ...design.checks import is_traced, number
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
+from ...numerics.labels import to_xarray
 from ...numerics.lapack import cholesky, congruent, eigh, solve_any
 from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.units import unit
 from ...numerics.warning import Warning
 from ..rotor import Rotor, RotorMatrices
+from ..shaft import STATION_UNITS
 from .modes import (
     direction,
     eigenpairs,
@@ -58,12 +61,14 @@ class CriticalSpeeds(eqx.Module):
         operating_speed: Speed of the rotor that was asked about [rad/s], or `None`.
     """
 
-    speed: Float[Array, " mode"]
+    speed: Float[Array, " mode"] = eqx.field(metadata=unit("rad/s"))
     whirl: Int[Array, " mode"]
-    damping_ratio: Float[Array, " mode"]
-    shape: Complex[Array, "mode node 5"]
+    damping_ratio: Float[Array, " mode"] = eqx.field(metadata=unit("1"))
+    shape: Complex[Array, "mode node station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
     missed: Int[Array, ""]
-    operating_speed: Scalar | None = None
+    operating_speed: Scalar | None = eqx.field(metadata=unit("rad/s"), default=None)
 
     @property
     def warnings(self) -> tuple[Warning, ...]:
@@ -72,6 +77,8 @@ class CriticalSpeeds(eqx.Module):
         if any(is_traced(leaf) for leaf in jax.tree.leaves(self)):
             return ()
         return (*_missing(self), *_near(self))
+
+    to_xarray = to_xarray
 
 
 def critical_speeds(

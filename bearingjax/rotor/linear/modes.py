@@ -25,10 +25,13 @@ from ...design.checks import count as whole
 from ...design.checks import finite, is_traced, number, of_shape, real_numbers
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
+from ...numerics.labels import to_xarray
 from ...numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
 from ...numerics.types import array_namespace, as_count, as_real
+from ...numerics.units import unit
 from ...numerics.warning import Warning
 from ..rotor import Rotor, RotorMatrices
+from ..shaft import STATION_UNITS
 
 _COINCIDENT = 1e-7
 """Relative distance below which eigenvalues of modes coincide [1]."""
@@ -95,13 +98,25 @@ class Modes(eqx.Module):
             mode) [1]; `None` from `modes`.
     """
 
-    eigenvalue: Complex[Array, "*speed mode"]
+    eigenvalue: Complex[Array, "*speed mode"] = eqx.field(metadata=unit("rad/s"))
     whirl: Int[Array, "*speed mode"]
-    shape: Complex[Array, "*speed mode node 5"]
-    housing: Complex[Array, "*speed mode housing 3"]
-    speed: Float[Array, "*speed"] | None = None
-    driven: Float[Array, " mode"] | None = None
-    overlap: Float[Array, "speed mode"] | None = None
+    shape: Complex[Array, "*speed mode node station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
+    housing: Complex[Array, "*speed mode housing direction=3"] = eqx.field(
+        metadata=unit("m")
+    )
+    speed: Float[Array, "*speed"] | None = eqx.field(
+        metadata=unit("rad/s"), default=None
+    )
+    driven: Float[Array, " mode"] | None = eqx.field(
+        metadata=unit("rad/s"), default=None
+    )
+    overlap: Float[Array, "speed mode"] | None = eqx.field(
+        metadata=unit("1"), default=None
+    )
+
+    to_xarray = to_xarray
 
     @property
     def warnings(self) -> tuple[Warning, ...]:

@@ -10,11 +10,13 @@ from jaxtyping import Array, Complex, Float
 
 from ...design.checks import non_negative, number
 from ...numerics.compiled.programs import program
+from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
 from ...numerics.types import Scalar, as_count, as_real
 from ...numerics.units import unit
 from ..parts import check_station
 from ..rotor import Rotor
+from ..shaft import STATION_UNITS
 from .modes import major_axis, speed_list, to_complex
 
 _HELD = 1e-6
@@ -54,9 +56,13 @@ class UnbalanceResponse(eqx.Module):
         housing: Amplitude of (ux uy uz) of every housing (speed, housing, 3) [m].
     """
 
-    speed: Float[Array, " speed"]
-    motion: Complex[Array, "speed node 5"]
-    housing: Complex[Array, "speed housing 3"]
+    speed: Float[Array, " speed"] = eqx.field(metadata=unit("rad/s"))
+    motion: Complex[Array, "speed node station_freedom=5"] = eqx.field(
+        metadata=unit(STATION_UNITS)
+    )
+    housing: Complex[Array, "speed housing direction=3"] = eqx.field(metadata=unit("m"))
+
+    to_xarray = to_xarray
 
     @property
     def amplitude(self) -> Float[Array, "speed node 5"]:

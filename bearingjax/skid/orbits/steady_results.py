@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ...element.inertia import Speed
+from ...numerics.labels import name_axis, to_xarray
 from ...numerics.linear import lengths
 from ...numerics.result import Result
 from ...numerics.types import Scalar, array_namespace
@@ -34,6 +35,9 @@ def driving(outer: Scalar, inner: Scalar, speed: Speed) -> Scalar:
         speed: Their speeds.
     """
     return jnp.where(jnp.abs(speed.outer) > jnp.abs(speed.inner), outer, inner)
+
+
+name_axis("spin_axis", "xyz")
 
 
 class Power(NamedTuple):
@@ -76,7 +80,7 @@ class SteadyMotion(eqx.Module):
     """
 
     azimuth: Float[Array, " place"] = eqx.field(metadata=unit("rad"))
-    displacement: Float[Array, "12"] = eqx.field(
+    displacement: Float[Array, "ring_freedom=12"] = eqx.field(
         metadata=unit(("m", "m", "m", "rad", "rad", "rad") * 2)
     )
     contact_load: Float[Array, "place contact"] = eqx.field(metadata=unit("N"))
@@ -86,11 +90,13 @@ class SteadyMotion(eqx.Module):
     heat: Float[Array, "place contact"] = eqx.field(metadata=unit("W"))
     cage_speed: Scalar = eqx.field(metadata=unit("rad/s"))
     friction_torque: Scalar = eqx.field(metadata=unit("N m"))
-    ring_torque: Float[Array, "2"] = eqx.field(metadata=unit("N m"))
+    ring_torque: Float[Array, "raceway=2"] = eqx.field(metadata=unit("N m"))
     power: Power
     residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
+
+    to_xarray = to_xarray
 
     @property
     def slip(self) -> Float[Array | np.ndarray, "*n place"]:
@@ -166,8 +172,10 @@ class SteadySkid(SteadyMotion):
 
     solution: BallSolution
     contact_angle: Float[Array, "place contact"] = eqx.field(metadata=unit("rad"))
-    spin: Float[Array, "place 3"] = eqx.field(metadata=unit("rad/s"))
-    sliding: Float[Array, "place contact 2"] = eqx.field(metadata=unit("m/s"))
+    spin: Float[Array, "place spin_axis=3"] = eqx.field(metadata=unit("rad/s"))
+    sliding: Float[Array, "place contact along_across=2"] = eqx.field(
+        metadata=unit("m/s")
+    )
     contact_spin: Float[Array, "place contact"] = eqx.field(metadata=unit("rad/s"))
     wander: Scalar = eqx.field(metadata=unit("m"))
 

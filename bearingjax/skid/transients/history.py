@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ...element.frame import RINGS
+from ...numerics.labels import to_xarray
 from ...numerics.linear import lengths
 from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.units import unit
@@ -48,14 +49,14 @@ class SkidMotion(eqx.Module):
     azimuth: Float[Array, "time ball"] = eqx.field(metadata=unit("rad"))
     contact_load: Float[Array, "time ball contact"] = eqx.field(metadata=unit("N"))
     rolling_orbit_speed: Float[Array, "time ball"] = eqx.field(metadata=unit("rad/s"))
-    displacement: Float[Array, "time 12"] = eqx.field(
+    displacement: Float[Array, "time ring_freedom=12"] = eqx.field(
         metadata=unit(("m", "m", "m", "rad", "rad", "rad") * 2)
     )
     film: Float[Array, "time ball contact"] = eqx.field(metadata=unit("m"))
     heat: Float[Array, "time ball contact"] = eqx.field(metadata=unit("W"))
     cage_force: Float[Array, "time ball"] = eqx.field(metadata=unit("N"))
     friction_torque: Float[Array, " time"] = eqx.field(metadata=unit("N m"))
-    ring_torque: Float[Array, "time 2"] = eqx.field(metadata=unit("N m"))
+    ring_torque: Float[Array, "time raceway=2"] = eqx.field(metadata=unit("N m"))
     power: Work
     work: Work
     kinetic_energy: Float[Array, " time"] = eqx.field(metadata=unit("J"))
@@ -63,6 +64,8 @@ class SkidMotion(eqx.Module):
     steps: Int[Array, ""]
     rejected: Int[Array, ""]
     result: Int[Array, ""]
+
+    to_xarray = to_xarray
 
     @property
     def orbit_speed(self) -> Float[Array | np.ndarray, "time ball"]:
@@ -124,7 +127,9 @@ class SkidHistory(SkidMotion):
 
     solution: BallSolution
     contact_angle: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad"))
-    sliding: Float[Array, "time ball contact 2"] = eqx.field(metadata=unit("m/s"))
+    sliding: Float[Array, "time ball contact along_across=2"] = eqx.field(
+        metadata=unit("m/s")
+    )
     contact_spin: Float[Array, "time ball contact"] = eqx.field(metadata=unit("rad/s"))
 
     @property

@@ -14,29 +14,32 @@ from ...cases.sweep import Sweep, sweep
 from ...cases.sweep_program import not_run
 from ...cases.sweep_table import columns
 from ...design import rows_of
+from ...element import BearingElement
 from ...files.quantity import SceneError
 from ...fits import radial_clearance
 from ...life.life import LIFE_OUTPUTS, LifeConditions
+from ...numerics.labels import summaries
 from ...numerics.units import display_unit, shown_count
 from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
 from ...statics.preload import is_opposed, row_preload_force
 from ...statics.service_warning import preload_range_warnings, preload_warnings
+from ...statics.solution import solution_kind
 from ...statics.support import Support
 from ..bearing.life_ratings import life_conditions
 from ..solve.run import with_set_preload
 from .read_cases import CaseTable, DesignGroup, turns_of
 
-OUTPUTS = (
-    "displacement",
-    "largest_load",
-    "peak_pressure",
-    "n_loaded",
-    "iterations",
-    "residual",
-)
-"""Default outputs kept of each case."""
+
+def default_outputs(element: BearingElement) -> tuple[str, ...]:
+    """Return the outputs that are kept of each case unless the scene names some.
+
+    Args:
+        element: The bearing.
+    """
+    largest = summaries(solution_kind(element.choices))
+    return "displacement", *largest, "n_loaded", "iterations", "residual"
 
 
 def run_cases(
@@ -78,7 +81,9 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         solved = sweep(
             part.element,
             cases,
-            outputs=OUTPUTS if table.outputs is None else table.outputs,
+            outputs=default_outputs(part.element)
+            if table.outputs is None
+            else table.outputs,
             support=Support(scene.free, fixed_ring=scene.fixed_ring),
             options=scene.solve_options,
             life=_life(table, part),

@@ -1,15 +1,20 @@
 """Output of a system of shafts: JSON and tables, in SI."""
 
+import dataclasses
+import itertools
 from typing import Any
 
 import numpy as np
 
-from ...element.frame import LOAD_UNITS, LOADS
+from ...cases.output_labels import label_output
+from ...element.frame import LOAD_UNITS
+from ...numerics.labels import Labelled, summaries
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...shafts import DutyResult
 from ...shafts.doubts import axial_load
 from ...shafts.duty import LIVES
+from ...statics.solution import BallSolution, Solution
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
@@ -98,11 +103,15 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     scene, solution, life = bearing.scene, bearing.solution, bearing.life
     if scene is None or solution is None or life is None:
         return numbers
-    of_balls = solution.element.bearing.is_ball
-    names = ["roller_load", "azimuth", "roller_pressure"]
-    names += ["contact_load", "contact_angle"] if of_balls else []
+    stated = [f.name for f in dataclasses.fields(solution) if "column" in f.metadata]
+    of_balls = ("contact_load", "contact_angle")
+    names = [
+        "azimuth",
+        *stated,
+        *(of_balls if isinstance(solution, BallSolution) else ()),
+    ]
     numbers |= {name: getattr(solution, name) for name in names}
-    numbers["peak_pressure"] = np.max(solution.roller_pressure)
+    numbers |= _largest(solution)
     numbers |= life_as_dict(life, scene)
     numbers["life_hours"] = run.hours[k]
     if scene.oil is not None:
@@ -113,6 +122,12 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     if scene.fits is not None:
         numbers["fit"] = fit_as_dict(scene)
     return numbers
+
+
+def _largest(solution: Solution) -> dict[str, np.floating]:
+    """Return the largest numbers of the rolling elements, by name, but for the load."""
+    largest = summaries(type(solution)).items()
+    return {k: np.max(getattr(solution, v)) for k, v in largest if k != "largest_load"}
 
 
 def _wheels(run: ShaftRun) -> dict[str, Any]:
@@ -193,10 +208,13 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
     if run.duty is None:
         found: dict[str, Any] = {"bearing": names}
         load = run.solution.load
-        pressure = [
-            np.nan if b.solution is None else np.max(b.solution.roller_pressure)
-            for b in run.bearings
+        largest = [
+            {} if b.solution is None else _largest(b.solution) for b in run.bearings
         ]
+        most = {
+            name: [numbers.get(name, np.nan) for numbers in largest]
+            for name in dict.fromkeys(["peak_pressure", *itertools.chain(*largest)])
+        }
         lives = {
             key: [
                 np.nan if getattr(b.life, key, None) is None else getattr(b.life, key)
@@ -214,14 +232,14 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
             values = [one[key] for one in run.task.settings]
             found[key] = np.repeat(np.array(values), len(names))
         load = run.duty.load.reshape(-1, 6)
-        pressure = run.duty.peak_pressure.ravel()
+        most = {"peak_pressure": run.duty.peak_pressure.ravel()}
         lives = {key: of.ravel() for key, of in run.duty.lives.items()}
-        lives |= {key: of.ravel() for key, of in _warmth(run).items()}
-    for k, (name, unit) in enumerate(zip(LOADS, LOAD_UNITS, strict=True)):
-        found[f"{name} [{unit}]"] = load[:, k]
-    found["peak_pressure [Pa]"] = np.asarray(pressure, float)
-    for key, values in lives.items():
-        unit = {"life_hours": " [h]", "static_safety": "", "damage": " [1/rev]"}
-        unit |= dict.fromkeys(("inner_ring", "outer_ring"), " [K]")
-        found[key + unit.get(key, " [rev]")] = np.asarray(values, float)
+    columns = [
+        *Labelled(np.asarray(load), ("row", "component"), LOAD_UNITS).columns("")
+    ]
+    for key, values in (most | lives).items():
+        columns += label_output(key, np.asarray(values, float)).columns(key)
+    found |= {header: column for header, _, column in columns}
+    if run.duty is not None:
+        found |= {f"{key} [K]": of.ravel() for key, of in _warmth(run).items()}
     return {name: np.asarray(values) for name, values in found.items()}

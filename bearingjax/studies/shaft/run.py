@@ -16,6 +16,7 @@ from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
 from ...numerics.compiled.programs import call_stored
+from ...numerics.labels import Labelled, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
 from ...shafts import (
@@ -113,6 +114,29 @@ class ShaftRun:
     def converged(self) -> bool:
         """Whether all cases were solved."""
         return not self.problem
+
+    def to_xarray(self) -> Any:
+        """Return the solution, of several cases all of them, as an `xarray.Dataset`.
+
+        Bearings and shafts have their names, and bearings their lives and temperatures.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        if self.duty is None:
+            found = labelled_fields(self.solution, "power")
+        else:
+            found = labelled_fields(self.duty)
+            for name, values in self.duty.lives.items():
+                found[name] = Labelled.field(Life, name, values, ("case", "bearing"))
+        found["hours"] = Labelled(self.hours, ("bearing",), "h")
+        if self.thermal is not None:
+            warm = labelled_fields(self.thermal)
+            found |= {name: warm[name] for name in ("inner_ring", "outer_ring")}
+        system = self.task.system
+        names = {"bearing": system.seats, "shaft": system.shafts}
+        labels = {axis: [part.name for part in parts] for axis, parts in names.items()}
+        return make_dataset(found, labels)
 
     @functools.cached_property
     def hours(self) -> np.ndarray:

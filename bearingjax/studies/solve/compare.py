@@ -12,6 +12,7 @@ from ...cases.sweep import SUMMARIES
 from ...cases.sweep_table import flatten_columns, kind
 from ...element.frame import FREEDOMS
 from ...life.life import LIFE_OUTPUTS
+from ...numerics.labels import summaries
 from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...report.html_report import flat
@@ -22,8 +23,8 @@ from .report import without_round_off
 from .run import solve_scene
 
 _FIELDS = "displacement", "force", "stiffness"
-_SUMMARIES = "largest_load", "peak_pressure", "n_loaded"
-"""Compared in addition to the lives; of the stiffness only the diagonal."""
+"""Compared, with the largest numbers of rolling elements, how many are loaded, and the
+lives; of the stiffness only the diagonal."""
 
 _ROUND_OFF = 1e-9
 """Relative difference below which numbers count as equal."""
@@ -105,7 +106,8 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
     if not one.converged:
         return {}
     numbers: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
-    numbers |= {name: SUMMARIES[name](solution) for name in _SUMMARIES}
+    names = (*summaries(type(solution)), "n_loaded")
+    numbers |= {name: SUMMARIES[name](solution) for name in names}
     if life is not None:
         numbers |= {name: getattr(life, name) for name in LIFE_OUTPUTS}
         del numbers["damage_share"]

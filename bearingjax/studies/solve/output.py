@@ -3,40 +3,26 @@
 from pathlib import Path
 from typing import Any
 
+from ...numerics.labels import array_fields
 from ...numerics.result import Result
 from ...report.json_output import run_json, to_json, write_numbers
-from ...statics.solution import BallSolution
 from ..bearing.fit_report import fit_as_dict, preload_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
 
-_OF_ALL = "displacement", "force", "stiffness", "roller_load"
-OF_ROLLERS = (
-    *_OF_ALL,
-    "rib_load",
-    "roller_motion",
-    "azimuth",
-    "position",
-    "line_load",
-    "contact_pressure",
-)
-"""Fields of a solution that are written, under their names."""
+NOT_WRITTEN = {
+    "result",
+    "unrestrained",
+    "pitch_radius",
+    "roller_pressure",
+    "contact_half_width",
+    "edge_load",
+    "edge_pressure",
+}
+"""Arrays of a solution that are not written; all others are, under their names."""
 
-OF_BALLS = (
-    *_OF_ALL,
-    "roller_motion",
-    "azimuth",
-    "contact_load",
-    "contact_angle",
-    "contact_pressure",
-    "semi_axes",
-    "approach",
-    "shoulder_margin",
-)
-OF_SPRINGS = ("spring_travel", "spring_force")
-OF_TURNING_BALLS = ("gyroscopic_moment", "centrifugal_force")
 KINEMATICS = {
     "orbital_speed": "orbit",
     "rotation_speed": "rotation",
@@ -54,11 +40,11 @@ def solution_json(found: SolvedScene) -> dict[str, Any]:
         found: From `solve_scene`.
 
     Returns:
-        The fields of `OF_ROLLERS` or `OF_BALLS`, with springs `OF_SPRINGS` (m, rad,
-        N, N m, Pa), and result, message, residual, iterations, warnings, inputs (the
-        scene in SI, which `read_scene` reads again from the file) and version. With
-        fits also `fit`, as in `fit_as_dict`; with [life] also `life_as_dict`; with a
-        lubricant and a speed also `oil_as_dict`.
+        The arrays of the solution but for those of `NOT_WRITTEN`, of balls at speed
+        also `KINEMATICS` (m, rad, N, N m, Pa, rad/s), and result, message, residual,
+        iterations, warnings, inputs (the scene in SI, which `read_scene` reads again
+        from the file) and version. With fits also `fit`, as in `fit_as_dict`; with
+        [life] also `life_as_dict`; with a lubricant and a speed also `oil_as_dict`.
         If the solve did not converge the arrays are left out. Infinite values (the
         margin of a shoulder that is not given) are null. For a catalogue bearing also
         `catalogue`: designation, geometry, overridden.
@@ -137,22 +123,12 @@ def _catalogue(scene):
     }
 
 
-def _numbers(solution):
-    numbers = _of_elements(solution)
-    if solution.spring_force is not None:
-        numbers |= {name: getattr(solution, name) for name in OF_SPRINGS}
+def _numbers(solution) -> dict[str, Any]:
+    found = array_fields(solution)
+    numbers: dict[str, Any] = {k: v for k, v in found.items() if k not in NOT_WRITTEN}
+    if (moving := getattr(solution, "kinematics", None)) is not None:
+        numbers |= {name: getattr(moving, field) for name, field in KINEMATICS.items()}
     return to_json(numbers)
-
-
-def _of_elements(solution):
-    if not isinstance(solution, BallSolution):
-        return {name: getattr(solution, name) for name in OF_ROLLERS}
-    moving = solution.kinematics
-    if moving is None:
-        return {name: getattr(solution, name) for name in OF_BALLS}
-    names = (*OF_BALLS, *OF_TURNING_BALLS)
-    speeds = {name: getattr(moving, field) for name, field in KINEMATICS.items()}
-    return {**{name: getattr(solution, name) for name in names}, **speeds}
 
 
 def write_json(path: str | Path, found: SolvedScene) -> None:

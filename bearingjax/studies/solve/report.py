@@ -22,7 +22,8 @@ from ...design import (
 from ...design.abstract import nearest_entry
 from ...design.bearing_set import bearings_of
 from ...element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS, RINGS
-from ...numerics.units import shown_count
+from ...numerics.labels import array_fields
+from ...numerics.units import field_metadata, shown_count, unit_of
 from ...report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from ...statics.solution import BallSolution, RollerSolution, Solution
 from ...statics.warning_sizes import ends_over
@@ -314,6 +315,26 @@ def _number_columns(kind, solution, shown):
     ]
 
 
+def _stated_columns(solution, shown, **formats) -> list[Column]:
+    """Return the columns of the results whose fields state a heading.
+
+    Args:
+        solution: In NumPy.
+        shown: Indices of the rolling elements.
+        formats: `format` and `shown` of a `Column`, by the name of the field.
+    """
+    columns = []
+    found = array_fields(solution)
+    for name in dict.fromkeys((*Solution.__dataclass_fields__, *found)):
+        heading = field_metadata(solution, name).get("column")
+        if heading is not None:
+            values = found[name]
+            make = by_ring if values.ndim > 1 else lambda *given: [Column(*given)]
+            unit = unit_of(solution, name)
+            columns += make(heading, values[shown], unit, *formats.get(name, ()))
+    return columns
+
+
 def by_ring(name, values, *given):
     """Return a column of the outer raceway and one of the inner.
 
@@ -333,12 +354,12 @@ def _rollers(solution):
     largest = np.maximum(load.max(axis=1), rib.max(axis=tuple(range(1, rib.ndim))))
     touching = largest > 1e-9 * largest.max()
     shown = np.flatnonzero(touching)
-    pressure = np.asarray(solution.roller_pressure)[shown]
     edge = np.any(np.asarray(ends_over(solution)), axis=(1, 2))[shown]
     columns = [
         *_number_columns("roller", solution, shown),
-        *by_ring("load", load[shown], "N", ".4f"),
-        *by_ring("pmax", pressure, "Pa", ".1f"),
+        *_stated_columns(
+            solution, shown, roller_load=(".4f",), roller_pressure=(".1f",)
+        ),
     ]
     if rib.any():
         on_ribs = rib[shown].reshape(len(shown), -1).sum(axis=1)
@@ -363,13 +384,15 @@ def _balls(solution):
     # An open contact has no meaningful angle.
     bears = larger(load) > 1e-9 * load.max()
     angle = np.where(bears, larger(solution.contact_angle), np.nan)
-    raceway, count = np.asarray(solution.roller_load), np.asarray(solution.n_contacts)
+    stated = _stated_columns(
+        solution, shown, roller_load=(".5g", NEWTONS), roller_pressure=(".0f",)
+    )
     columns = [
         *_number_columns("ball", solution, shown),
-        *by_ring("load", raceway[shown], "N", ".5g", NEWTONS),
+        *stated[:2],
         *by_ring("angle", angle, "rad", ".2f", DEGREES),
-        *by_ring("pmax", larger(solution.contact_pressure), "Pa", ".0f"),
-        Column("points", count[shown]),
+        *stated[2:],
+        Column("points", np.asarray(solution.n_contacts)[shown]),
     ]
     if solution.kinematics:
         ratio = np.asarray(solution.kinematics.spin_to_roll).max(axis=1)
