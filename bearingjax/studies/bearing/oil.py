@@ -20,6 +20,7 @@ from ...friction.friction_skf import (
 )
 from ...lubrication import Lubricant
 from ...numerics.compiled.programs import program
+from ...numerics.labels import array_fields
 from ...numerics.types import as_array
 from ...report.json_output import to_json
 from ...statics.solution import Solution
@@ -195,8 +196,6 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     if facts is None:
         return {}
     friction, skf, found = facts
-    names = ["entrainment", "central", "minimum"]
-    names += ["ratio"] if found.ratio is not None else []
     numbers: dict[str, Any] = {}
     if friction is not None:
         numbers = {
@@ -217,5 +216,4 @@ def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
             "series": skf.series,
             "assumed": skf.assumed,
         }
-    film = {name: getattr(found, name) for name in names}
-    return to_json({**numbers, "film": film})
+    return to_json({**numbers, "film": array_fields(found)})

@@ -1,12 +1,10 @@
 """Output of skidding balls or rollers: JSON and tables, in SI."""
 
-import itertools
 from typing import Any
 
 import numpy as np
 
-from ...element import RINGS
-from ...numerics.labels import column_header
+from ...numerics.labels import Labelled
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...skid.conditions import by_raceway
@@ -94,35 +92,26 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
     Args:
         run: From `run_skid`, with numbers.
     """
-    balls = each_ball(run)
-    columns = {}
-    if not run.task.steady:
-        reached = np.isfinite(run.found.cage_speed)
+    steady = run.task.steady
+    lead = ["place"] if steady else ["time", "ball"]
+    arrays = {}
+    if not steady:
         powers = {f"power_{n}": np.asarray(v) for n, v in _powers(run).items()}
-        whole, units = _of_time(run) | powers, OF_TIME | dict.fromkeys(powers, "W")
-        both = whole.pop("ring_torque").T
-        whole |= {f"ring_torque_{ring}": v for ring, v in zip(RINGS, both, strict=True)}
-        units |= {f"ring_torque_{ring}": units["ring_torque"] for ring in RINGS}
-        columns = {column_header(name, units[name]): v for name, v in whole.items()}
-        columns = {header: v[reached] for header, v in columns.items()}
-        balls = {name: values[reached] for name, values in balls.items()}
-    for name, values in balls.items():
-        columns |= _columns_of(name, values, run.task.steady)
-    return columns
-
-
-def _columns_of(name, values, steady):
-    """Return the columns of values (row, …) with their headers."""
-    axes: list[Any] = [] if steady else [range(values.shape[1])]
-    if name == "spin":
-        axes.append("xyz")
-    elif name not in OF_ONE:
-        axes.append(RINGS)
-    parts = values.reshape(len(values), -1).T
-    ends = itertools.product(*axes)
+        units = OF_TIME | dict.fromkeys(powers, "W")
+        whole = _of_time(run) | powers
+        whole["ring_torque"] = whole.pop("ring_torque")  # after the powers
+        for name, values in whole.items():
+            axes = ("time", "raceway")[: values.ndim]
+            arrays[name] = Labelled(values, axes, units[name])
+    for name, values in each_ball(run).items():
+        last = "spin_axis" if name == "spin" else "raceway"
+        axes = (*lead, last)[: values.ndim]
+        arrays[name] = Labelled(values, axes, UNITS[name])
+    reached = slice(None) if steady else np.isfinite(run.found.cage_speed)
     return {
-        column_header("_".join([name, *map(str, end)]), UNITS[name]): part
-        for end, part in zip(ends, parts, strict=True)
+        header: column[reached]
+        for name, array in arrays.items()
+        for header, _, column in array.columns(name)
     }
 
 
