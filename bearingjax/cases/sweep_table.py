@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files.table_file import read_table, write_table
+from ..files.table_file import read_table
 from ..life.life_warning import ALL
 from ..numerics.result import Result
 from ..numerics.warning import exceeded_kinds
@@ -122,27 +122,8 @@ def _warning_texts(sweep):
     return texts.astype(str)
 
 
-def write(
-    sweep: Sweep,
-    path: str | Path,
-    extra: Mapping[str, np.ndarray] | None = None,
-) -> None:
-    """Write `columns` to a file.
-
-    Args:
-        sweep: From `sweep`.
-        path: Its ending, .csv, .parquet or .xlsx, sets the format.
-        extra: As in `columns`.
-
-    Raises:
-        ValueError, ImportError: As `write_table`.
-        OSError: If the file cannot be written.
-    """
-    write_table(columns(sweep, extra), path)
-
-
 def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
-    """Columns of a table that `write` wrote.
+    """Columns of a table, from `columns`, that `write_table` wrote.
 
     Args:
         path: Its ending, .csv, .parquet or .xlsx, sets the format.

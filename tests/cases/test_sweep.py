@@ -19,6 +19,7 @@ from sweep_in_process import loads, small_element
 import bearingjax as bj
 from bearingjax.cases import near_starts, sweep_program, sweep_table
 from bearingjax.cases.sweep import n_designs
+from bearingjax.files.table_file import write_table
 from bearingjax.numerics.compiled import batched_loop
 from bearingjax.statics import SolveOptions, load_search
 
@@ -356,7 +357,7 @@ def test_devices_and_processes_share_the_cases(started, swept, name):
 @pytest.mark.parametrize("ending", [".csv", ".parquet"])
 def test_table_has_units_and_a_result_for_each_case(swept, tmp_path, ending):
     path = tmp_path / f"table{ending}"
-    sweep_table.write(swept, path)
+    write_table(sweep_table.columns(swept), path)
     read = pyarrow.csv.read_csv if ending == ".csv" else pyarrow.parquet.read_table
     table = read(path).to_pydict()
     assert list(table)[:4] == ["Fy [N]", "Fz [N]", "Mx [N m]", "result"]
@@ -498,7 +499,7 @@ def test_bad_designs(swept):
     with pytest.raises(ValueError, match="is empty"):
         bj.stack_designs([])
     with pytest.raises(ValueError, match="ends in .csv, .parquet, .xlsx"):
-        sweep_table.write(swept, "table.xls")
+        write_table(sweep_table.columns(swept), "table.xls")
 
 
 @pytest.mark.slow

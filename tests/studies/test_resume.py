@@ -10,13 +10,12 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax import FREEDOMS, Cases
-from bearingjax.cases import Sweep, sweep_program
+from bearingjax.cases import Sweep, sweep_program, sweep_table
 from bearingjax.cases.sweep_table import (
     case_columns,
     left_out,
     read,
     restore_outputs,
-    write,
 )
 from bearingjax.files import table_file
 from bearingjax.files.table_file import write_table
@@ -133,7 +132,12 @@ def test_resume_puts_new_cases_in_their_places(scene, tmp_path, monkeypatch):
         "result": np.where(left, int(Result.NOT_RUN), whole.outputs["result"]),
         "largest_load": np.where(left, np.nan, whole.outputs["largest_load"]),
     }
-    write(Sweep(table.cases, outputs, "inner"), place, design_columns(table))
+    write_table(
+        sweep_table.columns(
+            Sweep(table.cases, outputs, "inner"), design_columns(table)
+        ),
+        place,
+    )
     again = resume.resume_cases(table, place)
     for name, values in whole.outputs.items():
         np.testing.assert_array_equal(again.outputs[name], values)
@@ -184,7 +188,9 @@ operating.load.Fy = ["-0.1 kN", "-1 kN"]
     load = np.where(np.arange(8) < 7, np.arange(8.0), np.nan)
     outputs = {"result": np.repeat([0, 5], [7, 1]), "largest_load": load}
     designs = design_columns(table)
-    write(Sweep(table.cases, outputs, "inner"), place, designs)
+    write_table(
+        sweep_table.columns(Sweep(table.cases, outputs, "inner"), designs), place
+    )
     known = read(place)
     resume.check_asked(place, known, {**designs, **case_columns(table.cases)}, 8)
     again = restore_outputs(known, outputs)
@@ -207,7 +213,7 @@ def test_resume_restores_omitted_zero_columns(tmp_path):
     zeros = (("displacement", (*outer, "inner_gz")),)
     sweep = Sweep(cases, outputs, "inner", zeros)
     place = tmp_path / "t.csv"
-    write(sweep, place)
+    write_table(sweep_table.columns(sweep), place)
     known = read(place)
     wanted = [f"displacement_inner_{name}" for name in ("uy [m]", "gy [rad]")]
     given = ["Fy [N]", "prescribed_gy [rad]", "inner_speed [rad/s]"]
