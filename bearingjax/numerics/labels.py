@@ -267,6 +267,6 @@ def make_dataset(
     coordinates = {
         axis: list(known[axis])
         for axis, size in sizes.items()
-        if len(known.get(axis, ())) == size and axis not in variables
+        if axis in known and len(known[axis]) == size and axis not in variables
     }
     return xarray.Dataset(variables, coordinates)

@@ -114,6 +114,7 @@ def test_make_dataset_keeps_axes_apart():
     """A name that an array has too, and one axis name of two lengths."""
     one = Labelled(np.zeros((3, 2)), ("motion", "side"))
     two = {"motion": Labelled(np.zeros((2, 2)), ("motion", "side")), "free": one}
+    two["none"] = Labelled(np.zeros((0, 2)), ("seat", "side"))
     two["time"] = Labelled(np.arange(4.0), ("time",), "s")
     found = make_dataset(two, {"side": ("a", "b")})
     assert found.motion.dims == ("motion_axis", "side")
