@@ -6,8 +6,6 @@ import importlib
 import inspect
 import pkgutil
 import re
-import sys
-from types import SimpleNamespace
 from typing import Annotated, NamedTuple
 
 import equinox as eqx
@@ -19,11 +17,9 @@ from bearingjax import design
 from bearingjax.cases.output_labels import label_output
 from bearingjax.cases.sweep import SUMMARIES
 from bearingjax.files.quantity import KINDS, kind_of
-from bearingjax.numerics import units
 from bearingjax.numerics.labels import axes_of
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import (
-    docstring,
     field_metadata,
     mixed,
     shown_count,
@@ -60,7 +56,7 @@ def stated_units(kind, name):
     class and its parents, else in their first lines."""
     entry = rf"^ +(?:\w+, )*{name}(?:, \w+)*: (.*?)(?=^ +\w+(?:, \w+)*: |^\s*$|\Z)"
     for base in kind.__mro__:
-        text = docstring(base)
+        text = inspect.cleandoc(base.__dict__.get("__doc__") or "")
         if found := re.search(entry, text, re.M | re.S):
             for part in (found[1], text.partition("\n")[0]):
                 if units := re.findall(r"\[([^]]*)\]", part):
@@ -93,15 +89,6 @@ def test_units_of_fields_are_those_of_the_docstring(kind):
     for name in numbers(kind):
         units = {*np.ravel(fields[name].metadata["unit"])}
         assert units == stated_units(kind, name), name
-
-
-def test_docstrings_are_read_from_the_source_without_them(monkeypatch):
-    """As `python -OO` needs it."""
-    kinds = [*with_units()]
-    wanted = [units.docstring(kind) for kind in kinds]
-    flags = SimpleNamespace(flags=SimpleNamespace(optimize=2), modules=sys.modules)
-    monkeypatch.setattr(units, "sys", flags)
-    assert [units.docstring.__wrapped__(kind) for kind in kinds] == wanted
 
 
 def test_unit_of_array_entry():

@@ -10,8 +10,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import positive
 from ..design.material import Material, contact_modulus
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real
 
 EXPONENT = (10, 9)
 """Line load ∝ approach^(10/9), as a fraction."""
@@ -87,7 +87,7 @@ class LineConstant(AbstractLineLaw):
     Traced: all fields.
     """
 
-    value: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(19/9)"))
+    value: Real = eqx.field(**real("N/m^(19/9)"))
 
     def __check_init__(self):
         positive(self, "value")

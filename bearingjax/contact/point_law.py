@@ -16,8 +16,8 @@ from jaxtyping import Array, Float
 from ..design.ball import AbstractBallBearing, Groove
 from ..design.checks import positive
 from ..design.material import contact_modulus
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real, unit
 from .hertz import Ellipse, ellipse
 
 # Degree of the interpolation of ln c over cos α: 1e-13 for balls up to 0.4 of the
@@ -174,8 +174,8 @@ class PointConstant(AbstractPointLaw):
     Traced: all fields.
     """
 
-    outer: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
-    inner: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
+    outer: Real = eqx.field(**real("N/m^(3/2)"))
+    inner: Real = eqx.field(**real("N/m^(3/2)"))
 
     def __check_init__(self):
         for name in ("outer", "inner"):

@@ -16,16 +16,10 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
+from ..numerics.units import meaning, real, unit
 from .abstract import AbstractBearing
-from .checks import (
-    check,
-    concrete,
-    in_range,
-    number,
-    positive,
-)
+from .checks import check, check_fields, concrete, in_range, number
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .published import Published
@@ -89,32 +83,65 @@ class AbstractBallBearing(AbstractBearing):
         "inner_osculation",
     )
 
-    n_balls: int = eqx.field(static=True, converter=as_count)
-    pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    ball_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    outer_osculation: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("1"), default=None, kw_only=True
+    n_balls: int = eqx.field(
+        static=True, converter=as_count, metadata=meaning("number of balls")
     )
-    inner_osculation: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), kw_only=True
+    pitch_diameter: Real = eqx.field(
+        **real("m", "diameter of the circle of the ball centres, D_pw", above=0)
     )
-    first_azimuth: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    ball_diameter: Real = eqx.field(**real("m", "ball diameter, D_w", above=0))
+    outer_osculation: RealOrNone = eqx.field(
+        **real("1", "radius of the outer groove over the ball diameter, f_o"),
+        default=None,
+        kw_only=True,
+    )
+    inner_osculation: Real = eqx.field(
+        **real("1", "radius of the inner groove over the ball diameter, f_i"),
+        kw_only=True,
+    )
+    first_azimuth: Real = eqx.field(
+        **real("rad", "azimuth of ball 0, from +x towards +y"),
+        default=0.0,
+        kw_only=True,
     )
     ball_deviation: Float[Array, " ball"] | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+        converter=as_real,
+        metadata=unit(
+            "m", "diameter of each ball less `ball_diameter`", otherwise="all equal"
+        ),
+        default=None,
+        kw_only=True,
     )
     azimuth_deviation: Float[Array, " ball"] | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+        converter=as_real,
+        metadata=unit(
+            "rad",
+            "azimuth of each ball less that of even spacing",
+            otherwise="evenly spaced",
+        ),
+        default=None,
+        kw_only=True,
     )
     raceway_deviation: Float[Array, "ball 2 3"] | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None, kw_only=True
     )
-    outer_shoulder: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+    outer_shoulder: RealOrNone = eqx.field(
+        **real(
+            "m",
+            "height of the outer shoulders above the groove bottom",
+            otherwise="unknown, and truncation is not checked",
+        ),
+        default=None,
+        kw_only=True,
     )
-    inner_shoulder: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+    inner_shoulder: RealOrNone = eqx.field(
+        **real(
+            "m",
+            "height of the inner shoulders above the groove bottom",
+            otherwise="unknown, and truncation is not checked",
+        ),
+        default=None,
+        kw_only=True,
     )
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
@@ -226,8 +253,7 @@ class AbstractBallBearing(AbstractBearing):
 
     def __check_init__(self):
         self._check_common()
-        for name in ("pitch_diameter", "ball_diameter"):
-            positive(self, name)
+        check_fields(self)
         for ring in ("outer", "inner"):
             self._check_groove(ring)
         self._check_row()

@@ -8,10 +8,10 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.units import real
 from .ball import AbstractBallBearing, Groove
-from .checks import check, concrete, in_range, number, positive
+from .checks import check, check_fields, concrete, in_range, number
 
 
 class DeepGrooveBallBearing(AbstractBallBearing):
@@ -26,11 +26,19 @@ class DeepGrooveBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
-    radial_internal_clearance: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+    about: ClassVar[str] = "one full groove per ring, axial load both ways"
+    radial_internal_clearance: RealOrNone = eqx.field(
+        **real("m", "diametral play; negative is preload"), default=None, kw_only=True
     )
-    contact_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    contact_angle: RealOrNone = eqx.field(
+        **real(
+            "rad",
+            "free contact angle, in place of the clearance",
+            least=0,
+            below=0.5 * np.pi,
+        ),
+        default=None,
+        kw_only=True,
     )
 
     @property
@@ -88,8 +96,7 @@ class DeepGrooveBallBearing(AbstractBallBearing):
                 f"{type(self).__name__}: `radial_internal_clearance` and"
                 " `contact_angle` are both given; one follows from the other."
             )
-        if angle is not None:
-            in_range(self, "contact_angle", 0.0, 0.5 * np.pi, include_low=True)
+        check_fields(self)
         if clearance is None:
             return
         number(self, "radial_internal_clearance")
@@ -120,13 +127,19 @@ class AngularContactBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    about: ClassVar[str] = "single-row angular contact ball bearing"
+
     rated_fields = (*AbstractBallBearing.rated_fields, "contact_angle")
 
-    contact_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), kw_only=True
+    contact_angle: Real = eqx.field(
+        **real("rad", "free contact angle", above=0, below=0.5 * np.pi), kw_only=True
     )
-    rated_contact_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    rated_contact_angle: RealOrNone = eqx.field(
+        **real(
+            "rad", "nominal contact angle of the load ratings", otherwise="the free one"
+        ),
+        default=None,
+        kw_only=True,
     )
 
     @property
@@ -181,7 +194,7 @@ class AngularContactBallBearing(AbstractBallBearing):
         return _pair(self, self.free_contact_angle, open_side=True)
 
     def __check_init__(self):
-        in_range(self, "contact_angle", 0.0, 0.5 * np.pi)
+        check_fields(self)
         _check_rated(self)
 
 
@@ -194,6 +207,7 @@ class ThrustBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    about: ClassVar[str] = "thrust ball bearing of one direction, contact angle 90°"
     is_thrust: ClassVar[bool] = True
 
     @property
@@ -241,17 +255,28 @@ class FourPointBallBearing(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    about: ClassVar[str] = "each raceway is two arcs, of a split ring"
     rated_rows: ClassVar[int] = 2
     rated_fields = (*AbstractBallBearing.rated_fields, "shim_angle")
 
-    shim_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), kw_only=True
+    shim_angle: Real = eqx.field(
+        **real(
+            "rad",
+            "angle at which a ball rests in the arcs of one ring",
+            above=0,
+            below=0.5 * np.pi,
+        ),
+        kw_only=True,
     )
-    radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
+    radial_internal_clearance: Real = eqx.field(
+        **real("m", "diametral play; negative is preload"), default=0.0, kw_only=True
     )
-    rated_contact_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+    rated_contact_angle: RealOrNone = eqx.field(
+        **real(
+            "rad", "nominal contact angle of the load ratings", otherwise="the free one"
+        ),
+        default=None,
+        kw_only=True,
     )
 
     @property
@@ -294,7 +319,7 @@ class FourPointBallBearing(AbstractBallBearing):
         return tuple(out)
 
     def __check_init__(self):
-        in_range(self, "shim_angle", 0.0, 0.5 * np.pi)
+        check_fields(self)
         _check_rated(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
@@ -325,12 +350,16 @@ class SelfAligningBallRow(AbstractBallBearing):
     Traced: all fields but `n_balls`.
     """
 
+    about: ClassVar[str] = "both rows of balls in an outer raceway that is a sphere"
     aligns: ClassVar[bool] = True
     rated_fields = (*AbstractBallBearing.rated_fields, "row_offset")
 
-    row_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), kw_only=True)
-    radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
+    row_offset: Real = eqx.field(
+        **real("m", "z of the row from the middle of the bearing", above=0),
+        kw_only=True,
+    )
+    radial_internal_clearance: Real = eqx.field(
+        **real("m", "diametral play; negative is preload"), default=0.0, kw_only=True
     )
 
     @property
@@ -380,7 +409,7 @@ class SelfAligningBallRow(AbstractBallBearing):
         )
 
     def __check_init__(self):
-        positive(self, "row_offset")
+        check_fields(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
         numbers = concrete(clearance, self.centre_distances[1], self.free_cosine)

@@ -7,10 +7,10 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.units import real
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
-from .checks import check, concrete, in_range, is_traced, number, positive
+from .checks import check, check_fields, concrete, in_range, is_traced, number, positive
 from .profile import sagitta
 
 _FAR = 0.01
@@ -34,14 +34,14 @@ class AbstractBarrelBearing(AbstractRollerBearing):
     that of the groove centres of a ball bearing.
     """
 
-    roller_profile_radius: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), kw_only=True
+    roller_profile_radius: Real = eqx.field(
+        **real("m", "radius of the arc of the roller, R_r"), kw_only=True
     )
-    outer_raceway_radius: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), kw_only=True
+    outer_raceway_radius: RealOrNone = eqx.field(
+        **real("m", "radius of the arc of the outer raceway, r_o"), kw_only=True
     )
-    inner_raceway_radius: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), kw_only=True
+    inner_raceway_radius: Real = eqx.field(
+        **real("m", "radius of the arc of the inner raceway, r_i"), kw_only=True
     )
 
     @property
@@ -69,7 +69,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
         for name in ("roller_profile_radius", "inner_raceway_radius"):
             _radius(self, name)
         # Before the radius of a sphere, which follows from it.
-        positive(self, "pitch_diameter")
+        check_fields(self)
         if self.outer_raceway_radius is not None:
             _radius(self, "outer_raceway_radius")
         elif not isinstance(self, _AbstractSphere):
@@ -107,11 +107,23 @@ class _AbstractSphere(AbstractBarrelBearing):
 
     rated_fields = (*AbstractRollerBearing.rated_fields, "contact_angle")
 
-    contact_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), kw_only=True
+    contact_angle: Real = eqx.field(
+        **real(
+            "rad",
+            "contact angle; of a thrust bearing that of its outer raceway",
+            above=0,
+            below=0.5 * np.pi,
+        ),
+        kw_only=True,
     )
-    outer_raceway_radius: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), kw_only=True, default=None
+    outer_raceway_radius: RealOrNone = eqx.field(
+        **real(
+            "m",
+            "radius of the sphere of the outer raceway",
+            otherwise="that about the axis",
+        ),
+        kw_only=True,
+        default=None,
     )
 
     @property
@@ -146,7 +158,6 @@ class _AbstractSphere(AbstractBarrelBearing):
         )
 
     def __check_init__(self):
-        in_range(self, "contact_angle", 0.0, 0.5 * np.pi)
         if self.outer_raceway_radius is None:
             return
         numbers = concrete(self.outer_raceway_radius, self.sphere_radius)
@@ -175,6 +186,7 @@ class SphericalRollerRow(_AbstractSphere):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "both rows of rollers in an outer raceway that is a sphere"
     aligns: ClassVar[bool] = True
     caged: ClassVar[bool] = True
 
@@ -195,6 +207,7 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "long barrel rollers, raceways of large profile radius"
     tilts_alone: ClassVar[bool] = True
 
     @property
@@ -272,11 +285,18 @@ class SphericalThrustRollerBearing(_AbstractSphere):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "asymmetric barrel rollers, one direction of thrust"
     is_thrust: ClassVar[bool] = True
     tilts_alone: ClassVar[bool] = True
 
-    profile_offset: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), kw_only=True, default=0.0
+    profile_offset: Real = eqx.field(
+        **real(
+            "m",
+            "distance of the largest section from the middle, to the large end",
+            least=0,
+        ),
+        kw_only=True,
+        default=0.0,
     )
 
     @property
@@ -311,6 +331,7 @@ class CylindricalThrustRollerBearing(AbstractRollerBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "rollers at 90° between flat washers"
     is_thrust: ClassVar[bool] = True
     bears_radially: ClassVar[bool] = False
     caged: ClassVar[bool] = True
@@ -341,6 +362,7 @@ class TaperedThrustRollerBearing(TaperedRollerBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "tapered roller thrust bearing of one direction"
     is_thrust: ClassVar[bool] = True
 
     def __check_init__(self):
@@ -370,6 +392,7 @@ class CrossedRollerRow(AbstractRollerBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "rollers of both orientations, at 45°"
     caged: ClassVar[bool] = True
     is_crossed: ClassVar[bool] = True
 

@@ -8,11 +8,11 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.units import meaning, real, unit
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
-from .checks import check, concrete, in_range, instance, number, positive
+from .checks import check, check_fields, concrete, in_range, instance, number
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
@@ -60,21 +60,45 @@ class AbstractRollerBearing(AbstractBearing):
         "roller_length",
     )
 
-    n_rollers: int = eqx.field(static=True, converter=as_count)
-    pitch_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    roller_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    roller_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    radial_internal_clearance: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=0.0, kw_only=True
+    n_rollers: int = eqx.field(
+        static=True, converter=as_count, metadata=meaning("number of rollers")
     )
-    first_azimuth: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
+    pitch_diameter: Real = eqx.field(
+        **real("m", "diameter of the circle of the roller centres, D_pw", above=0)
+    )
+    roller_diameter: Real = eqx.field(
+        **real("m", "mean roller diameter, D_we", above=0)
+    )
+    roller_length: Real = eqx.field(
+        **real("m", "effective contact length along the generator, L_we", above=0)
+    )
+    radial_internal_clearance: Real = eqx.field(
+        **real("m", "diametral play; negative is preload"), default=0.0, kw_only=True
+    )
+    first_azimuth: Real = eqx.field(
+        **real("rad", "azimuth of roller 0, from +x towards +y"),
+        default=0.0,
+        kw_only=True,
     )
     roller_deviation: Float[Array, " roller"] | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None, kw_only=True
+        converter=as_real,
+        metadata=unit(
+            "m",
+            "mean diameter of each roller less `roller_diameter`",
+            otherwise="all equal",
+        ),
+        default=None,
+        kw_only=True,
     )
     azimuth_deviation: Float[Array, " roller"] | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
+        converter=as_real,
+        metadata=unit(
+            "rad",
+            "azimuth of each roller less that of even spacing",
+            otherwise="evenly spaced",
+        ),
+        default=None,
+        kw_only=True,
     )
     raceway_deviation: Float[Array, "roller 2 3"] | None = eqx.field(
         converter=as_real, metadata=unit("m"), default=None, kw_only=True
@@ -185,8 +209,7 @@ class AbstractRollerBearing(AbstractBearing):
 
     def __check_init__(self):
         self._check_common()
-        for name in ("pitch_diameter", "roller_diameter", "roller_length"):
-            positive(self, name)
+        check_fields(self)
         number(self, "radial_internal_clearance")
         self._check_parts()
         self._check_row()
@@ -292,6 +315,8 @@ class CylindricalRollerBearing(AbstractRollerBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "cylindrical rollers, any arrangement of ribs"
+
     @property
     def axial_senses(self) -> frozenset[int]:
         ribs = self.ribs
@@ -310,6 +335,8 @@ class NeedleRollerBearing(AbstractRollerBearing):
 
     Traced: all fields but `n_rollers`.
     """
+
+    about: ClassVar[str] = "long thin rollers, mostly without ribs"
 
     def __check_init__(self):
         numbers = concrete(self.roller_length, self.roller_diameter)
@@ -333,17 +360,28 @@ class TaperedRollerBearing(AbstractRollerBearing):
     Traced: all fields but `n_rollers`.
     """
 
+    about: ClassVar[str] = "single-row tapered roller bearing"
+
     rated_fields = (
         *AbstractRollerBearing.rated_fields,
         "roller_axis_angle",
         "roller_half_angle",
     )
 
-    roller_axis_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), kw_only=True, default=jnp.nan
+    roller_axis_angle: Real = eqx.field(
+        **real(
+            "rad",
+            "angle of the roller axis to the bearing axis",
+            above=0,
+            below=0.5 * jnp.pi,
+        ),
+        kw_only=True,
+        default=jnp.nan,
     )
-    roller_half_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), kw_only=True, default=0.0
+    roller_half_angle: Real = eqx.field(
+        **real("rad", "half cone angle of the roller", least=0),
+        kw_only=True,
+        default=0.0,
     )
 
     @property
@@ -359,7 +397,7 @@ class TaperedRollerBearing(AbstractRollerBearing):
         return self.roller_half_angle
 
     def __check_init__(self):
-        in_range(self, "roller_axis_angle", 0.0, 0.5 * jnp.pi)
+        check_fields(self)
         most = self.roller_axis_angle
         in_range(self, "roller_half_angle", 0.0, most, include_low=True)
 

@@ -6,8 +6,8 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
@@ -31,8 +31,8 @@ class PreloadSpring(eqx.Module):
     Traced: all fields.
     """
 
-    force: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"), default=0.0)
+    force: Real = eqx.field(**real("N"))
+    stiffness: Real = eqx.field(**real("N/m"), default=0.0)
 
     def __check_init__(self):
         positive(self, "force")
@@ -70,9 +70,9 @@ class SetRow(eqx.Module):
     """
 
     bearing: AbstractBearing
-    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
+    position: Real = eqx.field(**real("m"), default=0.0)
     mirrored: bool = eqx.field(static=True, default=False)
-    inner_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
+    inner_offset: Real = eqx.field(**real("m"), default=0.0)
     spring: PreloadSpring | None = None
 
     def __check_init__(self):

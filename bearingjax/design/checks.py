@@ -8,8 +8,10 @@ A field of the owner is checked by its name: its value and unit are looked up. O
 anything else, value and unit are `given` after all other arguments.
 """
 
+import dataclasses
 from collections.abc import Collection, Sequence
 from numbers import Real
+from operator import ge, gt, le, lt
 from typing import Any
 
 import numpy as np
@@ -156,6 +158,32 @@ def _check_bounds(owner, name, low, high, include_low, given):
     least = f"{'at least' if include_low else 'above'} {least:.6g}"
     words = least if most == np.inf else f"{least} and below {most:.6g}"
     check(owner, name, inside, _with_unit(words, unit), value, unit)
+
+
+def check_fields(owner) -> None:
+    """Fields in the ranges, or among the words, that they state; `None` always passes.
+
+    Args:
+        owner: A module with fields such as `eqx.field(**real("m", "length", above=0))`.
+    """
+    for field in dataclasses.fields(owner):
+        value, stated = getattr(owner, field.name), field.metadata
+        ends = {name: stated[name] for name in _INSIDE if name in stated}
+        if value is not None and "choices" in stated:
+            one_of(owner, field.name, value, stated["choices"])
+        if value is None or not ends:
+            continue
+        number(owner, field.name)
+        known = concrete(value)
+        if known is not None:
+            inside = all(_INSIDE[name](known[0], end) for name, end in ends.items())
+            words = " and ".join(f"{_WORDS[k]} {end:.6g}" for k, end in ends.items())
+            allowed = _with_unit(words, unit_of(owner, field.name))
+            check(owner, field.name, inside, allowed)
+
+
+_INSIDE = {"above": gt, "least": ge, "below": lt, "most": le}
+_WORDS = {"above": "above", "least": "at least", "below": "below", "most": "at most"}
 
 
 def count(owner, name: str, value) -> None:

@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real, unit
 from .abstract import AbstractBearing
 from .checks import check, finite, instance, is_real, is_traced
 from .deviation import largest_deviation
@@ -201,9 +201,9 @@ class Spall(AbstractShape):
     Traced: all fields.
     """
 
-    angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
-    length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    depth: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    angle: Real = eqx.field(**real("rad"))
+    length: Real = eqx.field(**real("m"))
+    depth: Real = eqx.field(**real("m"))
 
     def __check_init__(self):
         for name in ("length", "depth"):

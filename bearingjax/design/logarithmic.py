@@ -1,11 +1,13 @@
 """Logarithmic profiles: standard, Lundberg, Johns-Gohar, Fujiwara-Kawase."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
-from .checks import check, in_range, is_traced, positive
+from ..numerics.types import Real
+from ..numerics.units import real
+from .checks import check_fields, in_range
 from .profile import AbstractProfile
 
 STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
@@ -25,12 +27,13 @@ class Logarithmic(AbstractProfile):
     Source: ISO/TS 16281:2008, reference geometry of rollers.
     """
 
-    coefficient: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=0.00035
+    about: ClassVar[str] = "ISO/TS 16281: 0.00035 D ln(1/(1 - (2s/L)²))"
+    coefficient: Real = eqx.field(
+        **real("1", "coefficient of the logarithm", above=0), default=0.00035
     )
 
     def __check_init__(self):
-        positive(self, "coefficient")
+        check_fields(self)
 
     def drop(self, position, length, diameter):
         return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
@@ -50,14 +53,16 @@ class Lundberg(AbstractProfile):
     Source: Lundberg (1939); in the form of Fujiwara and Kawase (2007).
     """
 
-    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    contact_modulus: Scalar = eqx.field(
-        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    about: ClassVar[str] = "even pressure along the roller at the design load"
+    design_load: Real = eqx.field(
+        **real("N", "load Q of the contact for which it is made", above=0)
+    )
+    contact_modulus: Real = eqx.field(
+        **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
 
     def __check_init__(self):
-        positive(self, "design_load")
-        positive(self, "contact_modulus")
+        check_fields(self)
 
     def drop(self, position, length, diameter):
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -79,16 +84,19 @@ class JohnsGohar(AbstractProfile):
     Source: Johns and Gohar (1981); in the form of Fujiwara and Kawase (2007).
     """
 
-    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    half_width: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    contact_modulus: Scalar = eqx.field(
-        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    about: ClassVar[str] = "Johns and Gohar: Lundberg's with a finite end"
+    design_load: Real = eqx.field(
+        **real("N", "load Q of the contact for which it is made", above=0)
+    )
+    half_width: Real = eqx.field(
+        **real("m", "Hertz half width b of the contact at that load", above=0)
+    )
+    contact_modulus: Real = eqx.field(
+        **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
 
     def __check_init__(self):
-        positive(self, "design_load")
-        positive(self, "half_width")
-        positive(self, "contact_modulus")
+        check_fields(self)
 
     def drop(self, position, length, diameter):
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -117,23 +125,19 @@ class FujiwaraKawase(AbstractProfile):
     Source: Fujiwara and Kawase, NTN Technical Review 75 (2007), their E' = 2 E*.
     """
 
-    design_load: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    load_factor: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    crowned_fraction: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    end_drop: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    contact_modulus: Scalar = eqx.field(
-        converter=as_real, metadata=unit("Pa"), default=STEEL_MODULUS
+    about: ClassVar[str] = "Fujiwara and Kawase: three design parameters"
+    design_load: Real = eqx.field(**real("N", "load Q of the contact", above=0))
+    load_factor: Real = eqx.field(**real("1", "K1, factor on the design load", above=0))
+    crowned_fraction: Real = eqx.field(
+        **real("1", "K2, crowned part of the length", above=0, most=1)
+    )
+    end_drop: Real = eqx.field(**real("m", "z_m, drop at the very end", above=0))
+    contact_modulus: Real = eqx.field(
+        **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
 
     def __check_init__(self):
-        positive(self, "design_load")
-        positive(self, "load_factor")
-        positive(self, "crowned_fraction")
-        if not is_traced(self.crowned_fraction):
-            fraction, allowed = float(self.crowned_fraction), "above 0 and at most 1"
-            check(self, "crowned_fraction", fraction <= 1.0, allowed)
-        positive(self, "end_drop")
-        positive(self, "contact_modulus")
+        check_fields(self)
 
     def drop(self, position, length, diameter):
         load = self.load_factor * self.design_load

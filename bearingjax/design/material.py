@@ -1,12 +1,12 @@
 """Materials of rollers and rings."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
-from .checks import in_range, positive
+from ..numerics.types import Real
+from ..numerics.units import real
+from .checks import check_fields
 
 
 class Material(eqx.Module):
@@ -20,20 +20,17 @@ class Material(eqx.Module):
     Traced: all fields.
     """
 
-    elastic_modulus: Scalar = eqx.field(
-        converter=as_real, metadata=unit("Pa"), default=206e9
+    about: ClassVar[str] = "an isotropic elastic material, by default bearing steel"
+    elastic_modulus: Real = eqx.field(
+        **real("Pa", "Young's modulus E", above=0), default=206e9
     )
-    poisson_ratio: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=0.3
+    poisson_ratio: Real = eqx.field(
+        **real("1", "Poisson's ratio ν", above=-1, below=0.5), default=0.3
     )
-    density: Scalar = eqx.field(
-        converter=as_real, metadata=unit("kg/m³"), default=7850.0
-    )
+    density: Real = eqx.field(**real("kg/m³", "density", above=0), default=7850.0)
 
     def __check_init__(self):
-        positive(self, "elastic_modulus")
-        in_range(self, "poisson_ratio", -1.0, 0.5)
-        positive(self, "density")
+        check_fields(self)
 
     @classmethod
     def steel(cls) -> "Material":

@@ -15,9 +15,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.compiled.programs import program
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
-from .checks import check, in_range, is_traced, positive
+from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.units import real
+from .checks import check, check_fields, in_range, is_traced
 
 _PLACES = np.linspace(-0.999, 0.999, 257)
 """Positions in half lengths at which a profile is checked."""
@@ -107,6 +107,7 @@ def drops(
 class Straight(AbstractProfile):
     """No profile: the drop is zero."""
 
+    about: ClassVar[str] = "no profile: the drop is zero"
     arcs: ClassVar[bool] = True
 
     def drop(self, position, length, diameter):
@@ -123,12 +124,13 @@ class CircularCrown(AbstractProfile):
     Source: geometry, drop = R - sqrt(R² - s²).
     """
 
+    about: ClassVar[str] = "a full circular crown: one arc over the whole length"
     arcs: ClassVar[bool] = True
 
-    crown_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    crown_radius: Real = eqx.field(**real("m", "radius of the arc", above=0))
 
     def __check_init__(self):
-        positive(self, "crown_radius")
+        check_fields(self)
 
     def drop(self, position, length, diameter):
         return sagitta(position, self.crown_radius)
@@ -153,28 +155,28 @@ class CrownedEnds(AbstractProfile):
     Source: geometry of tangent arcs.
     """
 
+    about: ClassVar[str] = "a straight middle, an arc at either end, and a dub-off"
     arcs: ClassVar[bool] = True
 
-    straight_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    crown_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    dub_off_length: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
+    straight_length: Real = eqx.field(
+        **real("m", "length of the straight middle", above=0)
     )
-    dub_off_radius: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
+    crown_radius: Real = eqx.field(**real("m", "radius of the arcs", above=0))
+    dub_off_length: RealOrNone = eqx.field(
+        **real("m", "length of the dub-off at either end", above=0, otherwise="none"),
+        default=None,
+    )
+    dub_off_radius: RealOrNone = eqx.field(
+        **real("m", "radius of the dub-off", above=0, otherwise="none"), default=None
     )
 
     def __check_init__(self):
-        positive(self, "straight_length")
-        positive(self, "crown_radius")
+        check_fields(self)
         if (self.dub_off_length is None) != (self.dub_off_radius is None):
             raise ValueError(
                 "CrownedEnds: `dub_off_length` and `dub_off_radius` go together; one of"
                 " them is missing."
             )
-        if self.dub_off_length is not None:
-            positive(self, "dub_off_length")
-            positive(self, "dub_off_radius")
 
     def drop(self, position, length, diameter):
         out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)

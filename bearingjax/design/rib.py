@@ -1,11 +1,13 @@
 """Ribs, against which the roller ends bear."""
 
+from typing import ClassVar
+
 import equinox as eqx
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
-from .checks import instance, non_negative, number, one_of, positive
+from ..numerics.types import Real, as_real
+from ..numerics.units import real
+from .checks import check_fields, instance, number, one_of
 
 RIB_NAMES = name_axis("rib", ("outer_minus", "outer_plus", "inner_minus", "inner_plus"))
 """Order of the ribs wherever they are an axis: ring, then side (-z, +z)."""
@@ -36,13 +38,20 @@ class Rib(eqx.Module):
     Traced: all fields.
     """
 
-    end_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    contact_height: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    axial_gap: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
+    about: ClassVar[str] = "a rib, straight in the axial section, against a sphere"
+    end_radius: Real = eqx.field(
+        **real("m", "radius of the sphere of the roller end", above=0)
+    )
+    contact_height: Real = eqx.field(
+        **real("m", "height of the contact along the rib, from the raceway", least=0)
+    )
+    axial_gap: Real = eqx.field(
+        **real("m", "gap along the rib normal, unloaded; negative is interference"),
+        default=0.0,
+    )
 
     def __check_init__(self):
-        positive(self, "end_radius")
-        non_negative(self, "contact_height")
+        check_fields(self)
         number(self, "axial_gap")
 
 

@@ -33,8 +33,16 @@ class Tabulated(AbstractProfile):
     Source: Overhauser (1968), for points at any distance.
     """
 
-    positions: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
-    drops: Float[Array, " table"] = eqx.field(converter=as_real, metadata=unit("m"))
+    about: ClassVar[str] = "a measured profile: a cubic from each point to the next"
+    positions: Float[Array, " table"] = eqx.field(
+        converter=as_real,
+        metadata=unit(
+            "m", "places s along the roller, ascending, from end to end or beyond"
+        ),
+    )
+    drops: Float[Array, " table"] = eqx.field(
+        converter=as_real, metadata=unit("m", "drop at each place, at least 0")
+    )
 
     protruding: ClassVar[bool] = True
     """Between its points a cubic may overshoot below zero."""

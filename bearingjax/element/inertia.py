@@ -7,8 +7,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import number
 from ..design.profile import sagitta
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real
 from .constants import ContactConstants
 from .frame import orbit, roll_ratio, rotation
 
@@ -26,8 +26,8 @@ class Speed(eqx.Module):
     Traced: all fields.
     """
 
-    inner: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
-    outer: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
+    inner: Real = eqx.field(**real("rad/s"), default=0.0)
+    outer: Real = eqx.field(**real("rad/s"), default=0.0)
 
     def __check_init__(self):
         number(self, "inner")

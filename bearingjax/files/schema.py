@@ -1,15 +1,17 @@
 """Schema of scene files: a class describes a table, each of its fields one key.
 
-The fields of a `Keys` class define how the table is read, its JSON Schema and its part
-of the scene guide (`schema_text`). Rules for several keys are in the `check` of the
-class.
+Its fields define how the table is read, its JSON Schema and its part of the scene guide
+(`schema_text`). The class is that of the thing itself, whose fields state unit, range
+and meaning (`numerics.units.real`); `build` reads the table into it. A `Keys` class
+describes a table that differs from the thing, with the rules for several keys in its
+`check`.
 """
 
 import dataclasses
 import functools
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import (
     Any,
     ClassVar,
@@ -20,8 +22,9 @@ from typing import (
     get_origin,
 )
 
-from ..numerics.units import CELSIUS
-from .quantity import KINDS, scene_number, to_si
+from ..numerics.labels import stated_axes
+from ..numerics.units import CELSIUS, unit_of
+from .quantity import KINDS, kind_of, scene_number, to_si
 from .table import Table, format_number
 
 _REQUIRED: Any = dataclasses.MISSING
@@ -201,6 +204,9 @@ class Keys:
         table: The table that was read, for errors and the echo.
     """
 
+    about: ClassVar[str] = ""
+    """Line of the scene guide about the table, which is the docstring too."""
+
     numbers: ClassVar[Mapping[str, type]] = {}
     """Classes whose numbers may be given in the table under their field names, by the
     key that requires them; read by `built`."""
@@ -208,6 +214,7 @@ class Keys:
     table: Table = dataclasses.field(repr=False, compare=False)
 
     def __init_subclass__(cls) -> None:
+        cls.__doc__ = cls.__doc__ or f"{cls.about}."
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)
 
     @property
@@ -224,9 +231,7 @@ class Keys:
         Args:
             kind: One of `numbers`.
         """
-        values = self.table.fields(kind)
-        with self.table.building():
-            return kind(**values)
+        return build(kind, self.table)
 
     def check(self) -> None:
         """Raise SceneError if keys are inconsistent; does nothing by default."""
@@ -272,9 +277,7 @@ def read_keys(kind: type[K], table: Table) -> K:
             inconsistent.
     """
     known = fields_of(kind)
-    values = {one.attribute: _value(table, one) for one in known}
-    for one in known:
-        _check_neighbours(table, one)
+    values = _values(table, known)
     later = {
         one.attribute: one.key.follows(values)
         for one in known
@@ -288,13 +291,63 @@ def read_keys(kind: type[K], table: Table) -> K:
     return found
 
 
+T = TypeVar("T")
+
+
+def build(
+    kind: Callable[..., T], table: Table, required: Iterable[str] = (), **given: Any
+) -> T:
+    """Build an object from the keys of a table.
+
+    Args:
+        kind: Its class, whose fields say what they are.
+        table: The table.
+        required: Fields that the table must have although the class has a default.
+        **given: Fields that are known; the table does not have them.
+
+    Raises:
+        SceneError: For values that are missing, of the wrong kind, out of range, or
+            refused by the class.
+    """
+    values = read_values(kind, table, required, given)
+    with table.building():
+        return kind(**values, **given)
+
+
+def read_values(
+    kind: Any, table: Table, required: Iterable[str] = (), left_out: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Read the fields of an object from the keys of a table, in SI.
+
+    Args:
+        kind, table, required: As in `build`.
+        left_out: Fields that are not read.
+    """
+    known = [
+        one._replace(default=_REQUIRED) if one.name in required else one
+        for one in fields_of(kind)
+        if one.attribute not in left_out
+    ]
+    return _values(table, known)
+
+
+def _values(table: Table, known: Iterable[Field]) -> dict[str, Any]:
+    """Read the keys of a table, by the names of the fields."""
+    values = {one.attribute: _value(table, one) for one in known}
+    for one in known:
+        _check_neighbours(table, one)
+    return values
+
+
 @functools.cache
-def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
+def fields_of(kind: Any) -> tuple[Field, ...]:
     """Return the keys of a table, in order.
 
     Args:
-        kind: Class of the table.
+        kind: Class of the table: of keys, or of the thing itself.
     """
+    if not is_keys(kind):
+        return tuple(_fields_of_thing(kind))
     hints = typing.get_type_hints(kind)
     found = []
     for field in dataclasses.fields(kind):
@@ -307,6 +360,23 @@ def fields_of(kind: type[Keys]) -> tuple[Field, ...]:
             default = None
         found.append(Field(one.name or field.name, field.name, one, kinds, default))
     return tuple(found)
+
+
+_OF_KEY = {field.name for field in dataclasses.fields(Key)} - {"kind"}
+
+
+def _fields_of_thing(kind: type) -> Iterator[Field]:
+    """Yield the fields of a class that a scene may give: those with a meaning."""
+    for field in dataclasses.fields(kind):
+        stated = {k: v for k, v in field.metadata.items() if k in _OF_KEY}
+        if "about" not in stated:
+            continue
+        kinds = tuple(k for k in _union_types(field.type) if k is not types.NoneType)
+        if "unit" in field.metadata:
+            unit = unit_of(kind, field.name)
+            stated["kind"] = kind_of(unit) if unit else ""
+            kinds = (tuple[float, ...] if stated_axes(field.type) else float,)
+        yield Field(field.name, field.name, Key(**stated), kinds, field.default)
 
 
 def _union_types(hint: Any) -> tuple[Any, ...]:
@@ -442,9 +512,7 @@ def instance(table: Table, name: str, kinds: Mapping[str, type], *default: Any) 
             given.choice("type", tuple(kinds)) if len(kinds) > 1 else next(iter(kinds))
         )
         kind, own = kinds[word], given
-    values = own.fields(kind)
-    with own.building():
-        return kind(**values)
+    return build(kind, own)
 
 
 def _check_neighbours(table: Table, field: Field) -> None:

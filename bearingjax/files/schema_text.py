@@ -1,14 +1,11 @@
 """Export of the schema of scene files: JSON Schema, and tables of keys."""
 
-import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..numerics.labels import stated_axes
-from ..numerics.units import docstring, unit_of
-from .quantity import KINDS, kind_of
-from .schema import Field, Keys, element_of, fields_of, is_keys
+from .quantity import KINDS
+from .schema import Field, element_of, fields_of, is_keys
 from .table import LARGEST
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -21,20 +18,25 @@ _ENDS = {
 }
 
 
-def table_schema(kind: type[Keys]) -> dict[str, Any]:
+def table_schema(kind: Any, word: str = "", **more: Any) -> dict[str, Any]:
     """Return the JSON Schema of a table.
 
     Args:
-        kind: Class that describes it.
+        kind: Class that describes it: of keys, or of the thing itself.
+        word: `type` that names the class; empty: the table has none.
+        **more: JSON Schema of further keys, or of keys that differ.
     """
-    known = fields_of(kind)
-    properties = {one.name: field_schema(one) for one in known}
-    for key, other in kind.numbers.items():
-        for name, one in class_schema(other)["properties"].items():
+    known = [one for one in fields_of(kind) if one.name not in more]
+    properties: dict[str, Any] = {}
+    if word:
+        properties["type"] = {"const": word, "description": kind.about}
+    properties |= {one.name: field_schema(one) for one in known} | more
+    for key, other in getattr(kind, "numbers", {}).items():
+        for name, one in table_schema(other)["properties"].items():
             text = f"{one['description']}; with {key}" if key else one["description"]
             properties.setdefault(name, {**one, "description": text})
     required = [one.name for one in known if one.required]
-    return object_schema(properties, required, first_line(kind))
+    return object_schema(properties, required, getattr(kind, "about", ""))
 
 
 def object_schema(
@@ -133,77 +135,10 @@ def classes_schema(kinds: Mapping[str, type]) -> dict[str, Any]:
     Args:
         kinds: The classes by their words.
     """
-    bare = [word for word, kind in kinds.items() if not class_schema(kind)["required"]]
+    tables = [table_schema(kind, word) for word, kind in kinds.items()]
+    bare = [w for w, one in zip(kinds, tables, strict=True) if "required" not in one]
     words = [{"enum": bare}] if bare else []
-    tables = [class_schema(kind, word) for word, kind in kinds.items()]
     return {"anyOf": [*words, *tables]}
-
-
-def class_schema(kind: type, word: str = "", **more: Any) -> dict[str, Any]:
-    """Return the JSON Schema of a table that holds the numbers of a class.
-
-    Args:
-        kind: Class whose fields have units.
-        word: `type` of the class; empty: the table has none.
-        **more: JSON Schema of further keys.
-
-    Returns:
-        Schema that includes `required` even if empty.
-    """
-    texts, properties, required = attribute_texts(kind), {}, []
-    if word:
-        properties["type"] = {"const": word, "description": first_line(kind)}
-    for field in dataclasses.fields(kind):
-        if "unit" not in field.metadata or len(stated_axes(field.type) or ()) > 1:
-            continue
-        unit = unit_of(kind, field.name)
-        number = number_schema(kind_of(unit) if unit else "")
-        if stated_axes(field.type):
-            number = {"type": "array", "items": number}
-        about = re.sub(r" (\[[^\]]*\]|\(\w+,\))", "", texts.get(field.name, ""))
-        about, _, none = about.partition("; `None`: ")
-        properties[field.name] = {**number, "description": about}
-        if none:
-            properties[field.name]["x-otherwise"] = none
-        if isinstance(field.default, int | float):
-            shown = f"{field.default:g} {unit}" if unit else field.default
-            properties[field.name]["default"] = shown
-        if field.default is dataclasses.MISSING:
-            required.append(field.name)
-    found = object_schema(properties | more, required, first_line(kind))
-    return {**found, "required": required}
-
-
-def attribute_texts(kind: type) -> dict[str, str]:
-    """Return the descriptions of attributes in the docstrings of a class and its bases.
-
-    Args:
-        kind: Class whose docstrings list "name: text" in indented lines.
-    """
-    found: dict[str, str] = {}
-    for base in reversed(kind.__mro__):
-        names: list[str] = []
-        for line in docstring(base).splitlines():
-            match = re.match(r" {4}([A-Za-z_]\w*(?:, \w+)*): (.*)", line)
-            if match:
-                names = match[1].split(", ")
-                found |= dict.fromkeys(names, match[2])
-            elif line.startswith(" " * 8) and names:
-                more = {name: f"{found[name]} {line.strip()}" for name in names}
-                found |= more
-            else:
-                names = []
-    return {name: text.rstrip(".") for name, text in found.items()}
-
-
-def first_line(kind: type) -> str:
-    """Return the first line of the docstring of a class, without its full stop.
-
-    Args:
-        kind: Class with a docstring of its own or of a parent.
-    """
-    texts = (docstring(base) for base in kind.__mro__)
-    return next(filter(None, texts)).partition("\n")[0].rstrip(".")
 
 
 def key_tables(

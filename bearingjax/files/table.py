@@ -7,7 +7,6 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..numerics.labels import stated_axes
 from ..numerics.units import unit_of
 from .quantity import KINDS, SceneError, kind_of, to_si
 
@@ -173,33 +172,6 @@ class Table:
         if not unit:
             return self.number(key, default)
         return self.quantity(key, kind_of(unit), default)
-
-    def fields(
-        self, kind: type, *required: str, left_out: Sequence[str] = ()
-    ) -> dict[str, Any]:
-        """Read the numbers of a class under their field names, in SI.
-
-        Args:
-            kind: Class whose fields have units.
-            required: Fields that must be given although the class has a default.
-            left_out: Fields that need not be given although the class has no default.
-        """
-        found = {}
-        for field in dataclasses.fields(kind):
-            if "unit" not in field.metadata or field.name in left_out:
-                continue
-            name, unit = field.name, unit_of(kind, field.name)
-            must = field.default is dataclasses.MISSING or name in required
-            if must or name in self:
-                several = stated_axes(field.type)
-                found[name] = (
-                    self.quantities(name, kind_of(unit))
-                    if several
-                    else self.real(name, unit)
-                )
-            elif isinstance(field.default, int | float):
-                self.fill(name, format_number(field.default, unit))
-        return found
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
         """Read a whole number of at least `least`."""

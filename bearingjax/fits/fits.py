@@ -22,8 +22,8 @@ from ..design.checks import (
     number,
     positive,
 )
-from ..numerics.types import Scalar, array_namespace, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, array_namespace
+from ..numerics.units import real, unit
 from .warm_material import WarmMaterial
 
 
@@ -67,35 +67,21 @@ class Mounting(eqx.Module):
     Traced: all fields.
     """
 
-    bore: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    outside_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    housing_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    shaft_interference: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    housing_interference: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    inner_raceway: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    outer_raceway: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    radial_clearance: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    contact_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
-    )
-    shaft_bore: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
-    shaft_smoothing: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=0.0
-    )
-    housing_smoothing: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=0.0
-    )
-    ring_width: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    bore_taper: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.0)
-    drive_up: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
+    bore: Real = eqx.field(**real("m"))
+    outside_diameter: Real = eqx.field(**real("m"))
+    housing_diameter: Real = eqx.field(**real("m"))
+    shaft_interference: Real = eqx.field(**real("m"))
+    housing_interference: Real = eqx.field(**real("m"))
+    inner_raceway: RealOrNone = eqx.field(**real("m"), default=None)
+    outer_raceway: RealOrNone = eqx.field(**real("m"), default=None)
+    radial_clearance: RealOrNone = eqx.field(**real("m"), default=None)
+    contact_angle: RealOrNone = eqx.field(**real("rad"), default=None)
+    shaft_bore: Real = eqx.field(**real("m"), default=0.0)
+    shaft_smoothing: Real = eqx.field(**real("m"), default=0.0)
+    housing_smoothing: Real = eqx.field(**real("m"), default=0.0)
+    ring_width: RealOrNone = eqx.field(**real("m"), default=None)
+    bore_taper: Real = eqx.field(**real("1"), default=0.0)
+    drive_up: Real = eqx.field(**real("m"), default=0.0)
     shaft: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     inner_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     outer_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)
@@ -190,16 +176,14 @@ class FitConditions(eqx.Module):
         ValueError: If a temperature is not within -280 to 1500 K of `reference`.
     """
 
-    shaft: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
-    inner_ring: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
-    elements: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
-    outer_ring: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
-    housing: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
-    speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
-    outer_speed: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad/s"), default=0.0
-    )
-    reference: Scalar = eqx.field(converter=as_real, metadata=unit("K"), default=0.0)
+    shaft: Real = eqx.field(**real("K"), default=0.0)
+    inner_ring: Real = eqx.field(**real("K"), default=0.0)
+    elements: Real = eqx.field(**real("K"), default=0.0)
+    outer_ring: Real = eqx.field(**real("K"), default=0.0)
+    housing: Real = eqx.field(**real("K"), default=0.0)
+    speed: Real = eqx.field(**real("rad/s"), default=0.0)
+    outer_speed: Real = eqx.field(**real("rad/s"), default=0.0)
+    reference: Real = eqx.field(**real("K"), default=0.0)
 
     def __check_init__(self):
         for name in (*PARTS, "reference", "speed", "outer_speed"):

@@ -4,8 +4,8 @@ import equinox as eqx
 
 from ..design.checks import in_range, instance
 from ..design.material import Material
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real
+from ..numerics.units import real
 
 
 class WarmMaterial(eqx.Module):
@@ -22,9 +22,7 @@ class WarmMaterial(eqx.Module):
     """
 
     material: Material = eqx.field(default_factory=Material)
-    expansion: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1/K"), default=12e-6
-    )
+    expansion: Real = eqx.field(**real("1/K"), default=12e-6)
 
     def __check_init__(self):
         instance(self, "material", Material)

@@ -25,8 +25,8 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.units import real, unit
 from ..statics.service_warning import turns_against_load
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out
@@ -113,22 +113,14 @@ class LifeConditions(eqx.Module):
     Traced: all numbers. Static: load_fixed_to, edge_stress.
     """
 
-    dynamic_capacity: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N"), default=None
-    )
-    static_capacity: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N"), default=None
-    )
-    fatigue_load_limit: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N"), default=None
-    )
-    viscosity: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m²/s"), default=None
-    )
+    dynamic_capacity: RealOrNone = eqx.field(**real("N"), default=None)
+    static_capacity: RealOrNone = eqx.field(**real("N"), default=None)
+    fatigue_load_limit: RealOrNone = eqx.field(**real("N"), default=None)
+    viscosity: RealOrNone = eqx.field(**real("m²/s"), default=None)
     contamination: Any = eqx.field(
         converter=as_contamination, metadata=unit("1"), default=None
     )
-    reliability: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.9)
+    reliability: Real = eqx.field(**real("1"), default=0.9)
     load_fixed_to: str = eqx.field(static=True, default="space")
     edge_stress: bool = eqx.field(static=True, default=True)
 

@@ -14,8 +14,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import in_range, positive
 from ..numerics.power import positive_power
-from ..numerics.types import Flag, Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Flag, Real, RealOrNone, Scalar, as_real
+from ..numerics.units import real
 
 LARGEST_FACTOR = 50.0
 """Largest a_ISO of the standard [1]."""
@@ -132,11 +132,9 @@ class Cleanliness(eqx.Module):
     Source: ISO 281:2007, annex A.
     """
 
-    film: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    size: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    large: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("1"), default=None
-    )
+    film: Real = eqx.field(**real("1"))
+    size: Real = eqx.field(**real("1"))
+    large: RealOrNone = eqx.field(**real("1"), default=None)
 
     def __check_init__(self):
         positive(self, "film")

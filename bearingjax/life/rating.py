@@ -33,8 +33,8 @@ from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program
-from ..numerics.types import Flag, Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Flag, Real, Scalar, as_real
+from ..numerics.units import real, unit
 from . import row_rating as by_row
 from .row_rating import THRUST_ANGLE, BallRow, RollerRow, Rows
 
@@ -62,9 +62,9 @@ class Ratings(eqx.Module):
     Traced: all fields but `given`.
     """
 
-    dynamic_capacity: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    static_capacity: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
-    fatigue_load_limit: Scalar = eqx.field(converter=as_real, metadata=unit("N"))
+    dynamic_capacity: Real = eqx.field(**real("N"))
+    static_capacity: Real = eqx.field(**real("N"))
+    fatigue_load_limit: Real = eqx.field(**real("N"))
     axial: Flag
     published: Bool[Array | np.ndarray, "*case 4"]
     given: tuple[bool, ...] = eqx.field(static=True)

@@ -7,8 +7,8 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..design.checks import non_negative, number, positive
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real
 
 
 class AbstractCoefficient(eqx.Module):
@@ -28,7 +28,7 @@ class ConstantCoefficient(AbstractCoefficient):
     Traced: all fields.
     """
 
-    coefficient: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
+    coefficient: Real = eqx.field(**real("1/Pa"))
 
     def __check_init__(self):
         non_negative(self, "coefficient")
@@ -47,8 +47,8 @@ class DynamicCoefficient(AbstractCoefficient):
     Traced: all fields.
     """
 
-    factor: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
-    exponent: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    factor: Real = eqx.field(**real("1/Pa"))
+    exponent: Real = eqx.field(**real("1"))
 
     def __check_init__(self):
         positive(self, "factor")
@@ -70,8 +70,8 @@ class KinematicCoefficient(AbstractCoefficient):
         51-79; mineral oil: 9.904e-9 and 0.139.
     """
 
-    factor: Scalar = eqx.field(converter=as_real, metadata=unit("1/Pa"))
-    exponent: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    factor: Real = eqx.field(**real("1/Pa"))
+    exponent: Real = eqx.field(**real("1"))
 
     def __check_init__(self):
         positive(self, "factor")

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design.checks import instance, is_traced, non_negative, positive
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity import AbstractAmbient, AbstractPressureLaw, level_off
 
@@ -32,13 +32,9 @@ class Density(eqx.Module):
     Traced: all fields.
     """
 
-    value: Scalar = eqx.field(converter=as_real, metadata=unit("kg/m³"))
-    slope: Scalar = eqx.field(
-        converter=as_real, metadata=unit("kg/(m³ K)"), default=0.64
-    )
-    reference_temperature: Scalar = eqx.field(
-        converter=as_real, metadata=unit("K"), default=288.15
-    )
+    value: Real = eqx.field(**real("kg/m³"))
+    slope: Real = eqx.field(**real("kg/(m³ K)"), default=0.64)
+    reference_temperature: Real = eqx.field(**real("K"), default=288.15)
 
     def __check_init__(self):
         positive(self, "value")
@@ -76,9 +72,7 @@ class Lubricant(eqx.Module):
     coefficient: AbstractCoefficient | None = eqx.field(
         converter=as_coefficient, default=None
     )
-    thermal_conductivity: Scalar = eqx.field(
-        converter=as_real, metadata=unit("W/(m K)"), default=0.14
-    )
+    thermal_conductivity: Real = eqx.field(**real("W/(m K)"), default=0.14)
 
     def __check_init__(self):
         instance(self, "ambient", AbstractAmbient)

@@ -7,15 +7,15 @@ never does work on the slip, and it is smooth where there is none.
 """
 
 import abc
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import non_negative, positive
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..design.checks import check_fields
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real, unit
 from .patch import AbstractPatch
 
 # Slip speed below which the empirical curve is linear [m/s].
@@ -112,6 +112,8 @@ class Newtonian(AbstractTraction):
     derivatives are lost in round-off; the laws that yield have both right.
     """
 
+    about: ClassVar[str] = "a film that is sheared evenly: τ = -μ(p) u/h"
+
     def resistance(self, slip_squared, film, pressure, viscosity):
         return viscosity / film
 
@@ -133,12 +135,14 @@ class Eyring(AbstractTraction):
     Source: Eyring (1936); Johnson & Tevaarwerk, Proc. Royal Society A 356 (1977).
     """
 
-    stress_scale: Scalar = eqx.field(
-        converter=as_real, metadata=unit("Pa"), default=5e6
+    about: ClassVar[str] = "oil that thins with shear: τ = τ_E asinh(μ u/(h τ_E))"
+    stress_scale: Real = eqx.field(
+        **real("Pa", "Eyring stress τ_E, 2 to 10 MPa for mineral oils", above=0),
+        default=5e6,
     )
 
     def __check_init__(self):
-        positive(self, "stress_scale")
+        check_fields(self)
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         newtonian = viscosity / film
@@ -164,14 +168,23 @@ class LimitingStress(AbstractTraction):
         Hamrock (1990).
     """
 
-    slope: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
-    ambient: Scalar = eqx.field(converter=as_real, metadata=unit("Pa"), default=1e5)
-    creep: Scalar = eqx.field(converter=as_real, metadata=unit("m/s"), default=1e-5)
+    about: ClassVar[str] = "oil that yields at τ_L = τ_0 + Λ p"
+    slope: Real = eqx.field(
+        **real("1", "Λ, the traction coefficient of a plastic film", least=0),
+        default=0.05,
+    )
+    ambient: Real = eqx.field(
+        **real("Pa", "limiting stress without pressure, τ_0", above=0), default=1e5
+    )
+    creep: Real = eqx.field(
+        **real(
+            "m/s", "least slip at which the stress has reached 0.71 τ_L, u_c", least=0
+        ),
+        default=1e-5,
+    )
 
     def __check_init__(self):
-        non_negative(self, "slope")
-        positive(self, "ambient")
-        non_negative(self, "creep")
+        check_fields(self)
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         newtonian = viscosity / film
@@ -195,14 +208,15 @@ class SlipCurve(AbstractTraction):
         with far = D = -A, so that it starts at zero.
     """
 
-    far: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    rise: Scalar = eqx.field(converter=as_real, metadata=unit("s/m"))
-    decay: Scalar = eqx.field(converter=as_real, metadata=unit("s/m"))
+    about: ClassVar[str] = "measured: τ = p [far (1 - exp(-C u)) + B u exp(-C u)]"
+    far: Real = eqx.field(**real("1", "traction coefficient at large slip", least=0))
+    rise: Real = eqx.field(
+        **real("s/m", "B, rise of the coefficient with the slip", least=0)
+    )
+    decay: Real = eqx.field(**real("s/m", "C, decay of that rise", above=0))
 
     def __check_init__(self):
-        non_negative(self, "far")
-        non_negative(self, "rise")
-        positive(self, "decay")
+        check_fields(self)
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         speed = jnp.sqrt(slip_squared + _NO_SLIP**2)
@@ -221,12 +235,17 @@ class DryFriction(AbstractTraction):
     Traced: all fields.
     """
 
-    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
-    creep: Scalar = eqx.field(converter=as_real, metadata=unit("m/s"), default=1e-3)
+    about: ClassVar[str] = "Coulomb's friction, τ = f p u/sqrt(u² + creep²)"
+    friction: Real = eqx.field(
+        **real("1", "coefficient of friction f", least=0), default=0.1
+    )
+    creep: Real = eqx.field(
+        **real("m/s", "slip speed at which it has reached 0.71 f", above=0),
+        default=1e-3,
+    )
 
     def __check_init__(self):
-        non_negative(self, "friction")
-        positive(self, "creep")
+        check_fields(self)
 
     def resistance(self, slip_squared, film, pressure, viscosity):
         speed = jnp.sqrt(slip_squared + self.creep * self.creep)

@@ -10,9 +10,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import check, in_range, is_traced, number, positive
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..design.checks import check, check_fields, is_traced, number, positive
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity_index import viscosity_at_100
 
@@ -72,16 +72,19 @@ class Walther(AbstractAmbient):
     Source: Walther (1931); ASTM D341 without its terms for thin liquids.
     """
 
-    cold: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    cold_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("m²/s"))
-    hot: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    hot_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("m²/s"))
+    cold: Real = eqx.field(**real("K", "lower temperature"))
+    cold_viscosity: Real = eqx.field(
+        **real("m²/s", "kinematic viscosity there", above=0.3e-6)
+    )
+    hot: Real = eqx.field(**real("K", "higher temperature"))
+    hot_viscosity: Real = eqx.field(
+        **real("m²/s", "kinematic viscosity there, below the other one", above=0.3e-6)
+    )
 
     def __check_init__(self):
         for name in ("cold", "hot"):
             positive(self, name)
-        for name in ("cold_viscosity", "hot_viscosity"):
-            in_range(self, name, 0.3e-6, jnp.inf)
+        check_fields(self)
         if not any(is_traced(v) for v in (self.cold, self.hot)):
             low = float(self.cold)
             check(self, "hot", self.hot > low, f"above `cold`, {low:.6g} K")
@@ -130,13 +133,17 @@ class Exponential(AbstractAmbient):
     Source: the form of the ADORE programs (Gupta).
     """
 
-    reference_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("Pa s"))
-    reference_temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    first: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
-    second: Scalar = eqx.field(converter=as_real, metadata=unit("K²"))
+    reference_viscosity: Real = eqx.field(
+        **real("Pa s", "dynamic viscosity at T_R", above=0)
+    )
+    reference_temperature: Real = eqx.field(
+        **real("K", "temperature of the reference, T_R")
+    )
+    first: Real = eqx.field(**real("K", "factor of D = 1/T - 1/T_R"))
+    second: Real = eqx.field(**real("K²", "factor of D²"))
 
     def __check_init__(self):
-        positive(self, "reference_viscosity")
+        check_fields(self)
         positive(self, "reference_temperature")
         number(self, "first")
         number(self, "second")
@@ -203,21 +210,35 @@ class FreeVolume(AbstractAmbient, AbstractPressureLaw):
         in Bair's notation.
     """
 
-    reference_viscosity: Scalar = eqx.field(converter=as_real, metadata=unit("Pa s"))
-    B: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    R0: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    epsilon: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
-    a_V: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
-    K0_prime: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    K00: Scalar = eqx.field(converter=as_real, metadata=unit("Pa"))
-    beta_K: Scalar = eqx.field(converter=as_real, metadata=unit("1/K"))
-    reference_temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    reference_viscosity: Real = eqx.field(
+        **real("Pa s", "viscosity at the reference, μ_R", above=0)
+    )
+    B: Real = eqx.field(**real("1", "Doolittle's parameter", above=0))
+    R0: Real = eqx.field(
+        **real(
+            "1", "occupied volume over the whole one at the reference", above=0, below=1
+        )
+    )
+    epsilon: Real = eqx.field(
+        **real("1/K", "growth of the occupied volume with temperature")
+    )
+    a_V: Real = eqx.field(**real("1/K", "growth of the volume with temperature"))
+    K0_prime: Real = eqx.field(
+        **real("1", "growth of the bulk modulus with pressure, K0'", above=-1)
+    )
+    K00: Real = eqx.field(
+        **real("Pa", "bulk modulus at p = 0, extrapolated to 0 K", above=0)
+    )
+    beta_K: Real = eqx.field(
+        **real("1/K", "its decay with temperature: K0 = K00 exp(-β_K T)")
+    )
+    reference_temperature: Real = eqx.field(
+        **real("K", "temperature of the reference, T_R")
+    )
 
     def __check_init__(self):
-        for name in ("reference_viscosity", "B", "K00", "reference_temperature"):
-            positive(self, name)
-        in_range(self, "R0", 0.0, 1.0)
-        in_range(self, "K0_prime", -1.0, jnp.inf)
+        check_fields(self)
+        positive(self, "reference_temperature")
         for name in ("epsilon", "a_V", "beta_K"):
             number(self, name)
 

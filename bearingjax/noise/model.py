@@ -28,8 +28,8 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar, as_real
+from ..numerics.units import real, unit
 from ..statics.load import solve
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
@@ -74,17 +74,15 @@ class NoiseModel(eqx.Module):
     """
 
     element: BearingElement
-    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    mass: Real = eqx.field(**real("kg"))
     load: Float[Array, "6"] = eqx.field(
         converter=as_real, metadata=unit(("N", "N", "N", "N m", "N m", "N m"))
     )
     speed: Speed
     errors: FormErrors | tuple[FormErrors, ...] = eqx.field(default_factory=FormErrors)
-    tilting_inertia: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("kg m²"), default=None
-    )
+    tilting_inertia: RealOrNone = eqx.field(**real("kg m²"), default=None)
     sensor: Sensor | None = None
-    retardation: Scalar = eqx.field(converter=as_real, metadata=unit("s"), default=1e-5)
+    retardation: Real = eqx.field(**real("s"), default=1e-5)
     moving_ring: str = eqx.field(static=True, default="outer")
     tilts: bool = eqx.field(static=True, default=True)
     cage: GuidedCage | None = None

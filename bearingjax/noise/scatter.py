@@ -24,8 +24,8 @@ from ..design import (
 from ..design.checks import check, concrete, instance, non_negative, of_class
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
 from ..design.tolerance import RunningAccuracy, element_grade
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, as_real
+from ..numerics.units import real, unit
 
 PEAKS_IN_RMS = 6.0
 """Peak to valley of random waves over their root mean square [1]: ±3 of it."""
@@ -63,10 +63,10 @@ class RandomWaves(eqx.Module):
     Traced: amplitude, slope. Static: low, high, varies.
     """
 
-    amplitude: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    amplitude: Real = eqx.field(**real("m"))
     low: int = eqx.field(static=True)
     high: int = eqx.field(static=True)
-    slope: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
+    slope: Real = eqx.field(**real("1"), default=1.0)
     varies: bool = eqx.field(static=True, default=True)
 
     def __check_init__(self):
@@ -153,18 +153,10 @@ class Tolerances(eqx.Module):
     Traced: all real numbers.
     """
 
-    diameter: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    spacing: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
-    )
-    outer_eccentricity: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
-    inner_eccentricity: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
-    )
+    diameter: RealOrNone = eqx.field(**real("m"), default=None)
+    spacing: RealOrNone = eqx.field(**real("rad"), default=None)
+    outer_eccentricity: RealOrNone = eqx.field(**real("m"), default=None)
+    inner_eccentricity: RealOrNone = eqx.field(**real("m"), default=None)
     outer_axial: RandomWaves | None = None
     outer_outwards: RandomWaves | None = None
     inner_axial: RandomWaves | None = None

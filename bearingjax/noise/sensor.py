@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, non_negative, of_shape
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, as_real
+from ..numerics.units import real, unit
 
 
 class Sensor(eqx.Module):
@@ -23,8 +23,8 @@ class Sensor(eqx.Module):
     Traced: all fields.
     """
 
-    stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"))
-    damping: Scalar = eqx.field(converter=as_real, metadata=unit("N s/m"), default=0.0)
+    stiffness: Real = eqx.field(**real("N/m"))
+    damping: Real = eqx.field(**real("N s/m"), default=0.0)
     direction: Float[Array, "3"] = eqx.field(
         converter=as_real, metadata=unit("1"), default=(0.0, 1.0, 0.0)
     )

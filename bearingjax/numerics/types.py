@@ -1,6 +1,6 @@
 """Number types shared by every layer."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
@@ -12,6 +12,26 @@ Count = Int[Array, ""]
 Flag = Bool[Array, ""]
 Ring = Float[Array, "12"]
 RingStiffness = Float[Array, "12 12"]
+
+if TYPE_CHECKING:
+
+    class Real:
+        """Number of a field that `as_real` converts: set from any, read as an array."""
+
+        def __get__(self, owner: Any, kind: Any = None) -> Array: ...
+
+        def __set__(self, owner: Any, value: Any) -> None: ...
+
+    class RealOrNone:
+        """The same of a field that may be `None`."""
+
+        def __get__(self, owner: Any, kind: Any = None) -> Array | None: ...
+
+        def __set__(self, owner: Any, value: Any) -> None: ...
+
+else:
+    Real = Scalar
+    RealOrNone = Scalar | None
 
 
 def array_namespace(array) -> Any:

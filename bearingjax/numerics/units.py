@@ -1,31 +1,55 @@
 """Units of fields: stated once, with the field, for checks, tables and messages."""
 
-import ast
 import dataclasses
-import functools
-import inspect
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 import numpy as np
 
+from .types import as_real
+
 Units = str | tuple[Any, ...]
 """A unit, or those of the entries along the last axes of an array, nested."""
 
 
-def unit(name: Units, **shown: str) -> dict[str, Any]:
+def unit(name: Units, about: str = "", **allowed: Any) -> dict[str, Any]:
     """Metadata of a field of real numbers, `eqx.field(metadata=unit("m"))`.
 
     Args:
         name: SI unit; "1" for a pure number. Of an array with entries of several
             units those of the entries along its last axes: ("m", "m", "rad"). They
             begin anew where the axis is longer.
-        shown: How reports show a result of each rolling element: `column`, the heading
-            of its column, and `largest`, the name of its largest number, which is a
-            result too.
+        about: What it is, in one line without a full stop; empty of one that a scene
+            cannot give.
+        **allowed: As in `meaning`; or how reports show a result of each rolling
+            element: `column`, the heading of its column, and `largest`, the name of its
+            largest number, which is a result too.
     """
-    return {"unit": name, **shown}
+    return {"unit": name} | (meaning(about, **allowed) if about else allowed)
+
+
+def real(name: Units, about: str = "", **allowed: Any) -> dict[str, Any]:
+    """Arguments of a field of type `Real`, which `as_real` converts.
+
+    A field is `mass: Real = eqx.field(**real("kg", "mass of the ring", above=0))`.
+
+    Args:
+        name, about, **allowed: As in `unit`.
+    """
+    return {"converter": as_real, "metadata": unit(name, about, **allowed)}
+
+
+def meaning(about: str, **allowed: Any) -> dict[str, Any]:
+    """Metadata of a field that a scene may give.
+
+    Args:
+        about: As in `unit`.
+        **allowed: Values that are allowed, as attributes of `files.schema.Key`: their
+            range (`above`, `least`, `below`, `most`, in SI), which the class checks too
+            (`design.checks.check_fields`), `choices` of words, and what is meant
+            `otherwise`, without it.
+    """
+    return {"about": about, **allowed}
 
 
 def mixed(*names: str) -> dict[str, Any]:
@@ -98,27 +122,6 @@ def field_metadata(owner: Any, name: str) -> Mapping[str, Any]:
     for one in get_args(stated[name])[1:]:
         found |= one if isinstance(one, dict) else {}
     return found
-
-
-@functools.cache
-def docstring(kind: type) -> str:
-    """Docstring of a class, without its parents' and without indentation.
-
-    Args:
-        kind: Class; of one of this package the source is read if Python runs without
-            docstrings, `python -OO`.
-    """
-    if sys.flags.optimize >= 2 and kind.__module__.startswith("bearingjax"):
-        return _docstrings(kind.__module__).get(kind.__name__, "")
-    return inspect.cleandoc(kind.__dict__.get("__doc__") or "")
-
-
-@functools.cache
-def _docstrings(module: str) -> dict[str, str]:
-    """Docstrings of the classes of a module, by their names."""
-    tree = ast.parse(inspect.getsource(sys.modules[module]))
-    kinds = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
-    return {kind.name: ast.get_docstring(kind) or "" for kind in kinds}
 
 
 _SHOWN = {

@@ -18,8 +18,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, number
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit, unit_of
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real, unit_of
 from ..statics.solution import RollerSolution, Solution
 from .smooth import EXPONENT, smooth_maximum, smooth_minimum
 from .system import Design, loads_of
@@ -287,7 +287,7 @@ class StiffnessTarget(AbstractMeasure):
     Traced: target. Static: the freedoms.
     """
 
-    target: Scalar = eqx.field(converter=as_real, metadata=unit(STIFFNESS_UNITS))
+    target: Real = eqx.field(**real(STIFFNESS_UNITS))
     freedom: str = eqx.field(static=True)
     other: str | None = eqx.field(static=True, default=None)
 

@@ -9,8 +9,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import non_negative
 from ..numerics.lapack import cholesky, congruent, eigh
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real
+from ..numerics.units import real
 
 Matrix = Float[Array, "freedom freedom"]
 
@@ -48,12 +48,8 @@ class ProportionalDamping(AbstractDamping):
     Traced: all fields.
     """
 
-    mass_factor: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1/s"), default=0.0
-    )
-    stiffness_factor: Scalar = eqx.field(
-        converter=as_real, metadata=unit("s"), default=0.0
-    )
+    mass_factor: Real = eqx.field(**real("1/s"), default=0.0)
+    stiffness_factor: Real = eqx.field(**real("s"), default=0.0)
 
     def __check_init__(self):
         non_negative(self, "mass_factor")
@@ -78,7 +74,7 @@ class ModalDamping(AbstractDamping):
     Traced: ratio.
     """
 
-    ratio: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
+    ratio: Real = eqx.field(**real("1"))
 
     def __check_init__(self):
         non_negative(self, "ratio")

@@ -12,8 +12,8 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, instance, is_traced, non_negative, of_shape, positive
 from ..design.material import Material
-from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.units import real, unit
 from ..numerics.warning import Warning
 
 Five = Float[Array, "5"]
@@ -74,9 +74,9 @@ class Disc(AbstractPart):
     """
 
     station: int = eqx.field(static=True, converter=as_count)
-    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
-    polar_inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
-    diametral_inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
+    mass: Real = eqx.field(**real("kg"))
+    polar_inertia: Real = eqx.field(**real("kg m²"))
+    diametral_inertia: Real = eqx.field(**real("kg m²"))
 
     def __check_init__(self):
         check_station(self, self.station)
@@ -151,7 +151,7 @@ class PointMass(AbstractPart):
     """
 
     station: int = eqx.field(static=True, converter=as_count)
-    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    mass: Real = eqx.field(**real("kg"))
 
     def __check_init__(self):
         check_station(self, self.station)
@@ -192,7 +192,7 @@ class Housing(eqx.Module):
     Traced: all fields.
     """
 
-    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
+    mass: Real = eqx.field(**real("kg"))
     stiffness: Float[Array, "3 3"] = eqx.field(
         converter=square_matrix, metadata=unit((("N/m",) * 3,) * 3)
     )

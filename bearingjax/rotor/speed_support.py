@@ -7,8 +7,8 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..design.checks import of_shape, positive
-from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.units import real, unit
 from .parts import (
     DAMPING_UNITS,
     STIFFNESS_UNITS,
@@ -42,7 +42,7 @@ class SpeedSupport(AbstractSupport):
     damping: Float[Array, "5 5"] = eqx.field(
         converter=square_matrix, metadata=unit(DAMPING_UNITS)
     )
-    top_speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
+    top_speed: Real = eqx.field(**real("rad/s"))
     housing: Housing | None = eqx.field(default=None, kw_only=True)
 
     def __check_init__(self):

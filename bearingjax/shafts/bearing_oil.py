@@ -8,8 +8,8 @@ from jaxtyping import Array, Float
 from ..friction.friction import friction_torque
 from ..friction.friction_skf import skf_friction_torque
 from ..lubrication import Lubricant
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import RealOrNone, Scalar, as_real
+from ..numerics.units import real, unit
 from ..statics.solution import Solution
 
 
@@ -28,9 +28,7 @@ class BearingOil(eqx.Module):
     """
 
     lubricant: Lubricant
-    temperature: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("K"), default=None
-    )
+    temperature: RealOrNone = eqx.field(**real("K"), default=None)
     supply: str = eqx.field(static=True, default="oil_bath")
     skf: bool = eqx.field(static=True, default=False)
     series: str | None = eqx.field(static=True, default=None)

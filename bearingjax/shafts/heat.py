@@ -9,7 +9,7 @@ Friction depends on temperature through viscosity, and through the clearance and
 preload of warm rings, shafts and housings.
 """
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax
@@ -17,15 +17,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import check, in_range, is_traced, number, positive
+from ..design.checks import check, check_fields, is_traced, number
 from ..element.inertia import Speed
 from ..fits import FitConditions
 from ..friction.reference_speed import heat_area
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar, as_real
+from ..numerics.units import real, unit
 from ..rotor.held import map_parts
 from .bearing_oil import BearingOil
 from .equilibrium import system_state
@@ -78,26 +78,53 @@ class ThermalPaths(eqx.Module):
     Traced: all numbers.
     """
 
-    inner: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
-    outer: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"))
+    about: ClassVar[str] = "paths of the heat of a bearing"
+    inner: Real = eqx.field(
+        **real(
+            "W/K",
+            "from the inner ring along the shaft to the surroundings",
+            above=0,
+            otherwise="by the area of its seats",
+        )
+    )
+    outer: Real = eqx.field(
+        **real(
+            "W/K",
+            "from the outer ring to the housing, or without one to the surroundings",
+            above=0,
+            otherwise="by the area of its seats",
+        )
+    )
     oil: BearingOil
-    through: Scalar = eqx.field(converter=as_real, metadata=unit("W/K"), default=0.0)
-    shaft_share: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1.0)
-    housing_share: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=1.0
+    through: Real = eqx.field(
+        **real("W/K", "from ring to ring, by rolling elements and oil"), default=0.0
     )
-    inner_capacity: Scalar = eqx.field(
-        converter=as_real, metadata=unit("J/K"), default=1000.0
+    shaft_share: Real = eqx.field(
+        **real(
+            "1",
+            "rise of the shaft below the bearing over that of the inner ring",
+            least=0,
+            most=1,
+        ),
+        default=1.0,
     )
-    outer_capacity: Scalar = eqx.field(
-        converter=as_real, metadata=unit("J/K"), default=1000.0
+    housing_share: Real = eqx.field(
+        **real("1", "rise of the seat over that of the outer ring", least=0, most=1),
+        default=1.0,
+    )
+    inner_capacity: Real = eqx.field(
+        **real(
+            "J/K", "heat capacity of the inner ring with the shaft below it", above=0
+        ),
+        default=1000.0,
+    )
+    outer_capacity: Real = eqx.field(
+        **real("J/K", "heat capacity of the outer ring with its seat", above=0),
+        default=1000.0,
     )
 
     def __check_init__(self):
-        for name in ("inner", "outer", "inner_capacity", "outer_capacity"):
-            positive(self, name)
-        for name in ("shaft_share", "housing_share"):
-            in_range(self, name, 0.0, 1.0 + 1e-9, include_low=True)
+        check_fields(self)
 
 
 class HeatNetwork(eqx.Module):
@@ -111,13 +138,19 @@ class HeatNetwork(eqx.Module):
         housing_capacity: Heat capacity of housing and oil [J/K].
     """
 
-    ambient: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    ambient: Real = eqx.field(**real("K", "temperature of the surroundings"))
     paths: tuple[ThermalPaths | None, ...] = eqx.field(converter=tuple)
-    housing: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W/K"), default=None
+    housing: RealOrNone = eqx.field(
+        **real(
+            "W/K",
+            "from the housing to the surroundings",
+            above=0,
+            otherwise="as cold as the surroundings; it takes the losses of meshes",
+        ),
+        default=None,
     )
-    housing_capacity: Scalar = eqx.field(
-        converter=as_real, metadata=unit("J/K"), default=20e3
+    housing_capacity: Real = eqx.field(
+        **real("J/K", "heat capacity of housing and oil", above=0), default=20e3
     )
 
     def __check_init__(self):
@@ -125,9 +158,7 @@ class HeatNetwork(eqx.Module):
         if not is_traced(self.ambient):
             warm = 150.0 < float(self.ambient) < 600.0
             check(self, "ambient", warm, "a temperature in K, from 150 to 600 K")
-        if self.housing is not None:
-            positive(self, "housing")
-        positive(self, "housing_capacity")
+        check_fields(self)
 
     @property
     def nodes(self) -> int:

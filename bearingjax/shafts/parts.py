@@ -14,7 +14,7 @@ towards y).
 Source: the normal force of involute gears, resolved; ISO 21771 for the geometry.
 """
 
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -22,17 +22,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import (
-    check,
+    check_fields,
     finite,
-    in_range,
     instance,
     is_traced,
     number,
-    positive,
 )
 from ..design.checks import count as whole
-from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
+from ..numerics.units import meaning, real, unit
 from ..statics.installed import Installed
 
 HANDS = {"right": 1.0, "left": -1.0, "none": 0.0}
@@ -94,21 +92,41 @@ class AbstractWheel(AbstractPlaced):
             mate bears the force of that which gives the power.
     """
 
-    mates_with: str | None = eqx.field(static=True, default=None, kw_only=True)
-    torque: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N m"), default=None, kw_only=True
+    mates_with: str | None = eqx.field(
+        static=True,
+        default=None,
+        kw_only=True,
+        metadata=meaning(
+            "wheel of another shaft that it meshes with, or whose belt it shares"
+        ),
     )
-    power: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W"), default=None, kw_only=True
+    torque: RealOrNone = eqx.field(
+        **real(
+            "N m",
+            "torque of a mate outside the system on the shaft, about its local z",
+            otherwise="from the balance of torques, of one wheel at most",
+        ),
+        default=None,
+        kw_only=True,
     )
-    efficiency: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=1.0, kw_only=True
+    power: RealOrNone = eqx.field(
+        **real("W", "power into the shaft in place of `torque`, negative out of it"),
+        default=None,
+        kw_only=True,
+    )
+    efficiency: Real = eqx.field(
+        **real(
+            "1",
+            "power out over power in; a pair has the product of both",
+            above=0,
+            most=1,
+        ),
+        default=1.0,
+        kw_only=True,
     )
 
     def __check_init__(self):
-        positive(self, "efficiency")
-        if not is_traced(self.efficiency):
-            check(self, "efficiency", self.efficiency <= 1.0, "above 0 and at most 1")
+        check_fields(self)
         _one_source(self)
 
 
@@ -135,41 +153,77 @@ class Gear(AbstractWheel):
     Others as in `AbstractWheel`. Traced: all numbers but `teeth`.
     """
 
+    about: ClassVar[str] = "an external involute gear: spur, helical, or bevel"
     name: str = eqx.field(static=True)
     shaft: str = eqx.field(static=True)
-    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    teeth: int = eqx.field(static=True, converter=as_count)
-    normal_module: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    helix_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=0.0
+    position: Real = eqx.field(**real("m"))
+    teeth: int = eqx.field(
+        static=True, converter=as_count, metadata=meaning("number of teeth")
     )
-    hand: str = eqx.field(static=True, default="none")
-    pressure_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=np.deg2rad(20.0)
+    normal_module: Real = eqx.field(
+        **real(
+            "m",
+            "module normal to the teeth; of a bevel gear in the middle of the face",
+            above=0,
+        )
     )
-    mesh_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
+    helix_angle: Real = eqx.field(
+        **real(
+            "rad",
+            "helix angle at the pitch circle; of a bevel gear its spiral angle",
+            least=0,
+            below=np.deg2rad(60.0),
+        ),
+        default=0.0,
     )
-    pitch_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
+    hand: str = eqx.field(
+        static=True,
+        default="none",
+        metadata=meaning(
+            "`right` or `left`; `none` of straight teeth", choices=tuple(HANDS)
+        ),
     )
-    apex: str | None = eqx.field(static=True, default=None)
-    face_width: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("m"), default=None
+    pressure_angle: Real = eqx.field(
+        **real(
+            "rad",
+            "pressure angle normal to the teeth",
+            above=np.deg2rad(5.0),
+            below=np.deg2rad(45.0),
+        ),
+        default=np.deg2rad(20.0),
+    )
+    mesh_angle: RealOrNone = eqx.field(
+        **real(
+            "rad",
+            "angle of the mesh around the shaft, from local x towards local y",
+            otherwise="from the places of both shafts, with which it must agree",
+        ),
+        default=None,
+    )
+    pitch_angle: RealOrNone = eqx.field(
+        **real(
+            "rad",
+            "half the angle of the pitch cone of a bevel gear",
+            above=0,
+            below=0.5 * np.pi,
+            otherwise="cylindrical",
+        ),
+        default=None,
+    )
+    apex: str | None = eqx.field(
+        static=True,
+        default=None,
+        metadata=meaning(
+            "side of the apex of a bevel gear, along its shaft", choices=tuple(APEXES)
+        ),
+    )
+    face_width: RealOrNone = eqx.field(
+        **real("m", "width of the teeth, over which a misalignment is told", above=0),
+        default=None,
     )
 
     def __check_init__(self):
         whole(self, "teeth", self.teeth)
-        positive(self, "normal_module")
-        in_range(self, "helix_angle", 0.0, np.deg2rad(60.0), include_low=True)
-        in_range(self, "pressure_angle", np.deg2rad(5.0), np.deg2rad(45.0))
-        if self.face_width is not None:
-            positive(self, "face_width")
-        if self.hand not in HANDS:
-            raise ValueError(
-                f"Gear: `hand` of {self.name} is {self.hand!r}; it must be one of"
-                f" {', '.join(map(repr, HANDS))}."
-            )
         straight = not is_traced(self.helix_angle) and float(self.helix_angle) == 0.0
         if not straight and self.hand == "none":
             raise ValueError(
@@ -180,13 +234,6 @@ class Gear(AbstractWheel):
                 f"Gear: `pitch_angle` and `apex` of {self.name} are of a bevel gear;"
                 " give both or neither."
             )
-        if self.pitch_angle is not None:
-            in_range(self, "pitch_angle", 0.0, 0.5 * np.pi)
-            if self.apex not in APEXES:
-                raise ValueError(
-                    f"Gear: `apex` of {self.name} is {self.apex!r}; it must be '+z' or"
-                    " '-z', the side of the shaft on which the apex lies."
-                )
 
     @property
     def radius(self) -> Scalar:
@@ -240,18 +287,27 @@ class Pulley(AbstractWheel):
     Others as in `AbstractWheel`. Traced: all numbers.
     """
 
+    about: ClassVar[str] = "a belt pulley, or a chain wheel"
     name: str = eqx.field(static=True)
     shaft: str = eqx.field(static=True)
-    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    force_ratio: Scalar = eqx.field(converter=as_real, metadata=unit("1"))
-    direction: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
+    position: Real = eqx.field(**real("m"))
+    diameter: Real = eqx.field(**real("m", "effective diameter", above=0))
+    force_ratio: Real = eqx.field(
+        **real(
+            "1",
+            "force on the shaft over the tangential force, such as 1.0 to 1.3 of chains"
+            " and toothed belts, 1.5 to 2.5 of V-belts, 2 to 5 of flat belts",
+            above=0,
+        )
     )
-
-    def __check_init__(self):
-        positive(self, "diameter")
-        positive(self, "force_ratio")
+    direction: RealOrNone = eqx.field(
+        **real(
+            "rad",
+            "direction of the force on the shaft, as angle around it",
+            otherwise="towards the shaft of the mate",
+        ),
+        default=None,
+    )
 
     @property
     def radius(self) -> Scalar:
@@ -269,13 +325,18 @@ class Coupling(eqx.Module):
         power: Power into the shaft in place of `torque`, negative out of it [W].
     """
 
+    about: ClassVar[str] = "torque enters or leaves a shaft without a force"
     name: str = eqx.field(static=True)
     shaft: str = eqx.field(static=True)
-    torque: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N m"), default=None
+    torque: RealOrNone = eqx.field(
+        **real(
+            "N m", "torque on the shaft about its local z", otherwise="from the balance"
+        ),
+        default=None,
     )
-    power: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W"), default=None
+    power: RealOrNone = eqx.field(
+        **real("W", "power into the shaft in place of `torque`, negative out of it"),
+        default=None,
     )
 
     def __check_init__(self):
@@ -293,13 +354,9 @@ class Drive(eqx.Module):
     """
 
     into: str = eqx.field(static=True)
-    speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"), default=0.0)
-    torque: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N m"), default=None
-    )
-    power: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("W"), default=None
-    )
+    speed: Real = eqx.field(**real("rad/s"), default=0.0)
+    torque: RealOrNone = eqx.field(**real("N m"), default=None)
+    power: RealOrNone = eqx.field(**real("W"), default=None)
 
     def __check_init__(self):
         number(self, "speed")
@@ -322,9 +379,10 @@ class ShaftLoad(AbstractPlaced):
         moment: (3,) [N m]; its part about the shaft counts in the balance of torques.
     """
 
+    about: ClassVar[str] = "a force and a moment on a shaft, in global axes"
     name: str = eqx.field(static=True)
     shaft: str = eqx.field(static=True)
-    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    position: Real = eqx.field(**real("m"))
     force: Float[Array, "3"] = eqx.field(
         converter=as_real, metadata=unit(3 * ("N",)), default=(0.0, 0.0, 0.0)
     )
@@ -367,14 +425,29 @@ class Seat(AbstractPlaced):
 
     name: str = eqx.field(static=True)
     shaft: str = eqx.field(static=True)
-    position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    position: Real = eqx.field(**real("m"))
     installed: Installed | None = None
-    preload: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N"), default=None
+    preload: RealOrNone = eqx.field(
+        **real("N", "axial force with which it is adjusted in the cold", above=0),
+        default=None,
     )
-    axial_offset: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=0.0)
-    turned: bool = eqx.field(static=True, default=False)
-    floating: bool = eqx.field(static=True, default=False)
+    axial_offset: Real = eqx.field(
+        **real("m", "axial displacement as adjusted; negative: play"), default=0.0
+    )
+    turned: bool = eqx.field(
+        static=True,
+        default=False,
+        metadata=meaning(
+            "whether it is mounted the other way round, its +z along the shaft's -z"
+        ),
+    )
+    floating: bool = eqx.field(
+        static=True,
+        default=False,
+        metadata=meaning(
+            "whether its outer ring slides in the housing, without axial force"
+        ),
+    )
     stiffness: Float[Array, "5"] | None = eqx.field(
         converter=as_real,
         metadata=unit(("N/m", "N/m", "N/m", "N m", "N m")),
@@ -388,8 +461,7 @@ class Seat(AbstractPlaced):
                 f"Seat: {self.name} needs a bearing (`installed`) or springs"
                 " (`stiffness`), not both."
             )
-        if self.preload is not None:
-            positive(self, "preload")
+        check_fields(self)
         number(self, "axial_offset")
         moved = not is_traced(self.axial_offset) and float(self.axial_offset) != 0.0
         for name, given in (

@@ -13,8 +13,8 @@ from ..design import (
 from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
 from ..lubrication import AbstractTraction, Lubricant, Newtonian, WarmInlet
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real, unit
 from .surroundings import Cage, Drag
 
 _KINDS = AbstractBallBearing, CylindricalRollerBearing, NeedleRollerBearing
@@ -73,11 +73,11 @@ class SkidModel(eqx.Module):
 
     element: BearingElement
     lubricant: Lubricant
-    temperature: Scalar = eqx.field(converter=as_real, metadata=unit("K"))
+    temperature: Real = eqx.field(**real("K"))
     traction: AbstractTraction = eqx.field(default_factory=Newtonian)
     drag: Drag = eqx.field(default_factory=Drag)
     cage: Cage = eqx.field(default_factory=Cage)
-    least_film: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=1e-8)
+    least_film: Real = eqx.field(**real("m"), default=1e-8)
     inlet_heating: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self):

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, number, real_numbers
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar, as_real
+from ..numerics.units import real, unit
 
 _LOADS = unit(("N", "N", "N", "N m", "N m", "N m"))
 
@@ -57,8 +57,8 @@ class SinusoidalLoad(eqx.Module):
 
     mean: Float[Array, "6"] = eqx.field(converter=as_real, metadata=_LOADS)
     amplitude: Float[Array, "6"] = eqx.field(converter=as_real, metadata=_LOADS)
-    speed: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
-    phase: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.0)
+    speed: Real = eqx.field(**real("rad/s"))
+    phase: Real = eqx.field(**real("rad"), default=0.0)
 
     def __check_init__(self):
         for name in ("mean", "amplitude"):

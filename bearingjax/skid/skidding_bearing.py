@@ -11,8 +11,8 @@ from ..cases.cases import Cases, case_support, solve_case
 from ..design.checks import instance, number
 from ..element.inertia import Speed
 from ..numerics.result import Result
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit, unit_of
+from ..numerics.types import Real
+from ..numerics.units import real, unit_of
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
 from ..optimise.smooth import EXPONENT
 from ..optimise.system import AbstractSystem
@@ -43,7 +43,7 @@ class SkiddingBearing(AbstractSystem):
     """
 
     model: SkidModel
-    preload: Scalar = eqx.field(converter=as_real, metadata=unit("N"), default=0.0)
+    preload: Real = eqx.field(**real("N"), default=0.0)
     places: int | None = eqx.field(static=True, default=None)
 
     def __check_init__(self):

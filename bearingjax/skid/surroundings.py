@@ -1,12 +1,14 @@
 """Surroundings of balls and rollers: drag of the oil, and the cage."""
 
+from typing import ClassVar
+
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..design.checks import check, is_traced, non_negative, positive
+from ..design.checks import check_fields
 from ..numerics.power import smooth_power
-from ..numerics.types import Scalar, as_real
-from ..numerics.units import unit
+from ..numerics.types import Real, Scalar
+from ..numerics.units import real
 
 _REST = 1e-3
 """Speed below which drag is quadratic [m/s]."""
@@ -28,14 +30,16 @@ class Drag(eqx.Module):
     Source: Harris & Kotzalas, Advanced Concepts of Bearing Technology.
     """
 
-    coefficient: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=2.0)
-    fill: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
+    coefficient: Real = eqx.field(
+        **real("1", "drag coefficient of a ball or roller", least=0), default=2.0
+    )
+    fill: Real = eqx.field(
+        **real("1", "share of oil in the space between the rings", least=0, most=1),
+        default=0.1,
+    )
 
     def __check_init__(self):
-        non_negative(self, "coefficient")
-        non_negative(self, "fill")
-        if not is_traced(self.fill):
-            check(self, "fill", bool(self.fill <= 1.0), "at most 1")
+        check_fields(self)
 
     def force(
         self, orbit: Scalar, area: Scalar, pitch_radius: Scalar, density: Scalar
@@ -70,18 +74,22 @@ class Cage(eqx.Module):
     Traced: all fields.
     """
 
-    pocket_clearance: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=2e-4
+    about: ClassVar[str] = "the cage of balls or rollers that skid"
+    pocket_clearance: Real = eqx.field(
+        **real("m", "play of a rolling element in its pocket along the orbit", least=0),
+        default=2e-4,
     )
-    stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"), default=1e6)
-    inertia: Scalar = eqx.field(
-        converter=as_real, metadata=unit("kg m²"), default=2.5e-5
+    stiffness: Real = eqx.field(
+        **real("N/m", "stiffness of a pocket against the rolling element", above=0),
+        default=1e6,
+    )
+    inertia: Real = eqx.field(
+        **real("kg m²", "moment of inertia about the bearing axis", above=0),
+        default=2.5e-5,
     )
 
     def __check_init__(self):
-        non_negative(self, "pocket_clearance")
-        positive(self, "stiffness")
-        positive(self, "inertia")
+        check_fields(self)
 
     def force(self, lag: Scalar) -> Scalar:
         """Return the force on a ball or roller, in the sense of angles [N].

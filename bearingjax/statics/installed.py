@@ -23,8 +23,8 @@ from ..fits import (
     with_bearing_dimensions,
 )
 from ..numerics.compiled.programs import call_stored
-from ..numerics.types import Scalar, as_array, as_real
-from ..numerics.units import rpm, unit
+from ..numerics.types import RealOrNone, as_array, as_real
+from ..numerics.units import real, rpm
 from ..numerics.warning import Warning
 from .preload import SetPreload, is_opposed, preload, remaining_preload
 from .service_warning import MOST_DRIFT, preload_warnings, seat_warnings, speed_warnings
@@ -79,18 +79,12 @@ class Installed(eqx.Module):
     """
 
     drawing: BearingElement[Any]
-    preload: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("N"), default=None
-    )
+    preload: RealOrNone = eqx.field(**real("N"), default=None)
     mounting: Mounting | None = None
     conditions: FitConditions | None = None
     limits: SizeLimits | None = eqx.field(converter=_as_limits, default=None)
-    limiting_speed: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad/s"), default=None
-    )
-    reference_speed: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad/s"), default=None
-    )
+    limiting_speed: RealOrNone = eqx.field(**real("rad/s"), default=None)
+    reference_speed: RealOrNone = eqx.field(**real("rad/s"), default=None)
 
     def __check_init__(self):
         instance(self, "drawing", BearingElement)

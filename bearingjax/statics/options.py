@@ -8,8 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int
 
 from ..design.checks import in_range
-from ..numerics.types import Scalar, as_array, as_real
-from ..numerics.units import unit
+from ..numerics.types import RealOrNone, as_array
+from ..numerics.units import real
 
 DEFAULT_TOLERANCE = {"float64": 1e-11, "float32": 1e-4}
 """Relative residual at which a solve ends, by dtype of the design [1]."""
@@ -33,9 +33,7 @@ class SolveOptions(eqx.Module):
     """
 
     points: int = eqx.field(static=True, default=101)
-    tolerance: Scalar | None = eqx.field(
-        converter=as_real, default=None, metadata=unit("1")
-    )
+    tolerance: RealOrNone = eqx.field(**real("1"), default=None)
     max_steps: Int[Array, ""] = eqx.field(
         converter=lambda n: as_array(n, jnp.int32), default=200
     )

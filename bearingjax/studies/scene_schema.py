@@ -5,22 +5,18 @@ from typing import Any
 from ..design import MATERIALS, RIB_NAMES, Material, Rib
 from ..design.rib import ARRANGEMENTS
 from ..element import RINGS
-from ..element.frame import LOADS
 from ..files.quantity import SceneError
 from ..files.schema import Keys
 from ..files.schema_text import (
     DIALECT,
-    attribute_texts,
-    class_schema,
     classes_schema,
-    first_line,
     key_tables,
     number_schema,
     object_schema,
     table_schema,
 )
 from ..files.table import not_among
-from ..shafts import ShaftLoad, ThermalPaths
+from ..shafts import Seat, ShaftLoad, ThermalPaths
 from .bearing.read_bearing import SetKeys
 from .bearing.read_choices import (
     BallNumericsKeys,
@@ -40,7 +36,7 @@ from .bearing.read_design import (
 from .bearing.read_fit import FitKeys, TemperatureKeys
 from .bearing.read_life import LifeKeys
 from .bearing.read_lubricant import LubricantKeys
-from .bearing.read_operating import OperatingKeys, OutputKeys, SolveKeys
+from .bearing.read_operating import LoadKeys, OperatingKeys, OutputKeys, SolveKeys
 from .cases.read_cases import CasesKeys
 from .contact.read import (
     ContactNumericsKeys,
@@ -63,7 +59,7 @@ from .skid.read_dynamics import CageKeys, DynamicsKeys
 
 def scene_schema() -> dict[str, Any]:
     """Return the JSON Schema of all scenes."""
-    numbers = {"anyOf": [{"enum": [*MATERIALS]}, class_schema(Material)]}
+    numbers = {"anyOf": [{"enum": [*MATERIALS]}, table_schema(Material)]}
     defs = {
         "bearing": _bearing(),
         "set": _set(),
@@ -72,7 +68,7 @@ def scene_schema() -> dict[str, Any]:
         "temperature": table_schema(TemperatureKeys),
         "material": numbers,
         "profile": {"anyOf": _profiles()},
-        "rib": class_schema(Rib),
+        "rib": table_schema(Rib),
         "life": table_schema(LifeKeys),
         "lubricant": table_schema(LubricantKeys),
         "output": table_schema(OutputKeys),
@@ -186,38 +182,16 @@ def _shaft_scene() -> dict[str, Any]:
         },
     }
     tables = {"shaft": _by_name(table_schema(ShaftKeys))}
-    for key, (kind, words) in PARTS.items():
+    for key, kind in PARTS.items():
         here = dict(place) if key != "coupling" else {"shaft": place["shaft"]}
-        texts = attribute_texts(kind)
-        more: dict[str, Any] = {
-            word: {"enum": [*choices]} if choices else {"type": "string"}
-            for word, choices in words.items()
-        }
-        if key == "gear":
-            more["teeth"] = {"type": "integer", "minimum": 1}
-        more = {
-            k: {**v, "description": texts[k].split("; `")[0]} for k, v in more.items()
-        }
         if kind is ShaftLoad:
-            units = ["force"] * 3 + ["moment"] * 3
-            loads = dict(zip(LOADS, map(number_schema, units), strict=True))
-            tables[key] = _by_name(object_schema(here | loads, [], first_line(kind)))
-            continue
-        found = class_schema(kind, **{**here, **more})
-        must = [k for k in found["required"] if k not in place]
-        must += ["teeth"] if key == "gear" else []
-        tables[key] = _by_name({**found, "required": must})
-    heat: dict[str, Any] = class_schema(ThermalPaths) | {"required": []}
+            here |= table_schema(LoadKeys)["properties"]
+        tables[key] = _by_name(table_schema(kind, **here))
+    heat = table_schema(ThermalPaths)
+    del heat["required"]
     own = {
         **place,
-        "preload": {
-            **number_schema("force"),
-            "description": "axial force with which it is adjusted in the cold",
-        },
-        "axial_offset": {
-            **number_schema("length"),
-            "description": "axial displacement as adjusted; negative: play",
-        },
+        **table_schema(Seat)["properties"],
         **table_schema(SeatKeys)["properties"],
         "heat": heat,
     }
@@ -278,10 +252,7 @@ def _bearing() -> dict[str, Any]:
 
 
 def _of_type(word: str, kind: type) -> dict[str, Any]:
-    count = "n_balls" if word in BALLS else "n_rollers"
-    more: dict[str, Any] = {
-        count: {"type": "integer", "minimum": 1, "description": "rolling elements"}
-    }
+    more: dict[str, Any] = {}
     if word in ROLLERS:
         raceway = _ref("profile", "profile of the raceway")
         ribs = {name: _ref("rib") for name in RIB_NAMES}
@@ -310,8 +281,8 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
             }
     more["material"] = _ref("material", "material of the rolling elements")
     more["ring_material"] = _ref("material", "material of the rings, if another")
-    found = class_schema(kind, word, **more)
-    must = dict.fromkeys(("type", count, *required_numbers(word), *found["required"]))
+    found = table_schema(kind, word, **more)
+    must = dict.fromkeys(("type", *required_numbers(word), *found["required"]))
     if word in SPHERES:
         either = ("pitch_diameter", "outer_raceway_radius")
         found["properties"][either[0]]["x-otherwise"] = f"that of `{either[1]}`"

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...design.checks import positive
 from ...design.material import Material, contact_modulus
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import RealOrNone, Scalar
+from ...numerics.units import real
 
 WEDGE = 0.5 * np.pi * (1.0 / (0.5 * np.pi + 1.0) + 1.0 / (0.5 * np.pi - 1.0)) - 1.0
 """Factor far along the edge: a line load on a wedge of 90 degrees relative to one on a
@@ -65,9 +65,7 @@ class FreeEnds(eqx.Module):
     Valid: One end at a time: the other far away; end faces square to the generatrix.
     """
 
-    factor: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("1"), default=None
-    )
+    factor: RealOrNone = eqx.field(**real("1"), default=None)
 
     def __check_init__(self):
         if self.factor is not None:

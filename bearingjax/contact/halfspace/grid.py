@@ -5,8 +5,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.checks import check, positive
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar, as_real
+from ...numerics.units import real, unit
 
 
 class Grid(eqx.Module):
@@ -25,7 +25,7 @@ class Grid(eqx.Module):
     Static: n_across, symmetric, even.
     """
 
-    half_width: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    half_width: Real = eqx.field(**real("m"))
     edges: Float[Array, " edge"] = eqx.field(converter=as_real, metadata=unit("m"))
     n_across: int = eqx.field(static=True)
     symmetric: bool = eqx.field(static=True)

@@ -11,8 +11,8 @@ from jaxtyping import Array, Float
 from ...design.checks import check, concrete, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight, between_arcs, sagitta
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, RealOrNone, Scalar, as_real
+from ...numerics.units import real
 from ...numerics.warning import Warning
 from .ends import FreeEnds
 from .gradients import AbstractPressureSolver, ConjugateGradients
@@ -59,18 +59,12 @@ class RollerContact(eqx.Module):
         (13), with the exact ellipse in place of (12).
     """
 
-    roller_length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    small_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    large_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    half_angle: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None, kw_only=True
-    )
-    raceway_radius: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m"), default=np.inf, kw_only=True
-    )
-    raceway_half_angle: Scalar = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=0.0, kw_only=True
-    )
+    roller_length: Real = eqx.field(**real("m"))
+    small_diameter: Real = eqx.field(**real("m"))
+    large_diameter: Real = eqx.field(**real("m"))
+    half_angle: RealOrNone = eqx.field(**real("rad"), default=None, kw_only=True)
+    raceway_radius: Real = eqx.field(**real("m"), default=np.inf, kw_only=True)
+    raceway_half_angle: Real = eqx.field(**real("rad"), default=0.0, kw_only=True)
     arc_radii: tuple[Scalar, Scalar] | None = eqx.field(default=None, kw_only=True)
     roller_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)
     raceway_profile: AbstractProfile = eqx.field(default_factory=Straight, kw_only=True)

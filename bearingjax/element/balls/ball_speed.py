@@ -18,8 +18,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
-from ...numerics.types import Scalar, array_namespace, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar, array_namespace
+from ...numerics.units import real, unit
 from ..inertia import Speed
 
 MOST_FRICTION = 0.3
@@ -128,7 +128,7 @@ class FrictionLimited(AbstractRacewayControl):
     Traced: all fields.
     """
 
-    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
+    friction: Real = eqx.field(**real("1"), default=0.05)
 
     def __check_init__(self):
         positive(self, "friction")

@@ -20,8 +20,8 @@ from jaxtyping import Array, Float
 from ...design.checks import finite, instance, non_negative, of_shape, one_of, positive
 from ...element.frame import RINGS
 from ...numerics.linear import lengths
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import mixed, unit
+from ...numerics.types import Real, Scalar, as_real
+from ...numerics.units import mixed, real, unit
 from .cage_contact import CageContact
 
 
@@ -46,15 +46,13 @@ class GuidedCage(eqx.Module):
     Traced: all numbers.
     """
 
-    mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
-    inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
+    mass: Real = eqx.field(**real("kg"))
+    inertia: Real = eqx.field(**real("kg m²"))
     contact: CageContact
-    pocket_clearance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    land_clearance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    friction: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.05)
-    sliding_speed: Scalar = eqx.field(
-        converter=as_real, metadata=unit("m/s"), default=0.05
-    )
+    pocket_clearance: Real = eqx.field(**real("m"))
+    land_clearance: Real = eqx.field(**real("m"))
+    friction: Real = eqx.field(**real("1"), default=0.05)
+    sliding_speed: Real = eqx.field(**real("m/s"), default=0.05)
     load: Float[Array, "2"] = eqx.field(
         converter=as_real, metadata=unit("N"), default=(0.0, 0.0)
     )

@@ -12,8 +12,8 @@ from jaxtyping import Array, Float
 
 from ...design.checks import positive
 from ...numerics.implicit import attach_roots, stop_gradient
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar
+from ...numerics.units import real
 
 _STEPS = 12
 """Newton steps; the slope of the equation changes once, from 1/m to n."""
@@ -37,14 +37,10 @@ class CageContact(eqx.Module):
     Traced: all fields.
     """
 
-    film: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    elastic: Scalar = eqx.field(converter=as_real, metadata=unit("m"), default=2.81e-8)
-    elastic_exponent: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=1.29
-    )
-    film_exponent: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=40.0
-    )
+    film: Real = eqx.field(**real("m"))
+    elastic: Real = eqx.field(**real("m"), default=2.81e-8)
+    elastic_exponent: Real = eqx.field(**real("1"), default=1.29)
+    film_exponent: Real = eqx.field(**real("1"), default=40.0)
 
     def __check_init__(self):
         for name in ("film", "elastic", "elastic_exponent", "film_exponent"):

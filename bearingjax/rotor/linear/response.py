@@ -12,8 +12,8 @@ from ...design.checks import non_negative, number
 from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
-from ...numerics.types import Scalar, as_count, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, as_count
+from ...numerics.units import real
 from ..parts import check_station
 from ..rotor import Rotor
 from ..shaft import STATION_UNITS
@@ -37,8 +37,8 @@ class Unbalance(eqx.Module):
     """
 
     station: int = eqx.field(static=True, converter=as_count)
-    moment: Scalar = eqx.field(converter=as_real, metadata=unit("kg m"))
-    phase: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.0)
+    moment: Real = eqx.field(**real("kg m"))
+    phase: Real = eqx.field(**real("rad"), default=0.0)
 
     def __check_init__(self):
         check_station(self, self.station)

@@ -23,8 +23,8 @@ from jaxtyping import Array, Float, Int
 
 from ...numerics.lapack import determinant_sign, solve_any
 from ...numerics.result import Result
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar
+from ...numerics.units import real, unit
 from .method import AbstractMethod
 from .orbit import along_frequency, amplitudes, correct
 from .system import AbstractVibratingSystem
@@ -97,14 +97,12 @@ class Steps(eqx.Module):
     Traced: all fields but points.
     """
 
-    first: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.01)
-    smallest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-7)
-    largest: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=0.1)
-    newton: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=3.0)
-    turn: Scalar = eqx.field(converter=as_real, metadata=unit("rad"), default=0.5)
-    frequency: Scalar = eqx.field(
-        converter=as_real, metadata=unit("1"), default=float("inf")
-    )
+    first: Real = eqx.field(**real("1"), default=0.01)
+    smallest: Real = eqx.field(**real("1"), default=1e-7)
+    largest: Real = eqx.field(**real("1"), default=0.1)
+    newton: Real = eqx.field(**real("1"), default=3.0)
+    turn: Real = eqx.field(**real("rad"), default=0.5)
+    frequency: Real = eqx.field(**real("1"), default=float("inf"))
     points: int = eqx.field(static=True, default=500)
 
 

@@ -16,8 +16,8 @@ from jaxtyping import Array, Float
 
 from ...design.checks import positive
 from ...numerics.lapack import cholesky, congruent, eigh
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar, as_real
+from ...numerics.units import real, unit
 from ..damping import ModalDamping
 from .support_law import AbstractSupportLaw
 from .system import HarmonicLoad, VibratingSystem
@@ -38,15 +38,13 @@ class RigidRotor(eqx.Module):
     Traced: all fields.
     """
 
-    length: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    shaft_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    density: Scalar = eqx.field(converter=as_real, metadata=unit("kg/m³"))
-    disc_mass: Scalar = eqx.field(converter=as_real, metadata=unit("kg"))
-    disc_polar_inertia: Scalar = eqx.field(converter=as_real, metadata=unit("kg m²"))
-    disc_diametral_inertia: Scalar = eqx.field(
-        converter=as_real, metadata=unit("kg m²")
-    )
-    disc_position: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    length: Real = eqx.field(**real("m"))
+    shaft_diameter: Real = eqx.field(**real("m"))
+    density: Real = eqx.field(**real("kg/m³"))
+    disc_mass: Real = eqx.field(**real("kg"))
+    disc_polar_inertia: Real = eqx.field(**real("kg m²"))
+    disc_diametral_inertia: Real = eqx.field(**real("kg m²"))
+    disc_position: Real = eqx.field(**real("m"))
 
     def __check_init__(self):
         for name in ("length", "shaft_diameter", "density", "disc_mass"):

@@ -23,8 +23,8 @@ from ...design.material import Material, contact_modulus
 from ...element.bearing_element import BearingElement
 from ...element.frame import FREEDOMS
 from ...numerics.power import positive_power
-from ...numerics.types import Scalar, as_count, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, Scalar, as_count, as_real
+from ...numerics.units import real, unit
 
 
 class AbstractSupportLaw(eqx.Module):
@@ -109,9 +109,9 @@ class FixedAngle(AbstractSupportLaw):
     Traced: all but `n_balls`.
     """
 
-    constant: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
-    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
-    preload_displacement: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    constant: Real = eqx.field(**real("N/m^(3/2)"))
+    contact_angle: Real = eqx.field(**real("rad"))
+    preload_displacement: Real = eqx.field(**real("m"))
     n_balls: int = eqx.field(static=True, converter=as_count)
 
     def __check_init__(self):
@@ -161,10 +161,10 @@ class MovingAngle(AbstractSupportLaw):
     Traced: all but `n_balls`.
     """
 
-    constant: Scalar = eqx.field(converter=as_real, metadata=unit("N/m^(3/2)"))
-    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
-    preload_approach: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    centre_distance: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    constant: Real = eqx.field(**real("N/m^(3/2)"))
+    contact_angle: Real = eqx.field(**real("rad"))
+    preload_approach: Real = eqx.field(**real("m"))
+    centre_distance: Real = eqx.field(**real("m"))
     n_balls: int = eqx.field(static=True, converter=as_count)
 
     @classmethod
@@ -201,9 +201,9 @@ class CubicExpansion(AbstractSupportLaw):
     Traced: all fields.
     """
 
-    radial_stiffness: Scalar = eqx.field(converter=as_real, metadata=unit("N/m"))
-    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
-    preload_displacement: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
+    radial_stiffness: Real = eqx.field(**real("N/m"))
+    contact_angle: Real = eqx.field(**real("rad"))
+    preload_displacement: Real = eqx.field(**real("m"))
 
     @classmethod
     def of(cls, law: FixedAngle) -> "CubicExpansion":
@@ -253,11 +253,11 @@ class Grooves(eqx.Module):
     Traced: all but `n_balls`.
     """
 
-    inner_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    outer_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    groove_radius: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    ball_diameter: Scalar = eqx.field(converter=as_real, metadata=unit("m"))
-    contact_angle: Scalar = eqx.field(converter=as_real, metadata=unit("rad"))
+    inner_radius: Real = eqx.field(**real("m"))
+    outer_radius: Real = eqx.field(**real("m"))
+    groove_radius: Real = eqx.field(**real("m"))
+    ball_diameter: Real = eqx.field(**real("m"))
+    contact_angle: Real = eqx.field(**real("rad"))
     n_balls: int = eqx.field(static=True, converter=as_count)
     material: Material
 

@@ -17,8 +17,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
-from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.types import Real, RealOrNone, Scalar, as_real
+from ...numerics.units import real, unit
 
 
 class AbstractVibratingSystem(eqx.Module):
@@ -105,10 +105,8 @@ class VibratingSystem(AbstractVibratingSystem):
     scale: Float[Array, " n"] = eqx.field(
         converter=as_real, metadata=unit(("m", "rad"))
     )
-    reference_frequency: Scalar = eqx.field(converter=as_real, metadata=unit("rad/s"))
-    speed: Scalar | None = eqx.field(
-        converter=as_real, metadata=unit("rad/s"), default=None
-    )
+    reference_frequency: Real = eqx.field(**real("rad/s"))
+    speed: RealOrNone = eqx.field(**real("rad/s"), default=None)
 
     def __check_init__(self):
         n = self.scale.shape[0]

@@ -114,7 +114,7 @@ def _complete(
 
 
 class SpringKeys(Keys):
-    """Spring that presses a row."""
+    about = "Spring that presses a row"
 
     spring_force: float | None = scene_key(
         "force of the spring that preloads, where the row just touches", "force"
@@ -136,7 +136,7 @@ class SpringKeys(Keys):
 
 
 class RowKeys(SpringKeys):
-    """[[set.rows]]: a row in its place."""
+    about = "[[set.rows]]: a row in its place"
 
     position: float = scene_key("place along the axis", "length")
     mirrored: bool = scene_key("whether it is turned round", default=False)
@@ -169,7 +169,7 @@ _IN_PAIRS = ("preload_force", "preload_offset", "spring_force")
 
 
 class SetKeys(SpringKeys):
-    """[set]: several bearings that act as one."""
+    about = "[set]: several bearings that act as one"
 
     arrangement: str = scene_key("how the rows stand", choices=SETS)
     spacing: float | None = scene_key(

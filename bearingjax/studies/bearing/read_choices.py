@@ -63,7 +63,7 @@ MOST_SLICES = 10_000
 
 
 class LineContactKeys(Keys):
-    """[contact] of rollers: the law of their slices."""
+    about = "[contact] of rollers: the law of their slices"
 
     line_law: str = scene_key(
         "approach and load of a slice", choices=tuple(LINE_LAWS), default="palmgren"
@@ -91,7 +91,7 @@ class LineContactKeys(Keys):
 
 
 class PointContactKeys(Keys):
-    """[contact] of balls: the law of their contacts."""
+    about = "[contact] of balls: the law of their contacts"
 
     point_law: str = scene_key(
         "contact angle for which the constants are worked out",
@@ -124,7 +124,7 @@ _BOTH = (("outer_constant", "inner_constant"), ("inner_constant", "outer_constan
 
 
 class ControlKeys(Keys):
-    """Raceway control of balls that turn."""
+    about = "Raceway control of balls that turn"
 
     raceway_control: str = scene_key(
         "raceway on which balls roll without spin, for their gyroscopic moment",
@@ -153,7 +153,7 @@ class ControlKeys(Keys):
 
 
 class BallNumericsKeys(Keys):
-    """[numerics] of balls."""
+    about = "[numerics] of balls"
 
     kinematics: str | None = scene_key(
         "how rings displace the raceways",
@@ -168,7 +168,7 @@ class BallNumericsKeys(Keys):
 
 
 class RollerNumericsKeys(BallNumericsKeys):
-    """[numerics] of rollers."""
+    about = "[numerics] of rollers"
 
     kinematics: str = scene_key(
         "how rings displace the raceways",
@@ -203,7 +203,7 @@ class RollerNumericsKeys(BallNumericsKeys):
 
 
 class BarrelNumericsKeys(RollerNumericsKeys):
-    """[numerics] of barrel rollers."""
+    about = "[numerics] of barrel rollers"
 
     kinematics: str | None = scene_key(
         "how rings displace the raceways",

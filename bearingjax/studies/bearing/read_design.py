@@ -16,6 +16,7 @@ from ...design.bearing_set import shares_rings
 from ...design.keywords import BALLS, PROFILES, ROLLERS, both_rows
 from ...design.rib import ARRANGEMENTS
 from ...element import RINGS
+from ...files.schema import build, read_values
 from ...files.table import Table, format_number, written_numbers
 
 SPHERES = "spherical_roller", "spherical_thrust_roller"
@@ -89,13 +90,7 @@ def required_numbers(kind: str) -> tuple[str, ...]:
 
 
 def _balls(table: Table, kind: str) -> AbstractBearing:
-    values = {
-        "n_balls": table.integer("n_balls"),
-        **table.fields(BALLS[kind], *required_numbers(kind)),
-        **_materials(table),
-    }
-    with table.building():
-        return BALLS[kind](**values)
+    return build(BALLS[kind], table, required_numbers(kind), **_materials(table))
 
 
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
@@ -105,8 +100,7 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
         raise table.error("pitch_diameter", f"{problem} length, a text with its unit")
     left_out = ("pitch_diameter",) if derived else ()
     values = {
-        "n_rollers": table.integer("n_rollers"),
-        **table.fields(ROLLERS[kind], *required_numbers(kind), left_out=left_out),
+        **read_values(ROLLERS[kind], table, required_numbers(kind), left_out),
         "roller_profile": read_profile(table.table("roller_profile")),
     }
     if derived:
@@ -139,9 +133,7 @@ def read_material(table: Table, key: str) -> Material | None:
         return None
     if isinstance(given, str):
         return MATERIALS[given]()
-    values = given.fields(Material)
-    with given.building():
-        return Material(**values)
+    return build(Material, given)
 
 
 def _ribs(table: Table, kind: str) -> Ribs:
@@ -179,14 +171,9 @@ def _rib(table: Table) -> Rib:
     if "end_radius" in table and table.word("end_radius") == "flat":
         problem = "flat ends have no point contact; give the radius of the end sphere"
         raise table.error("end_radius", problem)
-    values = table.fields(Rib)
-    with table.building():
-        return Rib(**values)
+    return build(Rib, table)
 
 
 def read_profile(table: Table) -> AbstractProfile:
     """Read the profile of a roller or raceway; straight if the table is empty."""
-    kind = PROFILES[table.choice("type", tuple(PROFILES), "straight")]
-    values = table.fields(kind)
-    with table.building():
-        return kind(**values)
+    return build(PROFILES[table.choice("type", tuple(PROFILES), "straight")], table)

@@ -20,8 +20,8 @@ from ...design.bearing_set import (
 )
 from ...element import Speed
 from ...files.quantity import SceneError, scene_number
-from ...files.schema import Keys, read_keys, scene_key
-from ...files.schema_text import class_schema, number_schema
+from ...files.schema import Keys, build, read_keys, scene_key
+from ...files.schema_text import number_schema, table_schema
 from ...files.table import Table
 from ...fits import (
     CLEARANCE_CLASSES,
@@ -71,14 +71,14 @@ def _seat_material(table: Table, name: str) -> WarmMaterial:
         return WarmMaterial.steel()
     if isinstance(given, str):
         return WARM_MATERIALS[given]()
-    values = given.fields(Material, "elastic_modulus", "poisson_ratio", "density")
-    own = given.quantity("expansion", "temperature coefficient")
+    own = build(Material, given, ("elastic_modulus", "poisson_ratio", "density"))
+    expansion = given.quantity("expansion", "temperature coefficient")
     with given.building():
-        return WarmMaterial(Material(**values), own)
+        return WarmMaterial(own, expansion)
 
 
 def _seat_key(of: str) -> Any:
-    numbers = class_schema(Material, expansion=number_schema("temperature coefficient"))
+    numbers = table_schema(Material, expansion=number_schema("temperature coefficient"))
     numbers["required"] = [*numbers["properties"]]
     return scene_key(
         f"material of the {of}",
@@ -123,7 +123,7 @@ _DRIVEN = ("drive_up", "clearance_reduction")
 
 
 class FitKeys(Keys):
-    """[fit]: the seats of a bearing."""
+    about = "[fit]: the seats of a bearing"
 
     bore: float | None = scene_key(
         "bore of the bearing", "length", otherwise=_CATALOGUE
@@ -231,7 +231,7 @@ def _warm(part: str) -> Any:
 
 
 class TemperatureKeys(Keys):
-    """[temperature]: how warm a bearing on its seats is."""
+    about = "[temperature]: how warm a bearing on its seats is"
 
     reference: float = scene_key(
         "temperature of the measured sizes",

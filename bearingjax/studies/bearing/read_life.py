@@ -17,7 +17,7 @@ _RATED = "published for the `designation`, else from the geometry"
 
 
 class LifeKeys(Keys):
-    """[life]: conditions of the rating life, in addition to the bearing."""
+    about = "[life]: conditions of the rating life, in addition to the bearing"
 
     dynamic_capacity: float | None = scene_key(
         "basic dynamic load rating C", "force", above=0, otherwise=_RATED

@@ -47,7 +47,9 @@ _OF_PRESSURE = ("barus", "roelands")
 
 
 class LubricantKeys(Keys):
-    """[lubricant]: an oil by its name, or by a law of its viscosity over pressure."""
+    about = (
+        "[lubricant]: an oil by its name, or by a law of its viscosity over pressure"
+    )
 
     numbers: ClassVar[Mapping[str, type]] = {
         "`law` = free_volume": FreeVolume,

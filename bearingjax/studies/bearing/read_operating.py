@@ -13,7 +13,7 @@ roller as JSON."""
 
 
 class LoadKeys(Keys):
-    """Load on the moving ring."""
+    about = "Load on the moving ring"
 
     Fx: float | None = scene_key("force along x", "force")
     Fy: float | None = scene_key("force along y", "force")
@@ -24,7 +24,7 @@ class LoadKeys(Keys):
 
 
 class MotionKeys(Keys):
-    """Displacements at which the moving ring is held."""
+    about = "Displacements at which the moving ring is held"
 
     ux: float | None = scene_key("displacement along x", "length")
     uy: float | None = scene_key("displacement along y", "length")
@@ -39,7 +39,7 @@ def _by_name(example: str) -> str:
 
 
 class OperatingKeys(Keys):
-    """[operating]: load, support and speeds of a bearing."""
+    about = "[operating]: load, support and speeds of a bearing"
 
     fixed_ring: str = scene_key(
         "ring that stands; load and displacements are those of the other one",
@@ -106,7 +106,7 @@ class OperatingKeys(Keys):
 
 
 class SolveKeys(Keys):
-    """[numerics] of a load solve."""
+    about = "[numerics] of a load solve"
 
     tolerance: float | None = scene_key(
         "relative residual at which it ends",
@@ -117,7 +117,7 @@ class SolveKeys(Keys):
 
 
 class OutputKeys(Keys):
-    """[output] of a bearing of rollers."""
+    about = "[output] of a bearing of rollers"
 
     points: int = scene_key(
         "positions along a roller at which loads are output", default=101, least=2

@@ -135,7 +135,7 @@ def _raw(table: Table, name: str) -> Any:
 
 
 class CasesKeys(Keys):
-    """[cases]: what varies, named by the keys of the scene."""
+    about = "[cases]: what varies, named by the keys of the scene"
 
     grid: Any = scene_key(
         "values of each key, a list or `{ start, stop, count }`; every combination is a"

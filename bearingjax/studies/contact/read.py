@@ -37,7 +37,7 @@ _MATERIAL = {"$ref": "#/$defs/material"}
 
 
 class RollerKeys(Keys):
-    """[roller]: a cylindrical or tapered roller."""
+    about = "[roller]: a cylindrical or tapered roller"
 
     length: float = scene_key(
         "effective length", "length", above=0, refusal="must be above 0"
@@ -82,7 +82,7 @@ class RollerKeys(Keys):
 
 
 class RacewayKeys(Keys):
-    """[raceway]: a plane, a cylinder or a cone."""
+    about = "[raceway]: a plane, a cylinder or a cone"
 
     diameter: float | None = scene_key(
         "diameter in the middle", "length", above=0, otherwise="a plane"
@@ -124,7 +124,7 @@ class RacewayKeys(Keys):
 
 
 class ContactOperatingKeys(Keys):
-    """[operating] of one contact: how roller and raceway are pressed."""
+    about = "[operating] of one contact: how roller and raceway are pressed"
 
     load: float | tuple[float, ...] | None = scene_key(
         "load, or a list of loads", "force", above=0, refusal="must be above 0"
@@ -163,7 +163,7 @@ class ContactOperatingKeys(Keys):
 
 
 class ContactNumericsKeys(Keys):
-    """[numerics] of one contact: the cells of its grid, and when to stop."""
+    about = "[numerics] of one contact: the cells of its grid, and when to stop"
 
     across: int = scene_key(
         "cells across the contact",
@@ -199,7 +199,7 @@ class ContactNumericsKeys(Keys):
 
 
 class SliceLawKeys(Keys):
-    """[contact]: the slices that a contact is compared with."""
+    about = "[contact]: the slices that a contact is compared with"
 
     line_law: str = scene_key(
         "approach and load of a slice", choices=LAWS, default="palmgren"
@@ -215,7 +215,7 @@ class SliceLawKeys(Keys):
 
 
 class ContactOutputKeys(Keys):
-    """[output] of one contact."""
+    about = "[output] of one contact"
 
     field: bool = scene_key("whether every cell's pressure is written", default=False)
 

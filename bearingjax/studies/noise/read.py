@@ -40,7 +40,7 @@ MOST_SAMPLES = 200_000
 
 
 class VibrationKeys(Keys):
-    """[vibration]: the test rig of a bearing, the record and its evaluation."""
+    about = "[vibration]: the test rig of a bearing, the record and its evaluation"
 
     mass: float = scene_key("mass of the moving ring", "mass")
     moving_ring: str | None = scene_key(

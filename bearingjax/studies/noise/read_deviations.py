@@ -39,7 +39,7 @@ class ErrorContext(NamedTuple):
 
 
 class DeviationKeys(Keys):
-    """A form error of a part of every row, or of one."""
+    about = "A form error of a part of every row, or of one"
 
     common: ClassVar[bool] = False
     """Whether it is common to all bearings of a production line."""
@@ -90,7 +90,7 @@ class DeviationKeys(Keys):
 
 
 class DirectedKeys(DeviationKeys):
-    """A form error that a raceway may have in several directions."""
+    about = "A form error that a raceway may have in several directions"
 
     direction: str | None = scene_key(
         "of a raceway's waves; `raised`: along the contact normal",
@@ -119,7 +119,7 @@ _ORDER = {"type": "integer", "minimum": 1, "maximum": MOST_ORDER["raceway"]}
 
 
 class WavesKeys(DirectedKeys):
-    """[[deviations.waves]]: waves around a part."""
+    about = "[[deviations.waves]]: waves around a part"
 
     common: ClassVar[bool] = True
 
@@ -157,7 +157,7 @@ class WavesKeys(DirectedKeys):
 
 
 class SpectrumKeys(DirectedKeys):
-    """[[deviations.spectrum]]: waves of every order of a range."""
+    about = "[[deviations.spectrum]]: waves of every order of a range"
 
     lowest: int = scene_key("lowest order", most=MOST_ORDER["raceway"])
     highest: int = scene_key(
@@ -188,7 +188,7 @@ class SpectrumKeys(DirectedKeys):
 
 
 class ProfileKeys(DirectedKeys):
-    """[[deviations.profile]]: measured heights at even angles."""
+    about = "[[deviations.profile]]: measured heights at even angles"
 
     points: tuple[float, ...] | None = scene_key("heights", "length")
     file: str | None = scene_key(
@@ -225,7 +225,7 @@ class ProfileKeys(DirectedKeys):
 
 
 class SpallKeys(DeviationKeys):
-    """[[deviations.spalls]]: a place where the surface is lower."""
+    about = "[[deviations.spalls]]: a place where the surface is lower"
 
     common: ClassVar[bool] = True
 
@@ -248,7 +248,7 @@ class SpallKeys(DeviationKeys):
 
 
 class DeviationsKeys(Keys):
-    """[deviations]: form errors of raceways and rolling elements."""
+    about = "[deviations]: form errors of raceways and rolling elements"
 
     waves: tuple[WavesKeys, ...] = scene_key("waves around parts", default=())
     spectrum: tuple[SpectrumKeys, ...] = scene_key("spectra of waves", default=())

@@ -33,7 +33,7 @@ Tighter = tuple[tuple[str, dict[str, float]], ...]
 
 
 class ToleranceKeys(Keys):
-    """[vibration.tolerance]: how bearings off the line scatter."""
+    about = "[vibration.tolerance]: how bearings off the line scatter"
 
     grade: str | None = scene_key(
         "grade of the rolling elements", choices=(*BALL_GRADES, *ROLLER_GRADES)

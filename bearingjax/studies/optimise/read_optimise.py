@@ -125,7 +125,7 @@ def bound_key(end: str, bare: str = "") -> Any:
 
 
 class BoundKeys(Keys):
-    """[[optimise.constraints]]: a bound on a measure."""
+    about = "[[optimise.constraints]]: a bound on a measure"
 
     measure: str
     at_least: Any
@@ -153,7 +153,7 @@ class BoundKeys(Keys):
 
 
 class ConstraintKeys(BoundKeys):
-    """[[optimise.constraints]]: a bound on a measure."""
+    about = "[[optimise.constraints]]: a bound on a measure"
 
     measure: str = scene_key("what is bounded", choices=OBJECTIVES)
     at_least: Any = bound_key("lower")
@@ -162,7 +162,7 @@ class ConstraintKeys(BoundKeys):
 
 
 class SearchKeys(Keys):
-    """[optimise]: variables and the search for the best design."""
+    about = "[optimise]: variables and the search for the best design"
 
     objective: str
     exponent: float = scene_key(
@@ -190,7 +190,7 @@ class SearchKeys(Keys):
 
 
 class OptimiseKeys(SearchKeys):
-    """[optimise]: variables, objective and constraints."""
+    about = "[optimise]: variables, objective and constraints"
 
     objective: str = scene_key(
         "what is made least; a life in hours is made largest", choices=OBJECTIVES

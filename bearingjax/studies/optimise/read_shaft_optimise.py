@@ -53,7 +53,7 @@ def _of() -> Any:
 
 
 class ShaftConstraintKeys(BoundKeys):
-    """[[optimise.constraints]]: a bound on a measure."""
+    about = "[[optimise.constraints]]: a bound on a measure"
 
     measure: str = scene_key("what is bounded", choices=SHAFT_OBJECTIVES)
     at_least: Any = bound_key("lower", "static_safety")
@@ -62,7 +62,7 @@ class ShaftConstraintKeys(BoundKeys):
 
 
 class ShaftOptimiseKeys(SearchKeys):
-    """[optimise]: variables, objective and constraints."""
+    about = "[optimise]: variables, objective and constraints"
 
     objective: str = scene_key(
         "what is made least; lives and `static_safety` are made largest",

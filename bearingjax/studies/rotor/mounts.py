@@ -38,7 +38,7 @@ def _side(about: str, kind: str, other: str) -> Any:
 
 
 class SpringKeys(Keys):
-    """[rotor.bearings.stiffness]: springs in place of a bearing."""
+    about = "[rotor.bearings.stiffness]: springs in place of a bearing"
 
     radial: float = _direction("across the shaft", "stiffness")
     x: float | None = _side("along x, where y differs", "stiffness", "y")
@@ -58,7 +58,7 @@ class SpringKeys(Keys):
 
 
 class DamperKeys(SpringKeys):
-    """[rotor.bearings.damping]: dampers beside the bearing or the springs."""
+    about = "[rotor.bearings.damping]: dampers beside the bearing or the springs"
 
     radial: float = _direction("across the shaft", "damping")
     x: float | None = _side("along x, where y differs", "damping", "y")
@@ -87,7 +87,9 @@ def _of_axes(about: str, kind: str, **default: float) -> Any:
 
 
 class HousingKeys(Keys):
-    """[rotor.bearings.housing]: a mass on springs, between the bearing and ground."""
+    about = (
+        "[rotor.bearings.housing]: a mass on springs, between the bearing and ground"
+    )
 
     mass: float = scene_key("mass of the housing", "mass", above=0)
     stiffness: list[float] = _of_axes(
@@ -105,7 +107,7 @@ class HousingKeys(Keys):
 
 
 class MountKeys(Keys):
-    """[[rotor.bearings]]: supports of the shaft, each a bearing or springs."""
+    about = "[[rotor.bearings]]: supports of the shaft, each a bearing or springs"
 
     station: int = scene_key("station of the shaft", least=0)
     bearing: str | None = scene_key(

@@ -58,7 +58,7 @@ MATERIAL: Any = {
 
 
 class SegmentKeys(Keys):
-    """[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends."""
+    about = "[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends"
 
     length: float = scene_key("length", "length", above=0)
     outer_diameter: float = scene_key("outer diameter", "length", above=0)
@@ -82,7 +82,7 @@ _OF_MASS: Any = {"least": 0, "needs": ("mass",)}
 
 
 class DiscKeys(Keys):
-    """[[rotor.discs]]: discs, by their sizes or inertia, and point masses."""
+    about = "[[rotor.discs]]: discs, by their sizes or inertia, and point masses"
 
     station: int = scene_key("station of the shaft", least=0)
     mass: float | None = scene_key(
@@ -123,7 +123,7 @@ class DiscKeys(Keys):
 
 
 class DampingKeys(Keys):
-    """[rotor.damping]: damping in proportion to mass and stiffness of the shaft."""
+    about = "[rotor.damping]: damping in proportion to mass and stiffness of the shaft"
 
     mass_factor: float = scene_key("damping over mass", "rate", default=0.0, least=0)
     stiffness_factor: float = scene_key(
@@ -132,7 +132,7 @@ class DampingKeys(Keys):
 
 
 class UnbalanceKeys(Keys):
-    """[[rotor.excitation.unbalance]]: masses off the axis."""
+    about = "[[rotor.excitation.unbalance]]: masses off the axis"
 
     station: int = scene_key("station of the shaft", least=0)
     moment: float = scene_key("mass times eccentricity", "unbalance", least=0)
@@ -140,7 +140,7 @@ class UnbalanceKeys(Keys):
 
 
 class ForceKeys(Keys):
-    """[[rotor.excitation.forces]]: constant forces and moments."""
+    about = "[[rotor.excitation.forces]]: constant forces and moments"
 
     station: int = scene_key("station of the shaft", least=0)
     Fx: float = scene_key("force along x", "force", default=0.0)
@@ -162,7 +162,7 @@ class ForceKeys(Keys):
 
 
 class BaseKeys(Keys):
-    """[rotor.excitation.base_acceleration]: amplitude along each axis."""
+    about = "[rotor.excitation.base_acceleration]: amplitude along each axis"
 
     x: float = scene_key("along x", "acceleration", default=0.0)
     y: float = scene_key("along y", "acceleration", default=0.0)
@@ -170,7 +170,7 @@ class BaseKeys(Keys):
 
 
 class ExcitationKeys(Keys):
-    """[rotor.excitation]: loads on the rotor in addition to its weight."""
+    about = "[rotor.excitation]: loads on the rotor in addition to its weight"
 
     unbalance: tuple[UnbalanceKeys, ...] = scene_key("masses off the axis", default=())
     forces: tuple[ForceKeys, ...] = scene_key("constant forces and moments", default=())
@@ -193,7 +193,7 @@ class ExcitationKeys(Keys):
 
 
 class RotorKeys(Keys):
-    """[rotor]: a shaft on its bearings."""
+    about = "[rotor]: a shaft on its bearings"
 
     speed: float = scene_key("speed of the rotor, from x to y", "speed", default=0.0)
     rigid: bool = scene_key("whether the shaft does not bend", default=False)

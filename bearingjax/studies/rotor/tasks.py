@@ -19,7 +19,7 @@ _STATION: Any = {
 
 
 class CampbellKeys(Keys):
-    """[rotor.campbell]: speeds of the Campbell diagram."""
+    about = "[rotor.campbell]: speeds of the Campbell diagram"
 
     begin: float = scene_key("first speed", "speed", name="from", default=0.0)
     end: float = scene_key("last speed, the higher one", "speed", name="to")
@@ -37,7 +37,7 @@ class CampbellKeys(Keys):
 
 
 class ResponseKeys(Keys):
-    """[rotor.response]: periodic vibration over a range of frequencies."""
+    about = "[rotor.response]: periodic vibration over a range of frequencies"
 
     begin: float = scene_key(
         "first frequency of the excitation, in Hz or rpm",
@@ -112,7 +112,7 @@ class ResponseKeys(Keys):
 
 
 class TransientKeys(Keys):
-    """[rotor.transient]: motion in time from rest in the static equilibrium."""
+    about = "[rotor.transient]: motion in time from rest in the static equilibrium"
 
     duration: float = scene_key("duration", "time", above=0, most=1e4)
     speed_to: float | None = scene_key(

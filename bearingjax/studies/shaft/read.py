@@ -14,7 +14,7 @@ from ...element.frame import LOADS
 from ...files.output_files import read_matrix
 from ...files.quantity import SceneError, scene_number, to_si
 from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
-from ...files.schema import Keys, direction_json, read_keys, scene_key
+from ...files.schema import Keys, build, direction_json, fields_of, read_keys, scene_key
 from ...files.table import Table
 from ...life.life import LifeConditions
 from ...numerics.gravity import GRAVITY
@@ -32,7 +32,6 @@ from ...shafts import (
     ShaftSystem,
 )
 from ...shafts.duty import alike
-from ...shafts.parts import APEXES, HANDS
 from ..bearing.life_ratings import life_conditions
 from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
@@ -76,7 +75,7 @@ def _axis(about: str) -> Any:
 
 
 class SegmentKeys(Keys):
-    """[[shaft.NAME.segments]]: segments of the shaft, one after the other."""
+    about = "[[shaft.NAME.segments]]: segments of the shaft, one after the other"
 
     length: float = scene_key("length", "length", above=0)
     outer_diameter: float = scene_key("outer diameter", "length", above=0)
@@ -90,7 +89,7 @@ class SegmentKeys(Keys):
 
 
 class ShaftKeys(Keys):
-    """[shaft.NAME]: a shaft; positions on it count from its first segment."""
+    about = "[shaft.NAME]: a shaft; positions on it count from its first segment"
 
     segments: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
     axis: tuple[float, ...] = _axis("direction of the shaft in global axes")
@@ -118,43 +117,27 @@ class ShaftKeys(Keys):
             return ShaftLine(name, *columns, **ends, rigid=self.rigid)
 
 
-PARTS: dict[str, tuple[type[Any], dict[str, tuple[str, ...]]]] = {
-    "gear": (Gear, {"hand": tuple(HANDS), "apex": tuple(APEXES), "mates_with": ()}),
-    "belt": (Pulley, {"mates_with": ()}),
-    "coupling": (Coupling, {}),
-    "load": (ShaftLoad, {}),
+PARTS: dict[str, type[Any]] = {
+    "gear": Gear,
+    "belt": Pulley,
+    "coupling": Coupling,
+    "load": ShaftLoad,
 }
-"""Tables [KIND.NAME] of parts: their class, and its words with the choices."""
+"""Classes of the parts, by their tables [KIND.NAME]."""
 
 
 def _part(
-    table: Table,
-    kind: type[Any],
-    name: str,
-    shafts: Mapping[str, ShaftKeys],
-    words: Mapping[str, tuple[str, ...]],
+    table: Table, kind: type[Any], name: str, shafts: Mapping[str, ShaftKeys]
 ) -> Any:
-    """Build a part from the numbers and words of its class."""
-    known = {field.name for field in dataclasses.fields(kind)}
-    values: dict[str, Any] = {"name": name, "shaft": _shaft_of(table, shafts)}
-    if "position" in known:
-        values["position"] = _position(table, values["shaft"], shafts)
+    """Build a part from its table."""
+    given: dict[str, Any] = {"name": name, "shaft": _shaft_of(table, shafts)}
+    if kind is not Coupling:
+        given["position"] = _position(table, given["shaft"], shafts)
     if kind is ShaftLoad:
         kinds = ["force"] * 3 + ["moment"] * 3
         six = [table.quantity(n, k, 0.0) for n, k in zip(LOADS, kinds, strict=True)]
-        values |= {"force": six[:3], "moment": six[3:]}
-    else:
-        values |= table.fields(kind, left_out=("position", *words))
-    if "teeth" in known:
-        values["teeth"] = table.integer("teeth")
-    for key, choices in words.items():
-        word = table.text(key)
-        if word is None and key in table:
-            raise table.error(key, f"{table.raw(key)!r} is not a text")
-        if word is not None:
-            values[key] = table.choice(key, choices or (word,))
-    with table.building():
-        return kind(**values)
+        given |= {"force": six[:3], "moment": six[3:]}
+    return build(kind, table, **given)
 
 
 def _shaft_of(table: Table, shafts: Mapping[str, ShaftKeys]) -> str:
@@ -189,7 +172,7 @@ def _source(about: str, kind: str, other: str) -> Any:
 
 
 class DriveKeys(Keys):
-    """[drive]: where power enters the system, and how fast it turns."""
+    about = "[drive]: where power enters the system, and how fast it turns"
 
     into: str | None = scene_key(
         "shaft, driven through a coupling, or wheel without a mate",
@@ -201,16 +184,10 @@ class DriveKeys(Keys):
 
 
 class SeatKeys(Keys):
-    """[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing."""
+    about = (
+        "[bearings.NAME]: a bearing on a shaft, and beside these the keys of a bearing"
+    )
 
-    turned: bool = scene_key(
-        "whether it is mounted the other way round, its +z along the shaft's -z",
-        default=False,
-    )
-    floating: bool = scene_key(
-        "whether its outer ring slides in the housing, without axial force",
-        default=False,
-    )
     housing: tuple[float, ...] | None = scene_key(
         "stiffness of the housing at this seat along global x, y and z",
         "stiffness",
@@ -236,27 +213,20 @@ class SeatKeys(Keys):
             shafts: All shafts by their names.
             scene: The bearing alone; `None` of springs.
         """
-        table, springs = self.table, self.stiffness
-        shaft = _shaft_of(table, shafts)
-        position = _position(table, shaft, shafts)
-        preload = table.quantity("preload", "force", None)
-        offset = table.quantity("axial_offset", "length", 0.0)
-        with table.building():
-            return Seat(
-                name,
-                shaft,
-                position,
-                None if scene is None else scene.installed,
-                preload,
-                offset,
-                self.turned,
-                self.floating,
-                None if springs is None else springs.diagonal,
-            )
+        springs, shaft = self.stiffness, _shaft_of(self.table, shafts)
+        return build(
+            Seat,
+            self.table,
+            name=name,
+            shaft=shaft,
+            position=_position(self.table, shaft, shafts),
+            installed=None if scene is None else scene.installed,
+            stiffness=None if springs is None else springs.diagonal,
+        )
 
 
 class HousingKeys(Keys):
-    """[housing]: one stiffness matrix over several seats."""
+    about = "[housing]: one stiffness matrix over several seats"
 
     file: str = scene_key(
         "matrix in SI, in global axes, seat by seat (ux uy uz), or with (gx gy gz):"
@@ -266,7 +236,7 @@ class HousingKeys(Keys):
 
 
 class SystemKeys(Keys):
-    """[system]: numbers and settings common to all shafts."""
+    about = "[system]: numbers and settings common to all shafts"
 
     gravity: str = scene_key(
         "direction of the weight of the shafts in global axes",
@@ -421,11 +391,10 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
     tables = top.table("shaft")
     shafts = {name: read_keys(ShaftKeys, tables.table(name)) for name in tables.keys()}
     parts: dict[str, list[Any]] = {}
-    for key, (kind, words) in PARTS.items():
+    for key, kind in PARTS.items():
         tables = top.table(key)
         parts[key] = [
-            _part(tables.table(name), kind, name, shafts, words)
-            for name in tables.keys()
+            _part(tables.table(name), kind, name, shafts) for name in tables.keys()
         ]
     if "bearings" not in top:
         raise top.error("bearings", "is missing; [bearings.NAME] hold the shafts")
@@ -524,8 +493,8 @@ def _housing(
         return HousingStiffness(keys.seats, matrix)
 
 
-_OF_SEAT = ("shaft", "position", "station", "preload", "axial_offset", "heat") + tuple(
-    field.name for field in dataclasses.fields(SeatKeys) if field.name != "table"
+_OF_SEAT = ("shaft", "position", "station", "heat") + tuple(
+    one.name for kind in (Seat, SeatKeys) for one in fields_of(kind)
 )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, build, read_keys, scene_key
 from ...files.table import Table
 from ...fits.fits import PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
@@ -19,7 +19,7 @@ _CONDUCTANCES = "inner", "outer"
 
 
 class HeatKeys(Keys):
-    """[heat]: temperatures from friction, in equilibrium and in time."""
+    about = "[heat]: temperatures from friction, in equilibrium and in time"
 
     numbers = {"": HeatNetwork}
 
@@ -76,9 +76,7 @@ def read_heat(
         return None, None
     keys = read_keys(HeatKeys, top.table("heat"))
     paths = [_path(own[name], scene) for name, scene in bearings.items()]
-    with keys.table.building():
-        more = keys.table.fields(HeatNetwork, left_out=("ambient",))
-        network = HeatNetwork(**more | {"ambient": keys.ambient}, paths=paths)
+    network = build(HeatNetwork, keys.table, ambient=keys.ambient, paths=paths)
     return network, keys
 
 
@@ -109,11 +107,10 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
     if scene is None:
         return None
     heat = table.table("heat")
-    given = heat.fields(ThermalPaths, left_out=_CONDUCTANCES)
     if scene.oil is None:
         problem = "is missing; [heat] needs the oil that makes the friction"
         raise table.error("lubricant", problem)
-    usual = None
+    usual, given = None, {}
     if scene.catalogue is not None:
         entry = scene.catalogue.entry
         sizes = entry.bore, entry.outside_diameter, entry.width
@@ -123,8 +120,7 @@ def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:
             problem = "is missing; without a `designation` the area of its seats is not"
             raise heat.error(name, f"{problem} known")
         given[name] = heat.quantity(name, "thermal conductance", usual)
-    with heat.building():
-        return ThermalPaths(**given, oil=bearing_oil(scene, scene.oil))
+    return build(ThermalPaths, heat, **given, oil=bearing_oil(scene, scene.oil))
 
 
 def bearing_oil(scene: Scene, oil: Oil, temperature: Any = None) -> BearingOil:

@@ -21,13 +21,13 @@ MOST_PLACES = 2000
 
 
 class CageKeys(Keys):
-    """[cage]: the cage of balls or rollers that skid."""
+    about = "[cage]: the cage of balls or rollers that skid"
 
     numbers: ClassVar[Mapping[str, type]] = {"": Cage}
 
 
 class SeriesKeys(Keys):
-    """Values over time."""
+    about = "Values over time"
 
     def _series(self, time: Sequence[float], names: Sequence[str]) -> list[Any]:
         """Read the values at the times, `None` for absent keys."""
@@ -42,7 +42,7 @@ class SeriesKeys(Keys):
 
 
 class SpeedSeriesKeys(SeriesKeys):
-    """Speeds of the rings over time, linear between the times."""
+    about = "Speeds of the rings over time, linear between the times"
 
     time: tuple[float, ...] = scene_key("rising times", "time")
     inner: tuple[float, ...] | None = scene_key(
@@ -71,7 +71,7 @@ _CONSTANT = "that of [operating]"
 
 
 class LoadSeriesKeys(SeriesKeys):
-    """Load over time, linear between times, or a sine about that of [operating]."""
+    about = "Load over time, linear between times, or a sine about that of [operating]"
 
     time: tuple[float, ...] | None = scene_key(
         "rising times", "time", without={"amplitude": ""}
@@ -120,7 +120,7 @@ class LoadSeriesKeys(SeriesKeys):
 
 
 class DynamicsKeys(Keys):
-    """[dynamics]: what surrounds balls or rollers that skid, and their motion."""
+    about = "[dynamics]: what surrounds balls or rollers that skid, and their motion"
 
     drag_coefficient: float = scene_key(
         "drag coefficient of a ball or roller", default=Drag.coefficient
