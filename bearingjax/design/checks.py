@@ -161,7 +161,7 @@ def _check_bounds(owner, name, low, high, include_low, given):
 
 
 def check_fields(owner) -> None:
-    """Fields in the ranges, or among the words, that they state; `None` always passes.
+    """Fields in the ranges, or among the words, that they state; `None` if by default.
 
     Args:
         owner: A module with fields such as `eqx.field(**real("m", "length", above=0))`.
@@ -169,9 +169,11 @@ def check_fields(owner) -> None:
     for field in dataclasses.fields(owner):
         value, stated = getattr(owner, field.name), field.metadata
         ends = {name: stated[name] for name in _INSIDE if name in stated}
-        if value is not None and "choices" in stated:
+        if value is None and field.default is None:
+            continue
+        if "choices" in stated:
             one_of(owner, field.name, value, stated["choices"])
-        if value is None or not ends:
+        if not ends:
             continue
         number(owner, field.name)
         known = concrete(value)

@@ -376,6 +376,7 @@ def _fields_of_thing(kind: type) -> Iterator[Field]:
             unit = unit_of(kind, field.name)
             stated["kind"] = kind_of(unit) if unit else ""
             kinds = (tuple[float, ...] if stated_axes(field.type) else float,)
+            kinds += (str,) if "choices" in stated else ()
         yield Field(field.name, field.name, Key(**stated), kinds, field.default)
 
 
@@ -391,8 +392,14 @@ def element_of(kind: Any) -> Any:
 
 
 def is_keys(kind: Any) -> bool:
-    """Whether a type describes a table."""
+    """Whether a type describes a table that differs from the thing."""
     return isinstance(kind, type) and issubclass(kind, Keys)
+
+
+def is_table(kind: Any) -> bool:
+    """Whether a type describes a table."""
+    thing = isinstance(kind, type) and dataclasses.is_dataclass(kind)
+    return is_keys(kind) or (thing and bool(fields_of(kind)))
 
 
 def _value(table: Table, field: Field) -> Any:
@@ -405,15 +412,15 @@ def _value(table: Table, field: Field) -> Any:
     if one.of:
         return instance(table, name, one.of, *default)
     inner = element_of(kind)
-    if is_keys(kind):
+    if is_table(kind):
         if absent and field.default is not kind:
             return field.default
         inside = table.table(name, required=field.required, hint=one.hint)
-        return read_keys(kind, inside)
-    if is_keys(inner):
+        return _read(kind, inside)
+    if is_table(inner):
         if absent:
             return field.default
-        return tuple(read_keys(inner, part) for part in table.tables(name))
+        return tuple(_read(inner, part) for part in table.tables(name))
     if inner is str:
         return _texts(table, name, one)
     if kind is str and not one.choices:
@@ -434,6 +441,10 @@ def _value(table: Table, field: Field) -> Any:
     if one.kind:
         return _in_range(table, name, table.quantity(name, one.kind, *default), one)
     return _in_range(table, name, table.number(name, *default), one)
+
+
+def _read(kind: Any, table: Table) -> Any:
+    return read_keys(kind, table) if is_keys(kind) else build(kind, table)
 
 
 def _text(table: Table, name: str, *default: Any) -> Any:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from .quantity import KINDS
-from .schema import Field, element_of, fields_of, is_keys
+from .schema import Field, element_of, fields_of, is_table
 from .table import LARGEST
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -83,10 +83,10 @@ def _bare_schema(field: Field) -> dict[str, Any]:
         return dict(key.json)
     if key.of:
         return classes_schema(key.of)
-    if is_keys(kinds[0]):
+    if is_table(kinds[0]):
         return table_schema(kinds[0])
     of_list = element_of(kinds[0])
-    if is_keys(of_list):
+    if is_table(of_list):
         return {"type": "array", "items": table_schema(of_list), "minItems": 1}
     text = {"enum": list(key.choices)} if key.choices else {"type": "string"}
     if of_list is str:

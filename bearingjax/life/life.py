@@ -7,7 +7,7 @@ that a revolution uses, is finite and smooth throughout.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -26,11 +26,12 @@ from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.types import Real, RealOrNone, Scalar
-from ..numerics.units import real, unit
+from ..numerics.units import meaning, real, unit
 from ..statics.service_warning import turns_against_load
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out
 from .life_factor import (
+    CLEANLINESS,
     LARGEST_FACTOR,
     Cleanliness,
     as_contamination,
@@ -88,6 +89,7 @@ LIFE_OUTPUTS = (
 """Numbers of a `Life` that a sweep may keep."""
 
 _MILLION = 1e6
+_RATED = "published for the `designation`, else from the geometry"
 
 
 class LifeConditions(eqx.Module):
@@ -113,16 +115,64 @@ class LifeConditions(eqx.Module):
     Traced: all numbers. Static: load_fixed_to, edge_stress.
     """
 
-    dynamic_capacity: RealOrNone = eqx.field(**real("N"), default=None)
-    static_capacity: RealOrNone = eqx.field(**real("N"), default=None)
-    fatigue_load_limit: RealOrNone = eqx.field(**real("N"), default=None)
-    viscosity: RealOrNone = eqx.field(**real("m²/s"), default=None)
-    contamination: Any = eqx.field(
-        converter=as_contamination, metadata=unit("1"), default=None
+    about: ClassVar[str] = "conditions of the rating life, in addition to the bearing"
+    dynamic_capacity: RealOrNone = eqx.field(
+        **real("N", "basic dynamic load rating C", above=0, otherwise=_RATED),
+        default=None,
     )
-    reliability: Real = eqx.field(**real("1"), default=0.9)
-    load_fixed_to: str = eqx.field(static=True, default="space")
-    edge_stress: bool = eqx.field(static=True, default=True)
+    static_capacity: RealOrNone = eqx.field(
+        **real("N", "basic static load rating C0", above=0, otherwise=_RATED),
+        default=None,
+    )
+    fatigue_load_limit: RealOrNone = eqx.field(
+        **real("N", "fatigue load limit Cu", above=0, otherwise=_RATED), default=None
+    )
+    viscosity: RealOrNone = eqx.field(
+        **real(
+            "m²/s",
+            "of the oil in operation",
+            above=0,
+            below=1,
+            otherwise="that of [lubricant] at its temperature",
+        ),
+        default=None,
+    )
+    contamination: Any = eqx.field(
+        converter=as_contamination,
+        metadata=unit(
+            "1",
+            "contamination factor e_C, or a class of ISO 281, for the modified life",
+            least=0,
+            most=1,
+            choices=tuple(CLEANLINESS),
+            hint="e_C, or a class of ISO 281",
+        ),
+        default=None,
+    )
+    reliability: Real = eqx.field(
+        **real(
+            "1",
+            "share of bearings that reach the life",
+            least=0.9,
+            most=0.9995,
+            hint="a share, not %",
+        ),
+        default=0.9,
+    )
+    load_fixed_to: str = eqx.field(
+        static=True,
+        metadata=meaning(
+            "`space`, or the ring that the load turns with", choices=FRAMES
+        ),
+        default="space",
+    )
+    edge_stress: bool = eqx.field(
+        static=True,
+        metadata=meaning(
+            "whether the ends of rollers are stressed more, by ISO/TS 16281"
+        ),
+        default=True,
+    )
 
     def __check_init__(self):
         for name in ("dynamic_capacity", "static_capacity", "fatigue_load_limit"):

@@ -1,13 +1,14 @@
 """Damping of a rotor other than that of its supports."""
 
 from abc import abstractmethod
+from typing import ClassVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import non_negative
+from ..design.checks import check_fields, non_negative
 from ..numerics.lapack import cholesky, congruent, eigh
 from ..numerics.types import Real
 from ..numerics.units import real
@@ -48,12 +49,16 @@ class ProportionalDamping(AbstractDamping):
     Traced: all fields.
     """
 
-    mass_factor: Real = eqx.field(**real("1/s"), default=0.0)
-    stiffness_factor: Real = eqx.field(**real("s"), default=0.0)
+    about: ClassVar[str] = "damping in proportion to mass and stiffness of the shaft"
+    mass_factor: Real = eqx.field(
+        **real("1/s", "damping over mass", least=0), default=0.0
+    )
+    stiffness_factor: Real = eqx.field(
+        **real("s", "damping over stiffness", least=0), default=0.0
+    )
 
     def __check_init__(self):
-        non_negative(self, "mass_factor")
-        non_negative(self, "stiffness_factor")
+        check_fields(self)
 
     def matrix(
         self, shaft: tuple[Matrix, Matrix], rotor: tuple[Matrix, Matrix]

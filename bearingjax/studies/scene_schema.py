@@ -16,7 +16,9 @@ from ..files.schema_text import (
     table_schema,
 )
 from ..files.table import not_among
+from ..life.life import LifeConditions
 from ..shafts import Seat, ShaftLoad, ThermalPaths
+from ..skid import Cage
 from .bearing.read_bearing import SetKeys
 from .bearing.read_choices import (
     BallNumericsKeys,
@@ -34,7 +36,6 @@ from .bearing.read_design import (
     required_numbers,
 )
 from .bearing.read_fit import FitKeys, TemperatureKeys
-from .bearing.read_life import LifeKeys
 from .bearing.read_lubricant import LubricantKeys
 from .bearing.read_operating import LoadKeys, OperatingKeys, OutputKeys, SolveKeys
 from .cases.read_cases import CasesKeys
@@ -54,7 +55,7 @@ from .rotor.mounts import SpringKeys
 from .rotor.read import RotorKeys
 from .shaft.read import PARTS, DriveKeys, HousingKeys, SeatKeys, ShaftKeys, SystemKeys
 from .shaft.read_heat import HeatKeys
-from .skid.read_dynamics import CageKeys, DynamicsKeys
+from .skid.read_dynamics import DynamicsKeys
 
 
 def scene_schema() -> dict[str, Any]:
@@ -69,7 +70,7 @@ def scene_schema() -> dict[str, Any]:
         "material": numbers,
         "profile": {"anyOf": _profiles()},
         "rib": table_schema(Rib),
-        "life": table_schema(LifeKeys),
+        "life": table_schema(LifeConditions),
         "lubricant": table_schema(LubricantKeys),
         "output": table_schema(OutputKeys),
         "cases": table_schema(CasesKeys),
@@ -119,7 +120,7 @@ def _bearing_scene() -> dict[str, Any]:
         "output": _ref("output"),
         "cases": _ref("cases"),
         "optimise": table_schema(OptimiseKeys),
-        "cage": table_schema(CageKeys),
+        "cage": table_schema(Cage),
         "dynamics": table_schema(DynamicsKeys),
         "deviations": table_schema(DeviationsKeys),
         "vibration": table_schema(VibrationKeys),

@@ -1,65 +1,14 @@
 """The [life] table of a scene: conditions of the rating life."""
 
-import dataclasses
-
 from ...design import AbstractBearing, BearingSet
 from ...element import Speed
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import read_values
 from ...files.table import Table
-from ...life.life import FRAMES, LifeConditions
-from ...life.life_factor import CLEANLINESS
+from ...life.life import LifeConditions
 from ...life.rating import rated_axially
 from ...life.reference_life import LEAST_LAMINAE
 from ...numerics.warning import Warning
 from .oil import Oil, read_oil
-
-_RATED = "published for the `designation`, else from the geometry"
-
-
-class LifeKeys(Keys):
-    about = "[life]: conditions of the rating life, in addition to the bearing"
-
-    dynamic_capacity: float | None = scene_key(
-        "basic dynamic load rating C", "force", above=0, otherwise=_RATED
-    )
-    static_capacity: float | None = scene_key(
-        "basic static load rating C0", "force", above=0, otherwise=_RATED
-    )
-    fatigue_load_limit: float | None = scene_key(
-        "fatigue load limit Cu", "force", above=0, otherwise=_RATED
-    )
-    reliability: float = scene_key(
-        "share of bearings that reach the life",
-        default=0.9,
-        least=0.9,
-        most=0.9995,
-        hint="a share, not %",
-    )
-    load_fixed_to: str = scene_key(
-        "`space`, or the ring that the load turns with", choices=FRAMES, default="space"
-    )
-    edge_stress: bool = scene_key(
-        "whether the ends of rollers are stressed more, by ISO/TS 16281", default=True
-    )
-    contamination: float | str | None = scene_key(
-        "contamination factor e_C, or a class of ISO 281: the modified life is told",
-        least=0,
-        most=1,
-        choices=tuple(CLEANLINESS),
-        hint="e_C, or a class of ISO 281",
-    )
-    viscosity: float | None = scene_key(
-        "of the oil in operation",
-        "kinematic viscosity",
-        above=0,
-        below=1,
-        otherwise="that of [lubricant] at its temperature",
-    )
-
-    def check(self) -> None:
-        if self.viscosity is not None and self.contamination is None:
-            problem = "is missing; the modified life needs it beside `viscosity`"
-            raise self.table.error("contamination", problem)
 
 
 def read_life(
@@ -78,41 +27,43 @@ def read_life(
     """
     if "life" not in top:
         return None
-    keys = read_keys(LifeKeys, top.table("life"))
-    table = keys.table
+    table = top.table("life")
+    given = read_values(LifeConditions, table)
+    if given["viscosity"] is not None and given["contamination"] is None:
+        problem = "is missing; the modified life needs it beside `viscosity`"
+        raise table.error("contamination", problem)
     if bearing.is_ball:
         if "edge_stress" in table:
             raise table.error("edge_stress", "is for rollers; balls have no ends")
         table.fill("edge_stress", None)
-    viscosity = None if keys.contamination is None else _viscosity(top, keys)
-    if viscosity is not None and not _turns(speed) and "cases" not in top:
+    if given["contamination"] is not None:
+        given["viscosity"] = _viscosity(top, table, given["viscosity"])
+    if given["viscosity"] is not None and not _turns(speed) and "cases" not in top:
         problem = "needs a speed of one ring against the other, for its film"
         raise table.error("contamination", problem)
     _check_points(top, bearing, points)
     table.finish()
-    names = [field.name for field in dataclasses.fields(LifeConditions)]
-    values = {name: getattr(keys, name) for name in names}
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
-        return LifeConditions(**{**values, "viscosity": viscosity})
+        return LifeConditions(**given)
 
 
 def _turns(speed) -> bool:
     return speed is not None and float(speed.inner) != float(speed.outer)
 
 
-def _viscosity(top: Table, keys: LifeKeys) -> float:
+def _viscosity(top: Table, table: Table, given: float | None) -> float:
     """Return the kinematic viscosity of the oil, given or of [lubricant] [m²/s]."""
-    if keys.viscosity is not None:
+    if given is not None:
         if "lubricant" in top:
             oil = f"[{top.path_of('lubricant')}]"
             problem = f"stands beside {oil}, whose oil has a viscosity; choose one"
-            raise keys.table.error("viscosity", problem)
-        return keys.viscosity
+            raise table.error("viscosity", problem)
+        return given
     if "lubricant" not in top:
         oil = f"[{top.path_of('lubricant')}]"
         problem = f"is missing, and so is {oil}; `contamination` needs an oil"
-        raise keys.table.error("viscosity", problem)
+        raise table.error("viscosity", problem)
     oil, _ = read_oil(top.table("lubricant"))
     return float(oil.lubricant.kinematic_viscosity(oil.temperature))
 

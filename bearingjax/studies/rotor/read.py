@@ -122,15 +122,6 @@ class DiscKeys(Keys):
             return Disc(self.station, self.mass, *both)
 
 
-class DampingKeys(Keys):
-    about = "[rotor.damping]: damping in proportion to mass and stiffness of the shaft"
-
-    mass_factor: float = scene_key("damping over mass", "rate", default=0.0, least=0)
-    stiffness_factor: float = scene_key(
-        "damping over stiffness", "time", default=0.0, least=0
-    )
-
-
 class UnbalanceKeys(Keys):
     about = "[[rotor.excitation.unbalance]]: masses off the axis"
 
@@ -205,7 +196,7 @@ class RotorKeys(Keys):
     damping_ratio: float | None = scene_key(
         "damping ratio of all modes", least=0, below=1
     )
-    damping: DampingKeys | None = scene_key(
+    damping: ProportionalDamping | None = scene_key(
         "damping in proportion to mass and stiffness of the shaft",
         without={"damping_ratio": ""},
     )
@@ -252,7 +243,7 @@ class RotorKeys(Keys):
     def own_damping(self) -> AbstractDamping | None:
         """Damping in addition to that of the bearings."""
         if self.damping is not None:
-            return ProportionalDamping(**self.damping.given)
+            return self.damping
         return ModalDamping(self.damping_ratio) if self.damping_ratio else None
 
     @property

@@ -16,13 +16,13 @@ from ...design import (
 )
 from ...element import Speed
 from ...files.scene_file import find_scene, parse_bearing
-from ...files.schema import read_keys
+from ...files.schema import build, read_keys
 from ...files.table import Table
 from ...numerics.warning import Warning
 from ...skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable
 from ..bearing.read_lubricant import LubricantKeys
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
-from .read_dynamics import CageKeys, DynamicsKeys
+from .read_dynamics import DynamicsKeys
 
 
 @dataclasses.dataclass(frozen=True)
@@ -99,7 +99,8 @@ def read_skid(
     scene = scene_of(data, path)
     _check_bearing(top, scene)
     lubricant = read_keys(LubricantKeys, top.table("lubricant", required=True))
-    cage = read_keys(CageKeys, top.table("cage"))
+    cage = top.table("cage")
+    surrounding = build(Cage, cage)
     dynamics = read_keys(DynamicsKeys, top.table("dynamics"))
     _check_dynamics(dynamics, scene, steady)
     warned = lubricant.assumed
@@ -110,7 +111,7 @@ def read_skid(
             " `dynamics.fill`"
         )
         warned = (*warned, Warning("unused_supply", words))
-    oil, surrounding = lubricant.oil(), cage.built(Cage)
+    oil = lubricant.oil()
     with dynamics.table.building():
         model = SkidModel(
             scene.running(),
@@ -144,9 +145,9 @@ def read_skid(
         places=dynamics.places,
         warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
     )
-    for keys in (lubricant, cage, dynamics):
-        keys.table.finish()
-    own = {"cage": cage.table.echo(), "dynamics": dynamics.table.echo()}
+    for table in (lubricant.table, cage, dynamics.table):
+        table.finish()
+    own = {"cage": cage.echo(), "dynamics": dynamics.table.echo()}
     return dataclasses.replace(found, inputs={**scene.inputs, **own})
 
 

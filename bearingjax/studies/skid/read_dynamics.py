@@ -1,15 +1,15 @@
 """The [cage] and [dynamics] tables of a scene: cage, drag and time integration of
 skidding balls or rollers."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ...element import Speed
 from ...element.frame import LOADS
 from ...files.schema import Keys, scene_key
-from ...skid import Cage, Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable, ramp
+from ...skid import Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable, ramp
 from ..bearing.read_operating import LoadKeys
 
 AXES = ("vertical", "horizontal")
@@ -18,12 +18,6 @@ MOST_TIMES = 20_000
 """Most times of a run: about 8 kB each as JSON."""
 MOST_PLACES = 2000
 """Most positions along an orbit: a matrix of 0.5 GB."""
-
-
-class CageKeys(Keys):
-    about = "[cage]: the cage of balls or rollers that skid"
-
-    numbers: ClassVar[Mapping[str, type]] = {"": Cage}
 
 
 class SeriesKeys(Keys):
