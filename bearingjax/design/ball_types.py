@@ -8,7 +8,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real
 from .ball import AbstractBallBearing, Groove
 from .checks import check, check_fields, concrete, in_range, number

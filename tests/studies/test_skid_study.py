@@ -84,13 +84,13 @@ def test_loads_over_time():
     task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {times} }}"])
     rows = [[0.0, 0.0, 600.0, 0.0, 0.0, 0.0], [0.0, 300.0, 600.0, 1.0, 0.0, 0.0]]
     assert same(task.loads, LoadHistory([0.0, 0.02], rows))
-    assert task.balanced is None
+    assert task.dynamics.balanced is None
     wave = "load={amplitude={Fy='80 N'}, speed='30 rpm', phase='90 deg'}"
     task = read_skid("skid_combined", [f"dynamics={{duration='1 s', {wave} }}"])
     wanted = SinusoidalLoad(task.scene.load, [0, 80.0, 0, 0, 0, 0], np.pi, 0.5 * np.pi)
     assert same(task.loads, wanted)
     task = read_skid("skid_combined", ["dynamics={duration='1 s', balanced=true}"])
-    assert task.loads is None and task.balanced is True
+    assert task.loads is None and task.dynamics.balanced is True
 
 
 def test_rollers_and_places_of_the_end_state():
@@ -111,7 +111,7 @@ def test_rollers_and_places_of_the_end_state():
         SceneError, match="1 or a multiple of the number .* rollers, 12"
     ):
         read_skid("skid_axial", ["dynamics.places=100"], steady=True)
-    assert read_skid("skid_axial", ["dynamics.places=100"]).places == 100
+    assert read_skid("skid_axial", ["dynamics.places=100"]).dynamics.places == 100
 
 
 def test_shipped_scenes_are_those_of_the_paper():
@@ -119,8 +119,9 @@ def test_shipped_scenes_are_those_of_the_paper():
     assert same(task.model, MODEL)
     np.testing.assert_allclose(task.speed.inner, SPEED.inner, rtol=1e-7)
     assert task.scene.load == (0.0, 0.0, 80.0, 0.0, 0.0, 0.0)
-    assert (task.oil, task.duration, task.axis) == ("MIL-L-23699", 0.4, "vertical")
-    assert (task.start, task.n_times, task.places) == ("rolling", 501, None)
+    asked = task.dynamics
+    assert (task.oil, asked.duration, asked.axis) == ("MIL-L-23699", 0.4, "vertical")
+    assert (asked.start, asked.n_times, asked.places) == ("rolling", 501, None)
     assert same(task.speeds, ramp(0.1, task.speed))
     combined = read_skid("skid_combined")
     assert isinstance(combined.model.traction, LimitingStress)
@@ -129,13 +130,13 @@ def test_shipped_scenes_are_those_of_the_paper():
     assert combined.speeds is None
     assert combined.scene.load == (0.0, 400.0, 600.0, 0.0, 0.0, 0.0)
     end = read_skid("skid_axial", ["dynamics={}"], steady=True)
-    assert end.steady and end.duration is None
+    assert end.steady
     assert same(end.model, MODEL)  # the defaults are the same numbers
 
 
 def test_shipped_roller_scene():
     task = read_skid("skid_roller", steady=True)
-    assert task.model.bearing.n_rollers == 36 and task.places == 108
+    assert task.model.bearing.n_rollers == 36 and task.dynamics.places == 108
     assert same(task.model.traction, LimitingStress())
     assert same(task.model.drag, Drag(2.0, 0.02))
     assert task.scene.free == ("ux", "uy")
@@ -156,9 +157,10 @@ def test_read_skid_cage_and_dynamics_tables():
     assert same(task.model.cage, Cage(1e-4, 2e6, 3e-6))
     assert same(task.model.drag, Drag(1.5, 0.05))
     assert float(task.model.least_film) == 20e-9 and task.model.inlet_heating
-    assert (task.duration, task.axis, task.start) == (0.25, "horizontal", "rest")
-    assert (task.n_times, task.tolerance, task.max_steps) == (11, 1e-5, 99)
-    assert task.places == 24
+    asked = task.dynamics
+    assert (asked.duration, asked.axis, asked.start) == (0.25, "horizontal", "rest")
+    assert (asked.n_times, asked.tolerance, asked.max_steps) == (11, 1e-5, 99)
+    assert asked.places == 24
     assert same(
         task.speeds, SpeedTable([0.0, 1.0, 2.0], [0.0] * 3, [0.0, 2 * np.pi, np.pi])
     )

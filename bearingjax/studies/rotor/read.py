@@ -58,14 +58,11 @@ MATERIAL: Any = {
 
 
 class SegmentKeys(Keys):
-    about = "[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends"
+    about = "segments of a shaft"
 
     length: float = scene_key("length", "length", above=0)
     outer_diameter: float = scene_key("outer diameter", "length", above=0)
     bore: float = scene_key("bore", "length", default=0.0, least=0)
-    divisions: int = scene_key(
-        f"elements of the segment; at most {MOST_ELEMENTS} of all", default=1
-    )
     material: Material = scene_key("material, or its numbers", **MATERIAL)
 
     def check(self) -> None:
@@ -75,6 +72,14 @@ class SegmentKeys(Keys):
             )
             allowed = f"from 0 to below the outer diameter, {most}"
             raise self.table.error("bore", f"{bore} is not allowed; {allowed}")
+
+
+class DividedSegmentKeys(SegmentKeys):
+    about = "[[rotor.shaft]]: segments from z = 0 on; stations, from 0, are their ends"
+
+    divisions: int = scene_key(
+        f"elements of the segment; at most {MOST_ELEMENTS} of all", default=1
+    )
 
 
 _OF_DISC: Any = {"without": {"mass": "give either `mass` or the sizes of a disc"}}
@@ -201,7 +206,7 @@ class RotorKeys(Keys):
         without={"damping_ratio": ""},
     )
     modes: int = scene_key("number of modes that are reported", default=10)
-    shaft: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
+    shaft: tuple[DividedSegmentKeys, ...] = scene_key("segments of the shaft")
     discs: tuple[DiscKeys, ...] = scene_key("discs and point masses", default=())
     bearings: tuple[MountKeys, ...] = scene_key("what holds the shaft")
     excitation: ExcitationKeys = scene_key(

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from ...cases.cases import check_hours
-from ...design import Material
 from ...element.frame import LOADS
 from ...files.output_files import read_matrix
-from ...files.quantity import SceneError, scene_number, to_si
+from ...files.quantity import SceneError, to_si
 from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
 from ...files.schema import Keys, build, direction_json, fields_of, read_keys, scene_key
 from ...files.table import Table
@@ -37,7 +36,7 @@ from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
 from ..cases.read_cases import CasesKeys, Varied
 from ..rotor.mounts import SpringKeys
-from ..rotor.read import MATERIAL
+from ..rotor.read import SegmentKeys as RotorSegmentKeys
 from .read_heat import heat_warnings, read_heat
 
 AXES = {
@@ -74,18 +73,8 @@ def _axis(about: str) -> Any:
     return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
 
 
-class SegmentKeys(Keys):
+class SegmentKeys(RotorSegmentKeys):
     about = "[[shaft.NAME.segments]]: segments of the shaft, one after the other"
-
-    length: float = scene_key("length", "length", above=0)
-    outer_diameter: float = scene_key("outer diameter", "length", above=0)
-    bore: float = scene_key("bore", "length", default=0.0, least=0)
-    material: Material = scene_key("material, or its numbers", **MATERIAL)
-
-    def check(self) -> None:
-        if not self.bore < self.outer_diameter:
-            bore = scene_number(self.bore, "length")
-            raise self.table.error("bore", f"{bore} is not below the outer diameter")
 
 
 class ShaftKeys(Keys):

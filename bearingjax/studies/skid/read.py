@@ -35,14 +35,8 @@ class SkidScene:
         oil: Name of the oil, or of the law of its viscosity.
         speeds: Ring speeds over time, or `None` for the constant ones of the scene.
         loads: Load over time, or `None` for the constant one of the scene.
-        balanced: As in `skid.simulate`.
-        duration: Duration of the motion [s]; `None` for the steady state.
-        start: "rolling" or "rest": initial state of the balls.
-        axis: "vertical" or "horizontal".
-        n_times: Number of reported times.
-        places: Positions along the orbit, or `None` for the default.
-        tolerance: Tolerance of the time integration.
-        max_steps: Its step limit.
+        dynamics: Settings of the motion, as the table says them.
+        steady: Whether the steady state is requested.
         warnings: Assumptions, and warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
@@ -52,14 +46,8 @@ class SkidScene:
     oil: str
     speeds: SpeedTable | None
     loads: LoadHistory | SinusoidalLoad | None
-    balanced: bool | None
-    duration: float | None
-    start: str
-    axis: str
-    n_times: int
-    places: int | None
-    tolerance: float
-    max_steps: int
+    dynamics: DynamicsKeys
+    steady: bool
     warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
@@ -67,11 +55,6 @@ class SkidScene:
     def name(self) -> str:
         """Name of the file without its ending."""
         return self.scene.name
-
-    @property
-    def steady(self) -> bool:
-        """Whether the steady state is requested."""
-        return self.duration is None
 
     @property
     def speed(self) -> Speed:
@@ -135,14 +118,8 @@ def read_skid(
         oil=lubricant.called,
         speeds=speeds,
         loads=loads,
-        balanced=dynamics.balanced,
-        duration=duration,
-        start=dynamics.start,
-        axis=dynamics.axis,
-        n_times=dynamics.n_times,
-        tolerance=dynamics.tolerance,
-        max_steps=dynamics.max_steps,
-        places=dynamics.places,
+        dynamics=dynamics,
+        steady=steady,
         warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
     )
     for table in (lubricant.table, cage, dynamics.table):

@@ -89,7 +89,7 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
 
 def _left_out(task):
     """Yield warnings of scene contents that the steady state neglects."""
-    if task.axis == "horizontal":
+    if task.dynamics.axis == "horizontal":
         words = "the end state leaves out gravity along the orbits; solve in time"
         yield Warning("left_out_gravity", words)
     if task.loads is not None:
@@ -102,7 +102,7 @@ def _end(task) -> tuple[Any, Any]:
         task.model,
         task.scene.load,
         speed=task.speed,
-        places=task.places,
+        places=task.dynamics.places,
         support=task.scene.support,
         throw=False,
     )
@@ -111,21 +111,22 @@ def _end(task) -> tuple[Any, Any]:
 
 def _motion(task, shown) -> tuple[Any, Any]:
     speed = task.speed if task.speeds is None else task.speeds
+    asked = task.dynamics
     found = skid.simulate(
         task.model,
         task.scene.load if task.loads is None else task.loads,
         speed=speed,
-        times=task.duration * np.linspace(0.0, 1.0, task.n_times),
-        start=rest_state(task.model.bearing) if task.start == "rest" else None,
+        times=asked.duration * np.linspace(0.0, 1.0, asked.n_times),
+        start=rest_state(task.model.bearing) if asked.start == "rest" else None,
         support=task.scene.support,
         options=skid.SkidOptions(
-            task.tolerance,
-            task.max_steps,
+            asked.tolerance,
+            asked.max_steps,
             derivatives="forward",
             progress=shown,
-            axis=task.axis,
-            balanced=task.balanced,
-            places=task.places,
+            axis=asked.axis,
+            balanced=asked.balanced,
+            places=asked.places,
             load_speed=task.speed,
         ),
         throw=False,
