@@ -205,7 +205,7 @@ stiffness = {springs}
     )
     task = read_rotor(path)
     assert task.mounts[0].element.bearing.n_balls == 7
-    assert task.mounts[1].stiffness == (20e6, 20e6, 5e6, 1e3, 1e3)
+    assert task.mounts[1].keys.stiffness.diagonal == (20e6, 20e6, 5e6, 1e3, 1e3)
     assert task.station_names == ("0 mine", "1 springs")
     # What would be overwritten is known.
     assert scene_files(path) == [path, other]

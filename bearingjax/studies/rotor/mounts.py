@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ...design import AbstractBallBearing
-from ...element import Speed
+from ...element import BearingElement, Speed
 from ...files.quantity import SceneError
 from ...files.scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
 from ...files.schema import Keys, scene_key
@@ -16,9 +16,9 @@ from ...numerics.warning import Warning, warnings_of
 from ...rotor import Housing, Shaft
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
+from ...statics.installed import Installed
 from ..bearing.placed_bearing import echoed, read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene, scene_of
-from .scene import Mount
 
 LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
 
@@ -99,6 +99,9 @@ class HousingKeys(Keys):
         "dampers against ground, along each axis", "damping", default=0.0
     )
 
+    def check(self) -> None:
+        _ = self.housing  # which it may refuse
+
     @property
     def housing(self) -> Housing:
         """Housing between the bearing and ground."""
@@ -151,6 +154,40 @@ class MountKeys(Keys):
         if self.bearing is None and self.stiffness is None:
             problem = "is missing, and so is `stiffness`; give one of them"
             raise self.table.error("bearing", problem)
+
+
+@dataclasses.dataclass(frozen=True)
+class Mount:
+    """Support of a station of the shaft, in SI.
+
+    Attributes:
+        keys: Its [[rotor.bearings]].
+        scene: The bearing as a scene of its own, with its [life], its seats at the
+            speed of the rotor; `None`: springs.
+    """
+
+    keys: MountKeys
+    scene: Scene | None = None
+
+    @property
+    def station(self) -> int:
+        """Number of its station."""
+        return self.keys.station
+
+    @property
+    def name(self) -> str:
+        """Name of the bearing; "springs" without one."""
+        return "springs" if self.scene is None else self.scene.name
+
+    @property
+    def installed(self) -> Installed | None:
+        """The bearing with its preload and seats, or `None`: springs."""
+        return None if self.scene is None else self.scene.installed
+
+    @property
+    def element(self) -> BearingElement[Any] | None:
+        """The bearing before preloading and mounting."""
+        return None if self.installed is None else self.installed.drawing
 
 
 def read_mounts(
@@ -231,20 +268,7 @@ def _bearing(
 def _mount(keys: MountKeys, bearing: Scene | None) -> Mount:
     if bearing is not None:
         _check_bearing(keys, bearing.element.bearing)
-    springs, housing = keys.stiffness, keys.housing
-    return Mount(
-        station=keys.station,
-        name="springs" if bearing is None else bearing.name,
-        preload=keys.preload,
-        offset=keys.offset or 0.0,
-        law=keys.law,
-        turned=keys.turned,
-        inertia=keys.inertia,
-        stiffness=() if springs is None else springs.diagonal,
-        damping=keys.damping.diagonal,
-        housing=None if housing is None else housing.housing,
-        scene=bearing,
-    )
+    return Mount(keys, bearing)
 
 
 def _check_bearing(keys: MountKeys, design: Any) -> None:

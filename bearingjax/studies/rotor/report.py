@@ -127,7 +127,7 @@ def _bearings(run):
     # A bearing without ribs has no axial stiffness.
     stiff = [np.diagonal(without_round_off(k[:3, :3])) for k in stiffness]
     names = [
-        f"{mount.station} {mount.name}{', turned' if mount.turned else ''}"
+        f"{mount.station} {mount.name}{', turned' if mount.keys.turned else ''}"
         for mount in run.task.mounts
     ]
     forces = np.round(loads[:, :3], 1)

@@ -33,7 +33,8 @@ from ...rotor import (
 from ...statics.load_result import solution_at
 from ..bearing.life_ratings import life_conditions
 from .motion import RotorResponse, RotorTransient, respond, run_in_time
-from .scene import Mount, RotorScene
+from .mounts import Mount
+from .scene import RotorScene
 from .supports import support_of
 
 
@@ -195,12 +196,12 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
             words = "a `law` has no life; leave it out"
             parts.warnings.append(Warning("no_life", words).of(mount.name))
             continue
-        turns = -task.speed if mount.turned else task.speed
+        turns = -task.speed if mount.keys.turned else task.speed
         speed = Speed(as_array(turns, float)) if task.speed else None
         solution = solution_at(
             support.element,
             support.rings(jnp.asarray(motion)),
-            speed if mount.inertia else None,
+            speed if mount.keys.inertia else None,
             scene.points,
         )
         conditions = life_conditions(scene, speed is not None)

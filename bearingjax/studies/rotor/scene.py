@@ -5,54 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from ...element import BearingElement
 from ...numerics.warning import Warning
-from ...rotor import AbstractDamping, AbstractPart, Housing, Shaft
-from ...statics.installed import Installed
-from ..bearing.read_scene import Scene
+from ...rotor import AbstractDamping, AbstractPart, Shaft
+from .mounts import Mount
 from .tasks import ResponseKeys, TransientKeys
-
-
-@dataclasses.dataclass(frozen=True)
-class Mount:
-    """Support of a station of the shaft, in SI.
-
-    Attributes:
-        station: Number of the station.
-        name: Name of the bearing; "springs" without one.
-        preload: Axial preload force of the bearing as mounted [N], or `None`.
-        offset: Axial displacement of the inner ring as mounted [m].
-        law: "fixed_angle", "moving_angle", "cubic", or `None` for the full model.
-        turned: Whether it faces the other way.
-        inertia: Whether centrifugal and gyroscopic loads act on the rolling elements.
-        stiffness: Stiffness of springs, in ux uy uz gx gy (5,) [N/m, N m].
-        damping: Damping in ux uy uz gx gy (5,) [N s/m, N m s].
-        housing: Housing of the support; `None`: ground.
-        scene: The bearing as a scene of its own, with its [life], its seats at the
-            speed of the rotor; `None`: springs.
-    """
-
-    station: int
-    name: str
-    preload: float | None
-    offset: float
-    law: str | None
-    turned: bool
-    inertia: bool
-    stiffness: tuple[float, ...]
-    damping: tuple[float, ...]
-    housing: Housing | None
-    scene: Scene | None = None
-
-    @property
-    def installed(self) -> Installed | None:
-        """The bearing with its preload and seats, or `None`: springs."""
-        return None if self.scene is None else self.scene.installed
-
-    @property
-    def element(self) -> BearingElement[Any] | None:
-        """The bearing before preloading and mounting."""
-        return None if self.installed is None else self.installed.drawing
 
 
 @dataclasses.dataclass(frozen=True)

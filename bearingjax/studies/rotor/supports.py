@@ -14,8 +14,7 @@ from ...rotor import (
     preload_offset,
 )
 from ...rotor.nonlinear import LawSupport
-from .mounts import LAWS
-from .scene import Mount
+from .mounts import LAWS, Mount
 
 _AT_LEAST = 1e-5
 """Least unit of length, for rotors without preload or load [m]."""
@@ -30,28 +29,28 @@ def support_of(mount: Mount) -> AbstractSupport:
     Raises:
         SolveError: If a bearing cannot carry its preload.
     """
-    housing = mount.housing
+    keys, damping = mount.keys, mount.keys.damping.diagonal
+    housing = None if keys.housing is None else keys.housing.housing
     if mount.installed is None:
-        return LinearSupport(
-            mount.station, mount.stiffness, mount.damping, housing=housing
-        )
+        springs = () if keys.stiffness is None else keys.stiffness.diagonal
+        return LinearSupport(keys.station, springs, damping, housing=housing)
     element = mount.installed.at()
-    offset = as_array(mount.offset, float)
-    if mount.preload is not None:
-        offset = preload_offset(element, as_array(mount.preload, float))
-    if mount.law is not None:
-        law = LAWS[mount.law].of_bearing(element, offset)
+    offset = as_array(keys.offset or 0.0, float)
+    if keys.preload is not None:
+        offset = preload_offset(element, as_array(keys.preload, float))
+    if keys.law is not None:
+        law = LAWS[keys.law].of_bearing(element, offset)
         return LawSupport(
-            mount.station, law, mount.damping, housing=housing, turned=mount.turned
+            keys.station, law, damping, housing=housing, turned=keys.turned
         )
     return BearingSupport(
-        mount.station,
+        keys.station,
         element,
         as_array([0.0, 0.0, 0.0, 0.0, 0.0], float).at[2].set(offset),
-        mount.damping,
+        damping,
         housing=housing,
-        turned=mount.turned,
-        inertia=mount.inertia,
+        turned=keys.turned,
+        inertia=keys.inertia,
     )
 
 
