@@ -62,8 +62,10 @@ def test_read_rotor_paper_rotor_matches_table():
     own = [float(disc.mass), float(disc.polar_inertia), float(disc.diametral_inertia)]
     assert own == [10.0, 0.2, 0.1]
     a, b = task.mounts
-    assert (a.station, b.station, a.turned, b.turned) == (0, 2, False, True)
-    assert a.preload == b.preload == 581.2 and a.law == "fixed_angle"
+    first, second = a.keys, b.keys
+    assert (a.station, b.station) == (0, 2)
+    assert (first.turned, second.turned) == (False, True)
+    assert first.preload == second.preload == 581.2 and first.law == "fixed_angle"
     bearing = a.element.bearing
     assert float(bearing.pitch_diameter) == pytest.approx(16e-3 + 27.5399e-3)
     assert np.degrees(float(bearing.free_contact_angle)) == pytest.approx(
@@ -105,12 +107,19 @@ def test_all_keys_of_a_mount_a_disc_and_loads():
     assert np.allclose(task.loads.gravity, [0.0, 0.0, -9.80665])
     assert isinstance(task.discs[0], bj.rotor.PointMass) and task.discs[0].station == 2
     one, other = task.mounts
-    assert (one.station, one.offset, one.turned, one.inertia) == (1, 4e-6, True, True)
-    assert one.damping == (1.0, 2.0, 3.0, 4.0, 4.0)
+    keys = one.keys
+    assert (one.station, keys.offset, keys.turned, keys.inertia) == (
+        1,
+        4e-6,
+        True,
+        True,
+    )
+    assert keys.damping.diagonal == (1.0, 2.0, 3.0, 4.0, 4.0)
     assert isinstance(one.element.raceway_control, bj.element.InnerControl)
     assert isinstance(one.element.point_law, bj.contact.ZeroAngle)
-    assert np.allclose(np.diag(one.housing.stiffness), [1e6, 2e6, 3e6])
-    assert np.allclose(np.diag(one.housing.damping), 5.0)
+    housing = keys.housing.housing
+    assert np.allclose(np.diag(housing.stiffness), [1e6, 2e6, 3e6])
+    assert np.allclose(np.diag(housing.damping), 5.0)
     needle = bj.read_scene("needle")
     assert other.name == "needle"
     assert type(other.element.bearing) is type(needle.element.bearing)
@@ -214,7 +223,9 @@ stiffness = {springs}
 def test_round_off_of_a_bearing_without_ribs_is_no_axial_stiffness(untyped):
     k = np.diag([4e8, 3e8, -5.7e-6, 2e3, 2e3])
     k[2, 3] = 1e-5
-    mount = SimpleNamespace(station="left", name="nu206", turned=False)
+    mount = SimpleNamespace(
+        station="left", name="nu206", keys=SimpleNamespace(turned=False)
+    )
     run = SimpleNamespace(
         settled=SimpleNamespace(support_load=np.zeros((1, 5)), stiffness=k[None]),
         task=SimpleNamespace(mounts=[mount]),

@@ -1,19 +1,19 @@
 """Vibration of a linear rotor under unbalance."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Complex, Float
 
-from ...design.checks import non_negative, number
+from ...design.checks import check_fields, number
 from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
 from ...numerics.types import Real, as_count
-from ...numerics.units import real
+from ...numerics.units import meaning, real
 from ..parts import check_station
 from ..rotor import Rotor
 from ..shaft import STATION_UNITS
@@ -36,13 +36,20 @@ class Unbalance(eqx.Module):
     Traced: moment, phase.
     """
 
-    station: int = eqx.field(static=True, converter=as_count)
-    moment: Real = eqx.field(**real("kg m"))
-    phase: Real = eqx.field(**real("rad"), default=0.0)
+    about: ClassVar[str] = "masses off the axis"
+    station: int = eqx.field(
+        static=True,
+        converter=as_count,
+        metadata=meaning("station of the shaft", least=0),
+    )
+    moment: Real = eqx.field(**real("kg m", "mass times eccentricity", least=0))
+    phase: Real = eqx.field(
+        **real("rad", "azimuth at time 0, from x to y"), default=0.0
+    )
 
     def __check_init__(self):
         check_station(self, self.station)
-        non_negative(self, "moment")
+        check_fields(self)
         number(self, "phase")
 
 

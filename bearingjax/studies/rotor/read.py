@@ -127,14 +127,6 @@ class DiscKeys(Keys):
             return Disc(self.station, self.mass, *both)
 
 
-class UnbalanceKeys(Keys):
-    about = "[[rotor.excitation.unbalance]]: masses off the axis"
-
-    station: int = scene_key("station of the shaft", least=0)
-    moment: float = scene_key("mass times eccentricity", "unbalance", least=0)
-    phase: float = scene_key("azimuth at time 0, from x to y", "angle", default=0.0)
-
-
 class ForceKeys(Keys):
     about = "[[rotor.excitation.forces]]: constant forces and moments"
 
@@ -168,7 +160,7 @@ class BaseKeys(Keys):
 class ExcitationKeys(Keys):
     about = "[rotor.excitation]: loads on the rotor in addition to its weight"
 
-    unbalance: tuple[UnbalanceKeys, ...] = scene_key("masses off the axis", default=())
+    unbalance: tuple[Unbalance, ...] = scene_key("masses off the axis", default=())
     forces: tuple[ForceKeys, ...] = scene_key("constant forces and moments", default=())
     base_acceleration: BaseKeys = scene_key(
         "amplitude of the base that shakes at the frequency of the excitation",
@@ -181,11 +173,10 @@ class ExcitationKeys(Keys):
         Args:
             gravity: Gravity along x, y and z [m/s²].
         """
-        unbalances = tuple(Unbalance(**one.given) for one in self.unbalance)
         forces = tuple(StationForce(one.station, one.force) for one in self.forces)
         base = [*self.base_acceleration.given.values()]
         with self.table.building():
-            return RotorLoads(unbalances, forces, gravity, base)
+            return RotorLoads(self.unbalance, forces, gravity, base)
 
 
 class RotorKeys(Keys):
@@ -224,11 +215,14 @@ class RotorKeys(Keys):
                 problem = f"{total} elements are too many; at most {MOST_ELEMENTS}"
                 raise segment.table.error("divisions", problem)
         tasks = [one for one in (self.response, self.transient) if one is not None]
-        of_loads = *loads.unbalance, *loads.forces
-        for one in (*self.discs, *self.bearings, *of_loads, *tasks):
-            if one.station is not None and one.station > last:
-                problem = f"{one.station} is not a station of the shaft; from 0 to"
-                raise one.table.error("station", f"{problem} {last}")
+        placed: list[Any] = [*self.discs, *self.bearings, *loads.forces, *tasks]
+        stations = [(one.table, "station", one.station) for one in placed]
+        for k, one in enumerate(loads.unbalance):
+            stations.append((loads.table, f"unbalance[{k}].station", one.station))
+        for table, key, station in stations:
+            if station is not None and station > last:
+                problem = f"{station} is not a station of the shaft; from 0 to {last}"
+                raise table.error(key, problem)
         shaken = any(loads.base_acceleration.given.values())
         if self.response is not None and not loads.unbalance and not shaken:
             problem = "is missing, and so is `base_acceleration`; nothing excites"
