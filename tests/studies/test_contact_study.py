@@ -81,8 +81,9 @@ def three():
 def test_shipped_scene_is_the_published_case():
     scene = read_contact("taper_contact")
     contact = scene.contact
-    assert scene.loads == (1e3, 2e3, 3e3, 4e3, 5e3) and scene.listed
-    assert (scene.across, scene.along, scene.grading) == (35, 64, 2.0)
+    pressed, cells = scene.operating, scene.numerics
+    assert pressed.loads == (1e3, 2e3, 3e3, 4e3, 5e3) and pressed.listed
+    assert (cells.across, cells.along, cells.grading) == (35, 64, 2.0)
     assert float(contact.roller_length) == near(0.015)
     assert float(contact.small_diameter) == near(0.010)
     assert float(contact.large_diameter) == near(0.012)
@@ -96,13 +97,14 @@ def test_shipped_scene_is_the_published_case():
 def test_read_contact_cylinder_defaults(cylinder):
     scene = read_contact(cylinder)
     contact = scene.contact
-    assert scene.warnings == () and not scene.listed and scene.tilt is None
+    assert scene.warnings == () and not scene.operating.listed
     assert float(contact.small_diameter) == float(contact.large_diameter) == 0.010
     assert contact.half_angle is None and float(contact.angle) == 0.0
     assert isinstance(contact.roller_profile, bj.CircularCrown)
     assert isinstance(contact.raceway_profile, bj.Straight)
     assert isinstance(scene.law, bj.contact.Palmgren)
-    assert scene.half_width is None and scene.max_steps == 500 and not scene.field
+    assert scene.operating.tilt is None and not scene.field
+    assert scene.numerics.half_width is None and scene.numerics.max_steps == 500
 
 
 @pytest.mark.parametrize("side, sign", [("inner", 1.0), ("outer", -1.0)])

@@ -95,7 +95,7 @@ def _why_lost(scene, cases) -> list[str]:
     found = []
     for given, case in zip(scene.cases, cases, strict=True):
         if not case.solution.converged:
-            where = f" {given['load']:.5g} N:" if scene.listed else ""
+            where = f" {given['load']:.5g} N:" if scene.operating.listed else ""
             label = Result(int(case.solution.result)).label
             found.append(f"{label}:{where} {case.solution.failure_message}")
     return found

@@ -148,6 +148,11 @@ class ContactOperatingKeys(Keys):
     )
 
     @property
+    def listed(self) -> bool:
+        """Whether it lists its loads."""
+        return isinstance(self.load, tuple)
+
+    @property
     def loads(self) -> tuple[float, ...]:
         """All loads [N]; empty if the approach is given."""
         if self.load is None:
@@ -227,17 +232,9 @@ class ContactScene:
     Attributes:
         name: Name of the file without its ending.
         contact: Roller and raceway.
-        loads: Loads [N]; empty if the approach is given.
-        approach: Approach at the middle of the roller [m], or `None`.
-        moment: Moment of the pressure about the middle [N m], or `None`.
-        tilt: Tilt [rad], or `None`.
-        listed: Whether the scene lists its loads.
         law: Line law of the slices that the contact is compared with.
-        across, along: Number of cells.
-        grading: As in `graded_grid`.
-        half_width: Half width of the grid [m]; `None`: determined for each load.
-        tolerance: Residual at which to stop, or `None` for the default.
-        max_steps: Step limit.
+        operating: How roller and raceway are pressed.
+        numerics: Cells of the grid, and when to stop.
         field: Whether to output the pressure of every cell.
         warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
@@ -246,27 +243,17 @@ class ContactScene:
     name: str
     contact: RollerContact
     law: AbstractLineLaw
-    across: int
-    along: int
-    grading: float
-    max_steps: int
+    operating: ContactOperatingKeys
+    numerics: ContactNumericsKeys
     warnings: tuple[Warning, ...]
-    loads: tuple[float, ...] = ()
-    approach: float | None = None
-    moment: float | None = None
-    tilt: float | None = None
-    listed: bool = False
-    half_width: float | None = None
-    tolerance: float | None = None
     field: bool = False
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def cases(self) -> list[dict[str, float]]:
         """Keyword arguments of `RollerContact.solve` for each case."""
-        held = {"approach": self.approach, "moment": self.moment, "tilt": self.tilt}
-        rest = {name: value for name, value in held.items() if value is not None}
-        return [{"load": load, **rest} for load in self.loads] or [rest]
+        rest = {k: v for k, v in self.operating.given.items() if k != "load"}
+        return [{"load": load, **rest} for load in self.operating.loads] or [rest]
 
 
 def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
@@ -336,15 +323,11 @@ def _scene(top: Table, name, contact: RollerContact) -> ContactScene:
     return ContactScene(
         name=name,
         contact=contact,
-        loads=operating.loads,
-        approach=operating.approach,
-        moment=operating.moment,
-        tilt=operating.tilt,
-        listed=isinstance(operating.load, tuple),
+        operating=operating,
+        numerics=numerics,
         law=read_keys(SliceLawKeys, top.table("contact")).law,
         field=read_keys(ContactOutputKeys, top.table("output")).field,
         warnings=contact.warnings,
-        **numerics.given,
     )
 
 

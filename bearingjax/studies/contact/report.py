@@ -23,7 +23,7 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[Warning
         scene: The scene of the contact.
         cases: Results of its cases.
     """
-    narrowed = None if scene.half_width is None else "numerics.half_width"
+    narrowed = None if scene.numerics.half_width is None else "numerics.half_width"
     return [*scene.warnings, *compared_warnings(scene.contact, cases, narrowed)]
 
 
@@ -56,7 +56,7 @@ def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any
         found |= {name: [row.get(name) for row in rows] for name in names}
     stats = [_status(case.solution) for case in cases]
     found |= {name: [row[name] for row in stats] for name in stats[0]}
-    if not scene.listed:
+    if not scene.operating.listed:
         shared = ("position", "cell_length", "end_cell_length")
         found = {k: v if k in shared else v[0] for k, v in found.items()}
     return run_json(found, contact_warnings(scene, cases), scene.inputs)
@@ -123,6 +123,7 @@ def contact_report(scene: ContactScene, cases: list[Compared]) -> Report:
 
 def _contact(scene, cases):
     contact, grid = scene.contact, cases[0].solution.grid
+    cells = scene.numerics
     small, large, length = (
         1e3 * float(v)
         for v in (contact.small_diameter, contact.large_diameter, contact.roller_length)
@@ -136,7 +137,7 @@ def _contact(scene, cases):
     profiles = [
         type(p).__name__ for p in (contact.roller_profile, contact.raceway_profile)
     ]
-    kind = "even" if grid.even else f"graded ({scene.grading:g})"
+    kind = "even" if grid.even else f"graded ({cells.grading:g})"
     return "\n".join(
         [
             f"{scene.name}: roller {size} x {length:.4g} mm, half angle"
@@ -144,9 +145,9 @@ def _contact(scene, cases):
             f"profile of the roller: {profiles[0]}, of the raceway: {profiles[1]};"
             f" contact modulus {1e-9 * float(contact.modulus):.4g} GPa"
             + ("" if contact.free_ends is None else "; free end faces"),
-            f"{scene.across} x {scene.along} {kind} cells: at the ends"
+            f"{cells.across} x {cells.along} {kind} cells: at the ends"
             f" {2e6 * float(grid.half_y[0]):.4g} µm long, in the middle"
-            f" {2e6 * float(grid.half_y[scene.along // 2]):.4g} µm",
+            f" {2e6 * float(grid.half_y[cells.along // 2]):.4g} µm",
         ]
     )
 

@@ -11,12 +11,14 @@ from ...contact.line import Palmgren
 from ...contact.slices import Compared, slices
 from ...element import RINGS
 from ...files.quantity import SceneError
+from ...files.schema import read_keys
+from ...files.table import Table
 from ...numerics.compiled.programs import program
 from ...statics.refine import refine
 from ...statics.solution import Solution
 from ...statics.warning import solution_warnings
 from ..bearing.read_scene import Scene
-from .read import ContactScene
+from .read import ContactNumericsKeys, ContactOperatingKeys, ContactScene
 
 
 def run_contact(scene: ContactScene) -> list[Compared]:
@@ -30,14 +32,14 @@ def run_contact(scene: ContactScene) -> list[Compared]:
 
     Fails: as `solve_pressure`.
     """
-    contact, cases = scene.contact, scene.cases
+    contact, cases, asked = scene.contact, scene.cases, scene.numerics
     widths = [
-        contact.grid_half_width(case) if scene.half_width is None else scene.half_width
+        contact.grid_half_width(case) if asked.half_width is None else asked.half_width
         for case in cases
     ]
     given = {name: jnp.asarray([case[name] for case in cases]) for name in cases[0]}
-    solver = ConjugateGradients(scene.tolerance, scene.max_steps)
-    sizes = (scene.across, scene.along, scene.grading)
+    solver = ConjugateGradients(asked.tolerance, asked.max_steps)
+    sizes = (asked.across, asked.along, asked.grading)
     solved = _solve(contact, jnp.asarray(widths), given, solver, sizes)
     sliced = _slice(contact, solved, scene.law)
     return [Compared(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
@@ -79,16 +81,16 @@ def run_refined(
         raise SceneError(f"{scene.name}: {error}") from error
     solved = found.solution
     across, along = solved.grid.n_across, solved.grid.shape[1]
+    load = float(solution.roller_load[found.roller, RINGS.index(found.raceway)])
+    table = Table({"across": across, "along": along}, scene.name)
     contact = ContactScene(
         name=f"{scene.name}, roller {found.roller}, {found.raceway} raceway",
         contact=found.contact,
-        loads=(float(solution.roller_load[found.roller, RINGS.index(found.raceway)]),),
-        tilt=float(solved.tilt),
+        operating=ContactOperatingKeys(
+            table=table, load=load, approach=None, moment=None, tilt=float(solved.tilt)
+        ),
+        numerics=read_keys(ContactNumericsKeys, table),
         law=scene.element.line_law or Palmgren(),
-        across=across,
-        along=along,
-        grading=2.0,
-        max_steps=ConjugateGradients().max_steps,
         warnings=(*scene.warnings, *solution_warnings(solution)),
         inputs=scene.inputs,
     )

@@ -221,7 +221,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
         found["modes"] = jax.device_get(modes(settled.rotor, task.speed, count=count))
         parts.warnings += found["modes"].warnings
     follows, over = settled.rotor, None
-    if any(mount.inertia for mount in task.mounts):
+    if any(mount.keys.inertia for mount in task.mounts):
         with parts.part("static"):
             top = as_array(top_speed(task), float)
             over = static_equilibrium_over(rotor, task.loads, top)

@@ -35,7 +35,7 @@ class SkidScene:
         oil: Name of the oil, or of the law of its viscosity.
         speeds: Ring speeds over time, or `None` for the constant ones of the scene.
         loads: Load over time, or `None` for the constant one of the scene.
-        dynamics: Settings of the motion, as the table says them.
+        dynamics: Other settings of the motion, as the table says them.
         steady: Whether the steady state is requested.
         warnings: Assumptions, and warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
@@ -118,7 +118,7 @@ def read_skid(
         oil=lubricant.called,
         speeds=speeds,
         loads=loads,
-        dynamics=dynamics,
+        dynamics=dataclasses.replace(dynamics, speed=None, load=None),
         steady=steady,
         warnings=tuple(dict.fromkeys((*scene.warnings, *warned))),
     )
