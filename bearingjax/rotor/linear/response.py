@@ -13,7 +13,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
 from ...numerics.types import Real, as_count
-from ...numerics.units import meaning, real
+from ...numerics.units import meaning, real, unit
 from ..parts import check_station
 from ..rotor import Rotor
 from ..shaft import STATION_UNITS
