@@ -88,7 +88,7 @@ class BallRow(NamedTuple):
     @property
     def limit(self) -> tuple[float, float]:
         """C0 over C_u, and the power by which it grows with the pitch diameter [1]."""
-        return 22, 0.5
+        return 22.0, 0.5
 
     def capacity(self, rows: "Rows", is_thrust: bool, axial: Flag) -> Capacity:
         """C of radial and steep rows, and C0 of an element [N].
