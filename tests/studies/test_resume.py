@@ -1,6 +1,5 @@
 """A sweep that is interrupted keeps what is solved, and is taken up where it ended."""
 
-import importlib
 import json
 import signal
 
@@ -10,7 +9,7 @@ import pytest
 from test_cases import HEAD
 
 from bearingjax import FREEDOMS, Cases
-from bearingjax.cases import Sweep, sweep_program, sweep_table
+from bearingjax.cases import Sweep, batches, sweep_program, sweep_table
 from bearingjax.cases.sweep_table import (
     case_columns,
     left_out,
@@ -23,8 +22,6 @@ from bearingjax.numerics.result import Result
 from bearingjax.studies.cases import resume
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.cases.sweep_run import design_columns
-
-SWEEP = importlib.import_module("bearingjax.cases.sweep")  # the name is a function
 
 # In the part that is solved first one load is nought throughout.
 LIST = """operating.load.Fy [kN],operating.load.Fx [kN]
@@ -51,7 +48,7 @@ def struck(monkeypatch):
 
     monkeypatch.setattr(sweep_program, "_solve_block", solve)
     monkeypatch.setattr(sweep_program, "BLOCK", 1)
-    monkeypatch.setattr(SWEEP, "CHUNK", 2)
+    monkeypatch.setattr(batches, "CHUNK", 2)
     monkeypatch.setattr(resume, "CHECKED", 2)
     # Begun in the background, this process would not hear it.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
