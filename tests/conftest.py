@@ -34,7 +34,7 @@ jax.config.update("jax_numpy_dtype_promotion", "strict")
 gc.set_threshold(1_000_000, 10, 50)
 
 # Shapes and dtypes of annotated functions are checked at every call of the tests.
-install_import_hook("bearingjax", "beartype.beartype").__enter__()
+install_import_hook("bearingjax", "type_hook.check_types").__enter__()
 
 # Properties: the same examples in every run, but for `--hypothesis-profile=random`. No
 # deadline, as a first example compiles.
