@@ -183,7 +183,7 @@ def test_facts_6_to_8_axial(element, axial, angles, load, pressure):
 def test_facts_15_to_17_two_loaded_zones(
     element, radial, first, second, least, true_least
 ):
-    s = combined(element, radial, tolerance=1e-12)
+    s = combined(element, radial, options=bj.statics.SolveOptions(tolerance=1e-12))
     # Fact 5: nothing out of balance.
     load = np.hypot(600.0, radial)
     assert float(s.stats.residual) * load < 1e-9
