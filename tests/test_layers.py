@@ -166,7 +166,7 @@ def test_public_names_are_listed(path):
     assert len(set(listed)) == len(listed)
     shown = {name: getattr(module, name) for name in listed}
     assert all(inspect.getdoc(v) for v in shown.values() if callable(v))
-    page = pydoc.plaintext.document(module)
+    page = pydoc.plain(pydoc.text.document(module))
     headed = set(re.findall(r"^ {4}(?:class )?(\w+)(?: =|\()", page, re.M))
     modules = {name for name, value in shown.items() if inspect.ismodule(value)}
     assert set(listed) - modules - {"__version__"} <= headed
