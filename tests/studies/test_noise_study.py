@@ -137,7 +137,7 @@ def test_all_keys():
 def test_tolerances_by_grade_and_by_number():
     table = (
         "vibration.tolerance={grade='G10', class='P5', bore='25 mm', seed=4,"
-        " outside_diameter='52 mm', waviness='50 nm', slope=1.5, highest=(60, 40),"
+        " outside_diameter='52 mm', waviness='50 nm', slope=1.5, highest=60,"
         " inner_eccentricity='3 um'}"
     )
     task = read_noise("noise_deep_groove", [table], bearings=5)

@@ -154,8 +154,8 @@ def test_optimise_command_invalid_measure_is_scene_error(run, monkeypatch):
 def test_optimise_command_progress_on_terminal_only(run, monkeypatch):
     asked = []
 
-    def note(*_, progress, **__):
-        asked.append(progress)
+    def note(*_, search, **__):
+        asked.append(search.progress)
         raise ValueError("enough")
 
     monkeypatch.setattr("bearingjax.studies.optimise.run.optimise", note)
