@@ -137,7 +137,12 @@ class Solution(eqx.Module):
     @property
     def failure_message(self) -> str:
         """Cause and cure of a failed solve of one case, in words; empty if it
-        converged."""
+        converged.
+
+        Raises:
+            ValueError: For a solution of several cases.
+        """
+        check_single("failure_message", self)
         return _describe_failure(self)
 
     def to_xarray(self) -> Any:

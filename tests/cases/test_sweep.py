@@ -30,7 +30,8 @@ jax.config.update("jax_num_cpu_devices", 2)
 bearing = bj.CylindricalRollerBearing(14, 0.065, 0.010, 0.010)
 loads = np.outer(np.linspace(100.0, 5000.0, 64), [0.0, -1.0, 0.0, 1e-3, 0.0, 0.0])
 element = bj.BearingElement(bearing, bj.contact.CoupledSlices(30))
-solved = bj.sweep(element, loads, outputs=["displacement"], chunk=32)
+batches = bj.cases.Batches(chunk=32)
+solved = bj.sweep(element, loads, outputs=["displacement"], batches=batches)
 assert len(jax.devices()) == 2 and not solved.result.any()
 """
 SCRIPT = Path(__file__).parents[1] / "sweep_in_process.py"
