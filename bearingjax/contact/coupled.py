@@ -15,7 +15,8 @@ Source: the idea: Teutsch & Sauer, J. Tribol. 126 (2004) (alternative slicing
     potentials of a semi-ellipse, so that b is eliminated (Hertz's is stationary).
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -24,8 +25,10 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..design.material import Material
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import solve_any
+from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Scalar
 from .line import AbstractLineLaw, Palmgren
 from .line_contact import AbstractLineContact, LineContact, Response
@@ -73,11 +76,11 @@ class CoupledSlices(AbstractLineLaw):
                 " is to be longer than the contact is wide."
             )
 
-    def constant(self, roller, ring, length):
+    def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
         # Only a measure of stiffness here.
         return Palmgren().constant(roller, ring, length)
 
-    def contact(self, line, radius, modulus):
+    def contact(self, line: Any, radius: Callable, modulus: Scalar) -> Any:
         at = 0.5 * line.length * _middles(self.slices, line.length.dtype)
         return CoupledContact(line, radius(at), modulus)
 
@@ -106,17 +109,17 @@ class CoupledContact(AbstractLineContact):
     modulus: Scalar
 
     @property
-    def protruding(self):
+    def protruding(self) -> bool:
         return self.line.protruding
 
-    def drop(self, xi):
+    def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
         return self.line.drop(xi)
 
-    def pressed(self, approach):
+    def pressed(self, approach: Scalar) -> Scalar:
         # Of the logarithm that grows with the length, a usual value.
         return jnp.pi * self.modulus * self.line.length * approach / 10.0
 
-    def table(self, quadrature):
+    def table(self, quadrature: AbstractQuadrature) -> Any:
         n, dtype = self.radius.shape[0], self.line.length.dtype
         count = _OF_A_TABLE if self.line.measured else _SAMPLES
         nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -129,7 +132,9 @@ class CoupledContact(AbstractLineContact):
             smoothing**2 / self.radius,
         )
 
-    def integrals(self, table, quadrature, a, b):
+    def integrals(
+        self, table: Any, quadrature: AbstractQuadrature, a: Scalar, b: Scalar
+    ) -> Response:
         xi = _middles(table.drop.shape[0], a.dtype)
         loads = _solve_slices(table, a, b)
         held, curved = stop_gradient(loads) > 0, _curvature(table, loads)
@@ -145,13 +150,15 @@ class CoupledContact(AbstractLineContact):
             scale * jnp.stack([aa, ab, bb]),
         )
 
-    def carried(self, table, a, b):
+    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
         return jnp.pi * self.modulus * _solve_slices(table, a, b)
 
-    def at(self, carried, xi):
+    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
         return jnp.interp(xi, _middles(carried.shape[0], xi.dtype), carried)
 
-    def summits(self, carried, scan, weight):
+    def summits(
+        self, carried: Any, scan: Float[Array, " scan"], weight: Float[Array, " scan"]
+    ) -> Float[Array, " place"]:
         # Between the middles of slices loads are interpolated.
         middles = _middles(carried.shape[0], scan.dtype)
         return jnp.concatenate([scan[:1], scan[-1:], middles])

@@ -54,7 +54,7 @@ class Palmgren(AbstractLineLaw):
         Bearing Analysis.
     """
 
-    def constant(self, roller, ring, length):
+    def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
         compliance = _compliance(roller, ring)
         return (3.81 * compliance**0.9) ** (-10.0 / 9.0) * length ** (-1.0 / 9.0)
 
@@ -69,7 +69,7 @@ class ISO16281(AbstractLineLaw):
     Source: ISO/TS 16281:2008, spring constant of the lamina.
     """
 
-    def constant(self, roller, ring, length):
+    def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
         steel = Material()
         ratio = _compliance(steel, steel) / _compliance(roller, ring)
         per_contact = 35948.0 * 2.0 ** (10.0 / 9.0)
@@ -92,7 +92,7 @@ class LineConstant(AbstractLineLaw):
     def __check_init__(self):
         positive(self, "value")
 
-    def constant(self, roller, ring, length):
+    def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
         return self.value
 
 

@@ -12,6 +12,7 @@ the derivative rule leads from one order to the next.
 
 import abc
 import dataclasses
+from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Any, ClassVar, NamedTuple
 
@@ -21,6 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design.material import Material
 from ..design.profile import AbstractProfile, between_arcs, sagitta
 from ..numerics.expansion import Expansion, expanded_all
 from ..numerics.implicit import stop_gradient
@@ -136,11 +138,11 @@ class AbstractSliceLaw(AbstractLineLaw):
             length: Contact length [m].
         """
 
-    def constant(self, roller, ring, length):
+    def constant(self, roller: Material, ring: Material, length: Scalar) -> Scalar:
         # Only a measure of stiffness here.
         return Palmgren().constant(roller, ring, length)
 
-    def contact(self, line, radius, modulus):
+    def contact(self, line: Any, radius: Callable, modulus: Scalar) -> Any:
         one = jnp.ones_like(line.constant)
         return SliceContact(
             one,
@@ -245,10 +247,10 @@ class LineContact(AbstractLineContact):
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)
 
-    def pressed(self, approach):
+    def pressed(self, approach: Scalar) -> Scalar:
         return self.length * self.line_load(approach)
 
-    def table(self, quadrature):
+    def table(self, quadrature: AbstractQuadrature) -> Any:
         ends = self._intervals()
         if ends is None or not isinstance(quadrature, ContactMapped):
             kinks, dtype = self.kinks(), self.length.dtype
@@ -263,7 +265,9 @@ class LineContact(AbstractLineContact):
         rule = of_intervals(quadrature, ends.shape[0] - 1)
         return local, rule.table(partial(_offset, local), ends, ends.dtype), rule
 
-    def integrals(self, table, quadrature, a, b):
+    def integrals(
+        self, table: Any, quadrature: AbstractQuadrature, a: Scalar, b: Scalar
+    ) -> Response:
         if self.exact:
             return _exact_integrals(self, quadrature, a, b)
         line = self
@@ -287,14 +291,16 @@ class LineContact(AbstractLineContact):
             parts.append(jnp.stack(kinks))
         return stop_gradient(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
 
-    def carried(self, table, a, b):
+    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
         return a, b
 
-    def at(self, carried, xi):
+    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
         a, b = carried
         return self.line_load(self.approach(a, b, xi))
 
-    def summits(self, carried, scan, weight):
+    def summits(
+        self, carried: Any, scan: Float[Array, " scan"], weight: Float[Array, " scan"]
+    ) -> Float[Array, " place"]:
         a, b = carried
         height = weight * self.approach(a, b, scan)
         near = jnp.clip(jnp.argmax(height), 1, scan.shape[0] - 2)
@@ -336,10 +342,10 @@ class SliceContact(LineContact):
 
     factors: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)
 
-    def line_load(self, approach):
+    def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         return self.densities(approach)[1]
 
-    def densities(self, x):
+    def densities(self, x: Float[Array, "..."]) -> tuple[Array, Array, Array]:
         pressed = ~(x <= 0)
         some = jnp.where(pressed, x, 1e-9)
 

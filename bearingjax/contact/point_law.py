@@ -116,13 +116,17 @@ class FreeAngle(AbstractPointLaw):
     """
 
     @property
-    def curvature_follows_angle(self):
+    def curvature_follows_angle(self) -> bool:
         return False
 
-    def cosine(self, free, operating):
+    def cosine(
+        self, free: Scalar, operating: Float[Array, "..."]
+    ) -> Float[Array, "..."]:
         return jnp.broadcast_to(free, operating.shape)
 
-    def constants(self, balls, grooves, free_cosine):
+    def constants(
+        self, balls: Balls, grooves: tuple[Groove, ...], free_cosine: Scalar
+    ) -> Float[Array, "contact ..."]:
         return ball_ellipses(balls, grooves, free_cosine[None]).constant
 
 
@@ -130,13 +134,17 @@ class ZeroAngle(AbstractPointLaw):
     """Hertz constants with the curvatures at contact angle zero, as ISO/TS 16281."""
 
     @property
-    def curvature_follows_angle(self):
+    def curvature_follows_angle(self) -> bool:
         return False
 
-    def cosine(self, free, operating):
+    def cosine(
+        self, free: Scalar, operating: Float[Array, "..."]
+    ) -> Float[Array, "..."]:
         return jnp.ones_like(operating)
 
-    def constants(self, balls, grooves, free_cosine):
+    def constants(
+        self, balls: Balls, grooves: tuple[Groove, ...], free_cosine: Scalar
+    ) -> Float[Array, "contact ..."]:
         return ball_ellipses(balls, grooves, jnp.ones_like(free_cosine)[None]).constant
 
 
@@ -148,10 +156,12 @@ class OperatingAngle(AbstractPointLaw):
     """
 
     @property
-    def follows_angle(self):
+    def follows_angle(self) -> bool:
         return True
 
-    def constants(self, balls, grooves, free_cosine):
+    def constants(
+        self, balls: Balls, grooves: tuple[Groove, ...], free_cosine: Scalar
+    ) -> Float[Array, "contact ..."]:
         nodes = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
         at = jnp.asarray(nodes, free_cosine.dtype)
         values = jnp.log(ball_ellipses(balls, grooves, at[None]).constant)
@@ -181,7 +191,9 @@ class PointConstant(AbstractPointLaw):
         for name in ("outer", "inner"):
             positive(self, name)
 
-    def constants(self, balls, grooves, free_cosine):
+    def constants(
+        self, balls: Balls, grooves: tuple[Groove, ...], free_cosine: Scalar
+    ) -> Float[Array, "contact ..."]:
         return jnp.stack([self.outer if g.on_outer else self.inner for g in grooves])
 
 

@@ -45,7 +45,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
     )
 
     @property
-    def arc_radii(self):
+    def arc_radii(self) -> tuple[Scalar, Scalar, Scalar] | None:
         assert self.outer_raceway_radius is not None
         return (
             self.roller_profile_radius,
@@ -54,7 +54,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
         )
 
     @property
-    def gap(self):
+    def gap(self) -> Scalar:
         return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
 
     def with_clearance(self, clearance):
@@ -88,7 +88,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
             key = f"{name}_raceway_radius"
             check(self, key, radius >= numbers[0], allowed, radius, "m")
 
-    def end_drop(self):
+    def end_drop(self) -> float:
         numbers = concrete(self.roller_profile_radius, self.roller_length)
         if numbers is None or not np.isfinite(numbers[0]):
             return 0.0
@@ -191,7 +191,7 @@ class SphericalRollerRow(_AbstractSphere):
     caged: ClassVar[bool] = True
 
     @property
-    def axial_place(self):
+    def axial_place(self) -> Scalar:
         return 0.5 * self.pitch_diameter * jnp.tan(self.contact_angle)
 
 
@@ -263,7 +263,7 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
         return False
 
     @property
-    def play(self):
+    def play(self) -> Scalar:
         # Radial: axial travel is free over millimetres, and a search begins with this.
         return 0.5 * self.radial_internal_clearance
 
@@ -300,15 +300,15 @@ class SphericalThrustRollerBearing(_AbstractSphere):
     )
 
     @property
-    def half_angle(self):
+    def half_angle(self) -> Scalar:
         return jnp.arcsin(self.profile_offset / self.roller_profile_radius)
 
     @property
-    def gap(self):
+    def gap(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
-    def play(self):
+    def play(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
     def __check_init__(self):
@@ -337,11 +337,11 @@ class CylindricalThrustRollerBearing(AbstractRollerBearing):
     caged: ClassVar[bool] = True
 
     @property
-    def axis_angle(self):
+    def axis_angle(self) -> Scalar:
         return jnp.full_like(self.pitch_diameter, 0.5 * np.pi)
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
@@ -400,11 +400,11 @@ class CrossedRollerRow(AbstractRollerBearing):
         return eqx.tree_at(lambda b: b.radial_internal_clearance, self, clearance)
 
     @property
-    def axis_angle(self):
+    def axis_angle(self) -> Scalar:
         return jnp.full_like(self.pitch_diameter, 0.25 * np.pi)
 
     @property
-    def gap(self):
+    def gap(self) -> Scalar:
         return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
 
     @property

@@ -124,8 +124,8 @@ class BearingSet(eqx.Module):
     def back_to_back(
         cls,
         bearing: AbstractBearing,
-        spacing,
-        preload_offset=0.0,
+        spacing: Scalar | float,
+        preload_offset: Scalar | float = 0.0,
         spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in O arrangement (DB): stiff against tilting.
@@ -146,8 +146,8 @@ class BearingSet(eqx.Module):
     def face_to_face(
         cls,
         bearing: AbstractBearing,
-        spacing,
-        preload_offset=0.0,
+        spacing: Scalar | float,
+        preload_offset: Scalar | float = 0.0,
         spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in X arrangement (DF): tolerates misalignment.
@@ -163,7 +163,9 @@ class BearingSet(eqx.Module):
         return cls._pair(bearing, spacing, preload_offset, spring, (True, False))
 
     @classmethod
-    def tandem(cls, bearing: AbstractBearing, spacing, count: int = 2) -> "BearingSet":
+    def tandem(
+        cls, bearing: AbstractBearing, spacing: Scalar | float, count: int = 2
+    ) -> "BearingSet":
         """Rows that share an axial load along +z.
 
         Args:

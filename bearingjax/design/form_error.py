@@ -176,7 +176,7 @@ class Harmonics(AbstractShape):
         size = jnp.where(none, 0.0, jnp.sqrt(jnp.where(none, 1.0, square)))
         return cls(order, size, jnp.arctan2(-sine, jnp.where(none, 1.0, cosine)))
 
-    def height(self, angle, surface):
+    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
         # Orders last, as far as the angles have axes.
         shape = (1,) * angle.ndim + (-1,)
         order = jnp.asarray(self.order, angle.dtype)
@@ -212,7 +212,7 @@ class Spall(AbstractShape):
                 right = np.all(np.isfinite(value)) and np.all(np.asarray(value) >= 0)
                 check(self, name, right, "at least 0")
 
-    def height(self, angle, surface):
+    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
         off = jnp.mod(angle - self.angle + jnp.pi, 2.0 * jnp.pi) - jnp.pi
         inside = 0.5 * self.length - surface.radius * jnp.abs(off)
         inside = jnp.maximum(inside, 0.0)
@@ -262,7 +262,7 @@ class Table(AbstractShape):
         number = jnp.arange(points, dtype=height.dtype)
         return (cls(jnp.stack([height, rise, slope, end, number], axis=1)), *spalls)
 
-    def height(self, angle, surface):
+    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
         n = self.rows.shape[0]
         at = angle * (n / (2.0 * jnp.pi))
         row = self.rows[jnp.mod(jnp.floor(at), n).astype(jnp.int32)]

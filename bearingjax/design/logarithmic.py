@@ -4,6 +4,7 @@ from typing import ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from ..numerics.types import Real
 from ..numerics.units import real
@@ -35,7 +36,12 @@ class Logarithmic(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
 
 
@@ -64,7 +70,12 @@ class Lundberg(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
         return unit * _log_one_over(2.0 * position / length, 1.0)
 
@@ -98,7 +109,12 @@ class JohnsGohar(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
         part = 1.0 - 0.3033 * self.half_width / (0.5 * length)
         return unit * _log_one_over(2.0 * position / length, part)
@@ -139,7 +155,12 @@ class FujiwaraKawase(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         load = self.load_factor * self.design_load
         unit = load / (jnp.pi * length * self.contact_modulus)
         # From the end of the roller, where 1 - x² would cancel: x = 1 - out.
@@ -148,7 +169,7 @@ class FujiwaraKawase(AbstractProfile):
         rest = out * (2.0 - out) + jnp.exp(-self.end_drop / unit) * (1.0 - out) ** 2
         return -unit * jnp.log(_floor_root(rest))
 
-    def kinks(self, length):
+    def kinks(self, length: Scalar) -> tuple[Scalar, ...]:
         begin = 0.5 * length * (1.0 - self.crowned_fraction)
         return (-begin, begin)
 

@@ -38,7 +38,10 @@ class AbstractProfile(eqx.Module):
 
     @abc.abstractmethod
     def drop(
-        self, position: Float[Array, "..."], length: Scalar, diameter: Scalar
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
     ) -> Float[Array, "..."]:
         """Material removed, measured along the normal of the straight generator.
 
@@ -110,7 +113,12 @@ class Straight(AbstractProfile):
     about: ClassVar[str] = "no profile: the drop is zero"
     arcs: ClassVar[bool] = True
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         return jnp.zeros_like(position)
 
 
@@ -132,7 +140,12 @@ class CircularCrown(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         return sagitta(position, self.crown_radius)
 
     def _check_against(self, length, diameter):
@@ -178,7 +191,12 @@ class CrownedEnds(AbstractProfile):
                 " them is missing."
             )
 
-    def drop(self, position, length, diameter):
+    def drop(
+        self,
+        position: Float[Array, "..."],
+        length: Scalar | float,
+        diameter: Scalar | float,
+    ) -> Float[Array, "..."]:
         out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)
         if self.dub_off_length is None or self.dub_off_radius is None:
             return sagitta(out, self.crown_radius)
@@ -190,7 +208,7 @@ class CrownedEnds(AbstractProfile):
         top = sagitta(offset, self.dub_off_radius)
         return crown + sagitta(offset + beyond, self.dub_off_radius) - top
 
-    def kinks(self, length):
+    def kinks(self, length: Scalar) -> tuple[Scalar, ...]:
         inner = 0.5 * self.straight_length
         if self.dub_off_length is None:
             return (-inner, inner)

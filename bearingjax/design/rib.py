@@ -73,7 +73,9 @@ class Ribs(eqx.Module):
     inner_plus: Rib | None = None
 
     @classmethod
-    def arrangement(cls, name: str, rib: Rib, axial_internal_clearance=None) -> "Ribs":
+    def arrangement(
+        cls, name: str, rib: Rib, axial_internal_clearance: Scalar | float | None = None
+    ) -> "Ribs":
         """Ribs of a cylindrical roller bearing by the name of its type.
 
         Args:

@@ -57,7 +57,7 @@ class RowGroup(eqx.Module):
                 kind.append(k)
         return tuple(cls(_stack([rows[k] for k in kind]), (*kind,)) for kind in kinds)
 
-    def each(self, function: Callable, *arrays) -> Any:
+    def each(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(row, *arrays) to every row of the group.
 
         Args:
@@ -166,7 +166,7 @@ class BearingModel(eqx.Module):
         """Floating type of its numbers."""
         return self.groups[0].rows.ratio.dtype
 
-    def in_order(self, stacked) -> tuple:
+    def in_order(self, stacked: Any) -> tuple:
         """Values of each row in order, from values stacked group by group."""
         found = {}
         for group, values in zip(self.groups, stacked, strict=True):

@@ -131,7 +131,9 @@ def as_function(
     return function, FunctionParameters(element, speed, damping)
 
 
-def check_damping(owner: str, damping: Any, shapes: tuple[tuple[int, ...], ...]):
+def check_damping(
+    owner: str, damping: Any, shapes: tuple[tuple[int, ...], ...]
+) -> None:
     """Raise unless `damping` has one of the shapes, is finite and does not drive.
 
     Args:

@@ -75,10 +75,10 @@ class Linearised(AbstractKinematics):
     Source: `Finite` to first order.
     """
 
-    def roller(self, constants):
+    def roller(self, constants: ContactConstants) -> AbstractRollerGeometry:
         return LinearisedRoller.of(constants)
 
-    def ball(self, part):
+    def ball(self, part: SetRow) -> AbstractBallGeometry:
         bearing: Any = part.bearing
         dtype = bearing.pitch_diameter.dtype
         sides = [0.5 if g.on_outer else -0.5 for g in bearing.grooves]
@@ -107,7 +107,7 @@ class ConstantAngle(Linearised):
     """
 
     @property
-    def holds_angles(self):
+    def holds_angles(self) -> bool:
         return True
 
 
@@ -124,17 +124,17 @@ class Finite(AbstractKinematics):
     """
 
     @property
-    def turns_far(self):
+    def turns_far(self) -> bool:
         return True
 
     @property
-    def keeps_arcs(self):
+    def keeps_arcs(self) -> bool:
         return True
 
-    def roller(self, constants):
+    def roller(self, constants: ContactConstants) -> AbstractRollerGeometry:
         return FiniteRoller.of(constants)
 
-    def ball(self, part):
+    def ball(self, part: SetRow) -> AbstractBallGeometry:
         bearing: Any = part.bearing
         sign = -1.0 if part.mirrored else 1.0
         along = bearing.axial_place + sign * part.position

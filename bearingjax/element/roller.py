@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..contact.hertz import EXPONENT
 from ..contact.line_contact import expansion
@@ -14,6 +14,7 @@ from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
+from ..numerics.types import Scalar
 from .constants import ContactConstants
 from .energy import roller_energy
 from .frame import section_matrix
@@ -53,16 +54,16 @@ class Roller(AbstractRollingElement):
 
     energy = roller_energy
 
-    def axes(self, azimuth):
+    def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
         return self.constants.to_axes @ section_matrix(azimuth)
 
-    def with_heights(self, heights):
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
         constants = self.constants
         constants = dataclasses.replace(constants, gap=constants.gap - heights)
         geometry = self.geometry.with_heights(heights)
         return dataclasses.replace(self, constants=constants, geometry=geometry)
 
-    def coordinates(self, rings, x):
+    def coordinates(self, rings: RingMotion, x: Unknowns) -> Any:
         return self.geometry.coordinates(rings, x)
 
     def approaches(self, rings: RingMotion, x: Unknowns) -> Approaches:
@@ -70,7 +71,7 @@ class Roller(AbstractRollingElement):
         at = self.coordinates(rings, x)
         return at if self.geometry.is_linear else self.geometry.expansion(at).value
 
-    def respond(self, coordinates):
+    def respond(self, coordinates: Any) -> Expansion:
         at, met = coordinates, None
         if not self.geometry.is_linear:
             met = self.geometry.expansion(coordinates)
@@ -89,33 +90,33 @@ class Roller(AbstractRollingElement):
         )
         return found if met is None else compose(found, met)
 
-    def motion(self, rings, x):
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
         return self.constants.from_axes @ self.constants.motion(rings, x)
 
-    def inertia(self, rings, x):
+    def inertia(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"] | None:
         if self.body_force is None:
             return None
         return self.body_force @ self.constants.to_axes
 
     @property
-    def diameter(self):
+    def diameter(self) -> Scalar:
         return self.constants.diameter
 
     @property
-    def tether(self):
+    def tether(self) -> Scalar:
         return self.constants.tether
 
     @property
-    def is_convex(self):
+    def is_convex(self) -> bool:
         return self.geometry.is_linear
 
     @property
-    def sees_difference(self):
+    def sees_difference(self) -> bool:
         # Inertia does work on the motion of both rings.
         return self.geometry.is_linear and self.body_force is None
 
     @property
-    def hints(self):
+    def hints(self) -> SearchHints:
         return RollerSearchHints(self)
 
 
@@ -125,15 +126,15 @@ class RollerSearchHints(SearchHints):
     element: Roller
 
     @property
-    def gap(self):
+    def gap(self) -> Scalar:
         return jnp.max(jnp.abs(self.element.constants.gap))
 
-    def reach(self, rings):
+    def reach(self, rings: Any) -> Scalar:
         t, m, tilt = jnp.abs(rings.between)
         return t + m + tilt * self.element.constants.half_length
 
     @property
-    def spread(self):
+    def spread(self) -> Scalar | float:
         c = self.element.constants
         if self.element.geometry.is_linear:
             return 1.0
@@ -145,27 +146,27 @@ class RollerSearchHints(SearchHints):
             lever = lever + jnp.where(jnp.isfinite(arc), arc, 0.0)
         return 1.0 + lever / c.half_length
 
-    def pressed(self, approach):
+    def pressed(self, approach: Scalar) -> Scalar:
         return self.element.constants.lines[0].pressed(approach)
 
-    def passed(self, load):
+    def passed(self, load: Float[Array, "*element contact"]) -> Any:
         return jnp.min(load[..., :2], axis=-1)
 
     @property
-    def may_be_ejected(self):
+    def may_be_ejected(self) -> bool:
         return not self.element.geometry.is_linear or super().may_be_ejected
 
-    def is_ejected(self, rings, x):
+    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
         gone = super().is_ejected(rings, x)
         if self.element.geometry.is_linear:
             return gone
         # A roller that is turned over meets no raceway.
         return gone | (jnp.abs(x[2]) > _TURNED * self.element.constants.half_length)
 
-    def inertia_scale(self):
+    def inertia_scale(self) -> Scalar | None:
         return None if self.element.body_force is None else norm(self._on_unknowns())
 
-    def is_open(self, rings):
+    def is_open(self, rings: Any) -> Bool[Array, ""] | None:
         element = self.element
         protruding = any(line.protruding for line in element.constants.lines)
         if element.body_force is not None or protruding:
@@ -175,7 +176,7 @@ class RollerSearchHints(SearchHints):
         open_ = jnp.all(at.raceway[:, 0] + jnp.abs(at.raceway[:, 1]) <= 0)
         return open_ if at.rib is None else open_ & jnp.all(at.rib <= 0)
 
-    def start(self, rings):
+    def start(self, rings: Any) -> Float[Array, " n"]:
         element, midway = self.element, self._aligned(rings)
         if element.body_force is None:
             return midway

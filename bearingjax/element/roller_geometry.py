@@ -109,18 +109,20 @@ class LinearisedRoller(AbstractRollerGeometry):
         return cls(start, half[:, None] * rows, -scale[None] * rows)
 
     @property
-    def is_linear(self):
+    def is_linear(self) -> bool:
         return True
 
-    def with_heights(self, heights):
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
         more = jnp.ravel(jnp.stack([heights, 0.0 * heights], axis=1))
         return dataclasses.replace(self, start=self.start.at[:4].add(more))
 
-    def coordinates(self, rings, x):
+    def coordinates(self, rings: RingMotion, x: Unknowns) -> Approaches:
         moved = self.of_rings * rings.between[None] + self.of_own * x[None]
         return _by_name(self.start + jnp.sum(moved, axis=1))
 
-    def on_raceways(self, rings, x):
+    def on_raceways(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[Float[Array, "2 2"], Float[Array, "2 2 3"]]:
         return self.coordinates(rings, x).raceway, self.of_own[:4].reshape(2, 2, 3)
 
 
@@ -193,27 +195,29 @@ class FiniteRoller(AbstractRollerGeometry):
         )
 
     @property
-    def is_linear(self):
+    def is_linear(self) -> bool:
         return False
 
-    def with_heights(self, heights):
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollerGeometry":
         gap = self.raceways.gap
         # Of the points, the first is the middle.
         gap = gap - heights if gap.ndim == 1 else gap.at[:, 0].add(-heights)
         return eqx.tree_at(lambda g: g.raceways.gap, self, gap)
 
-    def coordinates(self, rings, x):
+    def coordinates(self, rings: RingMotion, x: Unknowns) -> Approaches:
         outer, inner, own = (v[None, None] for v in (*rings, x))
         moved = self.of_outer * outer + self.of_inner * inner + self.of_own * own
         u = jnp.sum(moved, axis=-1)
         return Approaches(u[:2], None if self.ribs is None else u[2:])
 
-    def on_raceways(self, rings, x):
+    def on_raceways(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[Float[Array, "2 2"], Float[Array, "2 2 3"]]:
         found = self.expansion(self.coordinates(rings, x))
         rates = found.gradient.raceway[..., None] * self.of_own[:2, None]
         return found.value.raceway, jnp.sum(rates, axis=-2)
 
-    def expansion(self, coordinates):
+    def expansion(self, coordinates: Approaches) -> Expansion:
         found = _expand(self.raceways, coordinates.raceway)
         if self.ribs is None:
             return jax.tree.map(lambda a: Approaches(a, None), found)

@@ -71,7 +71,7 @@ class Row(eqx.Module):
     spring: PreloadSpring | None
     per_element: bool = eqx.field(static=True)
 
-    def each(self, function: Callable, *arrays) -> Any:
+    def each(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(element, *arrays) to every rolling element.
 
         Args:

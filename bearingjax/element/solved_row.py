@@ -86,7 +86,7 @@ class RowResults(NamedTuple):
         """One rolling element; of unlike elements, with a leading axis."""
         return self.row.element
 
-    def each(self, function: Callable, *arrays) -> Any:
+    def each(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(element, rings, x, *arrays) to every rolling element.
 
         Args:

@@ -4,7 +4,7 @@ import contextlib
 import dataclasses
 import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..numerics.units import unit_of
@@ -336,7 +336,7 @@ class Table:
         return {k: value for k, value in found.items() if value not in (None, {})}
 
     @contextlib.contextmanager
-    def building(self):
+    def building(self) -> Iterator[None]:
         """Context that adds file and table to the error of a constructor."""
         try:
             yield

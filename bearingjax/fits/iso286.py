@@ -203,7 +203,9 @@ def _split_class(name):
     return found[1], int(found[2])
 
 
-def size_range(owner: str, what: str, diameter: Any, ends: tuple, least=0.0) -> int:
+def size_range(
+    owner: str, what: str, diameter: Any, ends: tuple, least: float = 0.0
+) -> int:
     """Number of the range that a nominal diameter falls into.
 
     Args:

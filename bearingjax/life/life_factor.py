@@ -200,7 +200,7 @@ def as_contamination(value: Any) -> Any:
     return value if isinstance(value, Cleanliness) else as_real(value)
 
 
-def check_contamination(owner, value) -> None:
+def check_contamination(owner: Any, value: Any) -> None:
     """Raise unless it is a `Cleanliness` or a number of at least 0 and at most 1."""
     if isinstance(value, Cleanliness):
         return

@@ -33,7 +33,7 @@ class ConstantCoefficient(AbstractCoefficient):
     def __check_init__(self):
         non_negative(self, "coefficient")
 
-    def value(self, ambient, density):
+    def value(self, ambient: Scalar, density: Scalar) -> Scalar:
         return self.coefficient
 
 
@@ -54,7 +54,7 @@ class DynamicCoefficient(AbstractCoefficient):
         positive(self, "factor")
         number(self, "exponent")
 
-    def value(self, ambient, density):
+    def value(self, ambient: Scalar, density: Scalar) -> Scalar:
         return self.factor * jnp.exp(self.exponent * ambient)
 
 
@@ -77,12 +77,12 @@ class KinematicCoefficient(AbstractCoefficient):
         positive(self, "factor")
         number(self, "exponent")
 
-    def value(self, ambient, density):
+    def value(self, ambient: Scalar, density: Scalar) -> Scalar:
         kinematic = 1e6 * jnp.exp(ambient) / density
         return self.factor * kinematic**self.exponent
 
 
-def as_coefficient(value) -> Any:
+def as_coefficient(value: Any) -> Any:
     """Converter: a plain number is the coefficient at all temperatures [1/Pa]."""
     kept = value is None or isinstance(value, AbstractCoefficient)
     return value if kept else ConstantCoefficient(value)

@@ -124,7 +124,7 @@ class EllipsePatch(AbstractPatch):
     radial: int = eqx.field(static=True)
     angular: int = eqx.field(static=True)
 
-    def nodes(self, slip, spin):
+    def nodes(self, slip: Float[Array, "2"], spin: Scalar) -> Nodes:
         """Nodes of an ellipse.
 
         On rays from a centre c to points e of the edge, in units of the semi-axes: c is
@@ -170,13 +170,13 @@ class EllipsePatch(AbstractPatch):
         return Nodes(a * x, b * y, area, pressure, viscosity)
 
     @property
-    def extent(self):
+    def extent(self) -> Float[Array, "*n 2"]:
         area = jnp.pi * self.rolling * self.transverse
         polar = 0.25 * area * (self.rolling**2 + self.transverse**2)
         return jnp.stack([area, polar], axis=-1)
 
     @property
-    def thinnest(self):
+    def thinnest(self) -> Float[Array, "*n"]:
         def of(oil, kelvin):
             return oil.viscosity(jnp.zeros_like(kelvin), kelvin)
 
@@ -185,13 +185,15 @@ class EllipsePatch(AbstractPatch):
         return of(self.lubricant, self.temperature)
 
     @property
-    def peak(self):
+    def peak(self) -> Float[Array, "*n"]:
         return self.peak_pressure
 
-    def numbers(self):
+    def numbers(self) -> tuple[Float[Array, "..."], ...]:
         return self.rolling, self.transverse, self.peak_pressure
 
-    def with_numbers(self, numbers, moments):
+    def with_numbers(
+        self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
+    ) -> "AbstractPatch":
         rolling, transverse, peak = (jnp.maximum(n, 0.0) for n in numbers)
         return eqx.tree_at(
             lambda p: (p.rolling, p.transverse, p.peak_pressure, p.moments),
@@ -211,28 +213,30 @@ class LinePatch(AbstractPatch):
     fixed: Nodes
     moments: Float[Array, "3"] = eqx.field(metadata=unit(("N s", "N m s", "N m² s")))
 
-    def nodes(self, slip, spin):
+    def nodes(self, slip: Float[Array, "2"], spin: Scalar) -> Nodes:
         """Return the nodes, which do not depend on the motion."""
         return self.fixed
 
     @property
-    def extent(self):
+    def extent(self) -> Float[Array, "*n 2"]:
         at = self.fixed
         polar = jnp.sum(at.area * (at.x**2 + at.y**2), axis=-1)
         return jnp.stack([jnp.sum(at.area, axis=-1), polar], axis=-1)
 
     @property
-    def thinnest(self):
+    def thinnest(self) -> Float[Array, "*n"]:
         return jnp.min(self.fixed.viscosity, axis=-1)
 
     @property
-    def peak(self):
+    def peak(self) -> Float[Array, "*n"]:
         return jnp.max(self.fixed.pressure, axis=-1)
 
-    def numbers(self):
+    def numbers(self) -> tuple[Float[Array, "..."], ...]:
         return (*self.fixed[:4], jnp.log(self.fixed.viscosity))
 
-    def with_numbers(self, numbers, moments):
+    def with_numbers(
+        self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
+    ) -> "AbstractPatch":
         x, y, area, pressure, log_viscosity = numbers
         area, pressure = jnp.maximum(area, 0.0), jnp.maximum(pressure, 0.0)
         fixed = Nodes(x, y, area, pressure, jnp.exp(log_viscosity))

@@ -114,10 +114,22 @@ class Newtonian(AbstractTraction):
 
     about: ClassVar[str] = "a film that is sheared evenly: τ = -μ(p) u/h"
 
-    def resistance(self, slip_squared, film, pressure, viscosity):
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
         return viscosity / film
 
-    def resultants(self, patch, film, slip, spin):
+    def resultants(
+        self,
+        patch: AbstractPatch,
+        film: Scalar | float,
+        slip: Float[Array, "2"],
+        spin: Scalar | float,
+    ) -> Resultants:
         spin = as_real(spin)
         total, first, polar = patch.moments / as_real(film)
         force = -jnp.stack([total * slip[0] + first * spin, total * slip[1]])
@@ -144,7 +156,13 @@ class Eyring(AbstractTraction):
     def __check_init__(self):
         check_fields(self)
 
-    def resistance(self, slip_squared, film, pressure, viscosity):
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
         newtonian = viscosity / film
         strain = newtonian / self.stress_scale
         return newtonian * _arsinh_over(strain * strain * slip_squared)
@@ -186,7 +204,13 @@ class LimitingStress(AbstractTraction):
     def __check_init__(self):
         check_fields(self)
 
-    def resistance(self, slip_squared, film, pressure, viscosity):
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
         newtonian = viscosity / film
         strain = newtonian / (self.ambient + self.slope * pressure)
         least = slip_squared + self.creep * self.creep
@@ -218,7 +242,13 @@ class SlipCurve(AbstractTraction):
     def __check_init__(self):
         check_fields(self)
 
-    def resistance(self, slip_squared, film, pressure, viscosity):
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
         speed = jnp.sqrt(slip_squared + _NO_SLIP**2)
         exponent = -self.decay * speed
         begun = -self.far * jnp.expm1(exponent) / speed
@@ -247,7 +277,13 @@ class DryFriction(AbstractTraction):
     def __check_init__(self):
         check_fields(self)
 
-    def resistance(self, slip_squared, film, pressure, viscosity):
+    def resistance(
+        self,
+        slip_squared: Float[Array, "*n"],
+        film: Scalar,
+        pressure: Float[Array, "*n"],
+        viscosity: Float[Array, "*n"],
+    ) -> Float[Array, "*n"]:
         speed = jnp.sqrt(slip_squared + self.creep * self.creep)
         return self.friction * pressure / speed
 

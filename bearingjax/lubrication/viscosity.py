@@ -5,6 +5,7 @@ by a factor of a million in a contact.
 """
 
 import abc
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -17,7 +18,7 @@ from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity_index import viscosity_at_100
 
 
-def level_off(x: Array, at, width) -> Array:
+def level_off(x: Array, at: Any, width: Any) -> Array:
     """x up to `at`, from there smoothly (twice) to at most `at` + `width`."""
     over = jnp.maximum(x - at, 0.0)
     return jnp.where(x > at, at + width * jnp.tanh(over / width), x)
@@ -110,7 +111,7 @@ class Walther(AbstractAmbient):
         hot = viscosity_at_100(cold, viscosity_index)
         return cls(313.15, cold, 373.15, hot)
 
-    def log_viscosity(self, temperature, density):
+    def log_viscosity(self, temperature: Scalar, density: Scalar) -> Scalar:
         def bent(viscosity):
             return jnp.log(jnp.log(1e6 * viscosity + 0.7))
 
@@ -148,7 +149,7 @@ class Exponential(AbstractAmbient):
         number(self, "first")
         number(self, "second")
 
-    def log_viscosity(self, temperature, density):
+    def log_viscosity(self, temperature: Scalar, density: Scalar) -> Scalar:
         d = 1.0 / temperature - 1.0 / self.reference_temperature
         return jnp.log(self.reference_viscosity) + d * (self.first + d * self.second)
 
@@ -166,7 +167,13 @@ class Barus(AbstractPressureLaw):
 
     coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
 
-    def log_ratio(self, pressure, temperature, ambient, density):
+    def log_ratio(
+        self,
+        pressure: Float[Array, "..."],
+        temperature: Scalar,
+        ambient: Scalar,
+        density: Scalar,
+    ) -> Float[Array, "..."]:
         return self.coefficient.value(ambient, density) * pressure
 
 
@@ -182,7 +189,13 @@ class Roelands(AbstractPressureLaw):
 
     coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
 
-    def log_ratio(self, pressure, temperature, ambient, density):
+    def log_ratio(
+        self,
+        pressure: Float[Array, "..."],
+        temperature: Scalar,
+        ambient: Scalar,
+        density: Scalar,
+    ) -> Float[Array, "..."]:
         depth = ambient + 9.67
         z = self.coefficient.value(ambient, density) / (5.1e-9 * depth)
         return depth * jnp.expm1(z * jnp.log1p(5.1e-9 * pressure))
@@ -242,11 +255,17 @@ class FreeVolume(AbstractAmbient, AbstractPressureLaw):
         for name in ("epsilon", "a_V", "beta_K"):
             number(self, name)
 
-    def log_viscosity(self, temperature, density):
+    def log_viscosity(self, temperature: Scalar, density: Scalar) -> Scalar:
         zero = jnp.zeros_like(temperature)
         return jnp.log(self.reference_viscosity) + self._exponent(zero, temperature)
 
-    def log_ratio(self, pressure, temperature, ambient, density):
+    def log_ratio(
+        self,
+        pressure: Float[Array, "..."],
+        temperature: Scalar,
+        ambient: Scalar,
+        density: Scalar,
+    ) -> Float[Array, "..."]:
         zero = jnp.zeros_like(temperature)
         return self._exponent(pressure, temperature) - self._exponent(zero, temperature)
 

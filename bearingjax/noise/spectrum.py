@@ -80,16 +80,16 @@ class Rectangular(AbstractWindow):
     """
 
     @property
-    def noise_bandwidth(self):
+    def noise_bandwidth(self) -> float:
         return 1.0
 
-    def weights(self, count):
+    def weights(self, count: int) -> np.ndarray:
         return np.ones(count)
 
-    def beyond(self, distance):
+    def beyond(self, distance: Any) -> Any:
         return jnp.zeros_like(distance)
 
-    def peak(self, left, middle, right):
+    def peak(self, left: Any, middle: Any, right: Any) -> tuple[Any, Any]:
         xp = array_namespace(middle)
         return xp.zeros_like(middle), xp.ones_like(middle)
 
@@ -103,20 +103,20 @@ class Hann(AbstractWindow):
     """
 
     @property
-    def noise_bandwidth(self):
+    def noise_bandwidth(self) -> float:
         return 1.5
 
-    def weights(self, count):
+    def weights(self, count: int) -> np.ndarray:
         return 1.0 - np.cos(2.0 * np.pi * np.arange(count) / count)
 
-    def beyond(self, distance):
+    def beyond(self, distance: Any) -> Any:
         # The first bins one by one, the others by an integral over their middles.
         near = jnp.stack([distance + k for k in range(4)])
         size = jnp.sinc(near) + 0.5 * (jnp.sinc(near - 1.0) + jnp.sinc(near + 1.0))
         far = (jnp.sin(jnp.pi * distance) / jnp.pi) ** 2 / (5.0 * (distance + 3.5) ** 5)
         return (jnp.sum(size**2, axis=0) + far) / self.noise_bandwidth
 
-    def peak(self, left, middle, right):
+    def peak(self, left: Any, middle: Any, right: Any) -> tuple[Any, Any]:
         # A line at the distance s has sinc(s)/(1 - s²) of its amplitude in the bin:
         # the next one has (1 + s)/(2 - s) of that.
         xp = array_namespace(middle)

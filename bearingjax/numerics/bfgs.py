@@ -1,12 +1,14 @@
 """Quasi-Newton minimiser of the energy paper, to compare with."""
 
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .compiled.batched_loop import Either
 from .linear import norm
-from .minimise import AbstractMinimiser, first_state
+from .minimise import AbstractMinimiser, Problem, State, first_state
 
 
 class BFGS(AbstractMinimiser):
@@ -28,16 +30,16 @@ class BFGS(AbstractMinimiser):
     tolerance: float | None = eqx.field(static=True, default=None)
     max_steps: int = eqx.field(static=True, default=400)
 
-    def reachable(self, dtype):
+    def reachable(self, dtype: Any) -> float:
         return 1e-9 if dtype == jnp.float64 else 1e-4
 
-    def init(self, problem):
+    def init(self, problem: Problem) -> State:
         n, dtype = problem.start.shape[0], problem.start.dtype
         # Kept besides: inverse of the Hessian, and the share of the step to try.
         own = jnp.eye(n, dtype=dtype), jnp.ones((), dtype)
         return first_state(problem, jnp.zeros((0,), dtype), own)
 
-    def step(self, problem, state):
+    def step(self, problem: Problem, state: State) -> State | Either:
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         inverse, fraction = state.own
         first = state.steps < 0

@@ -4,17 +4,24 @@ The implicit function theorem, written as a recursive derivative rule: right at 
 order, forward and reverse, under `jit` and `vmap`, with no host callback.
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
 from jax.custom_derivatives import SymbolicZero
 from jax.flatten_util import ravel_pytree
+from jaxtyping import Array
 
 from .linear import solve
+from .types import T
 
 
-def attach(residual, solution, args, symmetric: bool = True):
+def attach(
+    residual: Callable, solution: Array, args: Any, symmetric: bool = True
+) -> Array:
     """Attach to a solution of residual(y, args) = 0 its dependence on `args`.
 
     The value returned is `solution`; its derivative is
@@ -42,7 +49,7 @@ def attach(residual, solution, args, symmetric: bool = True):
     return attach_by(residual, solution, args, correction)
 
 
-def attach_roots(residual, solution, args):
+def attach_roots(residual: Callable, solution: Array, args: Any) -> Array:
     """`attach` for independent scalar roots, element by element, any sign of slope.
 
     Args:
@@ -64,7 +71,9 @@ def attach_roots(residual, solution, args):
     return attach_by(residual, solution, args, correction)
 
 
-def attach_by(residual, solution, args, correction):
+def attach_by(
+    residual: Callable, solution: Any, args: Any, correction: Callable
+) -> Any:
     """`attach` with a linear solver of one's own, for any pytree of unknowns.
 
     Args:
@@ -108,7 +117,7 @@ def _partition(args):
     return traced, others, lambda *parts: eqx.combine(*parts, static)
 
 
-def unless_failed(function, args, solved):
+def unless_failed(function: Callable, args: tuple, solved: Any) -> Any:
     """function(*args), with derivatives that are NaN if the solve failed.
 
     A failed solve ends anywhere, and a derivative there is not valid. For inputs that
@@ -193,7 +202,7 @@ def _parts(arrays):
     return [(x.real, x.imag) if jnp.iscomplexobj(x) else x for x in arrays]
 
 
-def recall(function, values, args):
+def recall(function: Callable, values: Any, args: tuple) -> Any:
     """function(*args) where its values are known already.
 
     The values returned are `values`; derivatives, to any order, are those of
@@ -225,7 +234,7 @@ def recall(function, values, args):
 
 
 @eqx.filter_custom_jvp
-def through_jacobian(given, *inputs, function):
+def through_jacobian(given: Any, *inputs: Array, function: Callable) -> Array:
     """function(given, *inputs), differentiated by its few inputs once.
 
     Where many tangents reach it through few numbers, such as all freedoms of a shaft
@@ -270,7 +279,7 @@ def _rule_through_jacobian(primals, tangents, *, function):
     return value, change
 
 
-def stop_gradient(tree):
+def stop_gradient(tree: T) -> T:
     """`lax.stop_gradient` on every floating array of a pytree."""
     return jax.tree.map(
         lambda x: lax.stop_gradient(x) if eqx.is_inexact_array(x) else x, tree

@@ -168,7 +168,7 @@ class AbstractMinimiser(eqx.Module):
         function: Function,
         start: Float[Array, " n"],
         radius: Float[Array, ""],
-        **choices,
+        **choices: Any,
     ) -> Minimum:
         """Minimise one function, from `init` to `finish`.
 
@@ -245,7 +245,7 @@ class AbstractMinimiser(eqx.Module):
             memory=now.memory,
         )
 
-    def goal(self, problem: Problem):
+    def goal(self, problem: Problem) -> Any:
         """|gradient| / scale at which to stop [1]."""
         if problem.tolerance is not None:
             return problem.tolerance
@@ -254,7 +254,7 @@ class AbstractMinimiser(eqx.Module):
         return self.reachable(problem.start.dtype)
 
     @abc.abstractmethod
-    def reachable(self, dtype) -> float:
+    def reachable(self, dtype: Any) -> float:
         """The tolerance that the method reaches in this precision [1]."""
 
 
@@ -302,16 +302,16 @@ class TrustRegionNewton(AbstractMinimiser):
     symmetric: bool = eqx.field(static=True, default=True)
     softest: float = eqx.field(static=True, default=1.0)
 
-    def reachable(self, dtype):
+    def reachable(self, dtype: Any) -> float:
         return 1e-13 if dtype == jnp.float64 else 1e-6
 
-    def init(self, problem):
+    def init(self, problem: Problem) -> State:
         n, dtype = problem.start.shape[0], problem.start.dtype
         # What is kept besides is the length of the next step along `direction`.
         reach = () if problem.direction is None else jnp.zeros((), dtype)
         return first_state(problem, jnp.eye(n, dtype=dtype), reach)
 
-    def step(self, problem, state):
+    def step(self, problem: Problem, state: State) -> State | Either:
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         n, first = state.x.shape[0], state.steps < 0
         now = problem.pulled(state.x, state.now)

@@ -7,14 +7,18 @@ that the signs at both ends tell whether there is a zone edge. None is missed.
 """
 
 import math
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
 
 from .implicit import attach_roots, stop_gradient
-from .quadrature import AbstractQuadrature, ContactMapped, Nodes, refined_edges
+from .quadrature import AbstractQuadrature, ContactMapped, Nodes, Offset, refined_edges
 
 # Steps to a top (of a cubic one suffices), and from there to a zone edge.
 _TO_TOP, _TO_EDGE = 3, 5
@@ -39,10 +43,10 @@ class Pieces(AbstractQuadrature):
 
     points: int = eqx.field(static=True)
 
-    def reference(self):
+    def reference(self) -> tuple[np.ndarray, np.ndarray]:
         return ContactMapped(self.points).reference()
 
-    def table(self, offset, kinks, dtype):
+    def table(self, offset: Offset, kinks: tuple, dtype: Any) -> tuple:
         """Table of the rule; `kinks` are the ends of the intervals, (interval + 1,).
 
         `offset` is taken at (interval, n) positions, a row in each interval.
@@ -64,7 +68,15 @@ class Pieces(AbstractQuadrature):
         _, slope = jax.jvp(offset, (bounds,), (jnp.ones_like(bounds),))
         return stop_gradient((bounds, slope))
 
-    def nodes(self, offset, args, table, a, b, arcs=False):
+    def nodes(
+        self,
+        offset: Callable,
+        args: Any,
+        table: tuple,
+        a: Array,
+        b: Array,
+        arcs: bool = False,
+    ) -> Nodes:
         ends = _monotone(
             partial(offset, stop_gradient(args)), *stop_gradient((table, b))
         )

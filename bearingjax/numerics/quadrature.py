@@ -13,7 +13,7 @@ moments of an integrand are one product with a constant basis (w, w τ, w τ²).
 import abc
 from collections.abc import Callable
 from functools import partial
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -64,20 +64,28 @@ class AbstractQuadrature(eqx.Module):
         """Fixed nodes τ in [-1, 1] and weights (they sum to 2)."""
 
     @abc.abstractmethod
-    def table(self, offset: Offset, kinks: tuple, dtype, arcs: bool = False) -> tuple:
+    def table(
+        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+    ) -> tuple:
         """Return the terms that depend on the offset h only, once per design; `arcs`
         as in `nodes`."""
 
     @abc.abstractmethod
     def nodes(
-        self, offset: Callable, args, table, a: Array, b: Array, arcs: bool = False
+        self,
+        offset: Callable,
+        args: Any,
+        table: tuple,
+        a: Array,
+        b: Array,
+        arcs: bool = False,
     ) -> Nodes:
         """Nodes for given a, b; `offset(args, ξ)` is h.
 
         `arcs`: h is made of straight lines and flat arcs, kinks between them. Static.
         """
 
-    def basis(self, dtype) -> Float[Array, "point 3"]:
+    def basis(self, dtype: Any) -> Float[Array, "point 3"]:
         """Constant matrix (w, w τ, w τ²)."""
         tau, weight = self.reference()
         return jnp.asarray(
@@ -101,16 +109,26 @@ class Midpoint(AbstractQuadrature):
     def __check_init__(self):
         _check_points(self.points)
 
-    def reference(self):
+    def reference(self) -> tuple[np.ndarray, np.ndarray]:
         edges = np.linspace(-1.0, 1.0, self.points + 1)
         middle = 0.5 * (edges[1:] + edges[:-1])
         return middle, np.full(self.points, 2.0 / self.points)
 
-    def table(self, offset, kinks, dtype, arcs=False):
+    def table(
+        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+    ) -> tuple:
         tau, _ = self.reference()
         return (offset(jnp.asarray(tau, dtype=dtype)),)
 
-    def nodes(self, offset, args, table, a, b, arcs=False):
+    def nodes(
+        self,
+        offset: Callable,
+        args: Any,
+        table: tuple,
+        a: Array,
+        b: Array,
+        arcs: bool = False,
+    ) -> Nodes:
         (fixed,) = table
         tau = jnp.asarray(self.reference()[0], dtype=a.dtype)
         one = jnp.ones((1,), dtype=a.dtype)
@@ -154,14 +172,16 @@ class ContactMapped(AbstractQuadrature):
                 f"`scan` is {self.scan!r}; it must be a whole number of at least 3."
             )
 
-    def reference(self):
+    def reference(self) -> tuple[np.ndarray, np.ndarray]:
         x, w = np.polynomial.legendre.leggauss(self.points)
         t = 0.5 * (x + 1.0)
         graded = t**3 * (10.0 + t * (-15.0 + 6.0 * t))
         slope = 30.0 * t**2 * (1.0 - t) ** 2
         return 2.0 * graded - 1.0, w * slope
 
-    def table(self, offset, kinks, dtype, arcs=False):
+    def table(
+        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+    ) -> tuple:
         one = jnp.ones((), dtype=dtype)
         ends = jnp.stack([-one, *kinks, one])
         start, end = ends[:-1], ends[1:]
@@ -172,7 +192,15 @@ class ContactMapped(AbstractQuadrature):
         fixed, slope = jax.jvp(offset, (at,), (jnp.ones_like(at),))
         return start, end, at, stop_gradient(fixed), stop_gradient(slope)
 
-    def nodes(self, offset, args, table, a, b, arcs=False):
+    def nodes(
+        self,
+        offset: Callable,
+        args: Any,
+        table: tuple,
+        a: Array,
+        b: Array,
+        arcs: bool = False,
+    ) -> Nodes:
         start, end, *_ = table
         frozen = stop_gradient((*table, a, b))
         if arcs:
@@ -304,7 +332,16 @@ def _loaded_interval(offset, start, end, at, fixed, slope, a, b):
     return left, jnp.maximum(left, right), inner
 
 
-def refined_edges(steps, offset, a, b, inside, outside, side, some):
+def refined_edges(
+    steps: int,
+    offset: Callable,
+    a: Any,
+    b: Any,
+    inside: Array,
+    outside: Array,
+    side: Any,
+    some: Array,
+) -> Array:
     """Zeros of a + b ξ - h, one between each two points of unlike sign.
 
     Args:

@@ -1,12 +1,14 @@
 """Result codes of solvers, and the one place where they become exceptions."""
 
 import enum
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import equinox as eqx
 import jax.numpy as jnp
 from jax.core import Tracer
 from jaxtyping import Array, Int
+
+from .types import T
 
 
 class Result(enum.IntEnum):
@@ -66,12 +68,12 @@ _CAUSES = {
 
 
 def raise_unless_converged(
-    tree,
+    tree: T,
     result: Int[Array, "..."],
-    message,
+    message: Callable[[], str],
     owner: str,
     details: tuple[Int[Array, "..."], Sequence[str]] | None = None,
-):
+) -> T:
     """Return `tree`, or raise if `result` is not `CONVERGED`.
 
     Outside `jit` a `SolveError`; under `jit` Equinox's run-time error, through the

@@ -1,6 +1,6 @@
 """Number types shared by every layer."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -12,6 +12,7 @@ Count = Int[Array, ""]
 Flag = Bool[Array, ""]
 Ring = Float[Array, "12"]
 RingStiffness = Float[Array, "12 12"]
+T = TypeVar("T")
 
 if TYPE_CHECKING:
 
@@ -34,7 +35,7 @@ else:
     RealOrNone = Scalar | None
 
 
-def array_namespace(array) -> Any:
+def array_namespace(array: Any) -> Any:
     """Return NumPy for its own arrays, to avoid compilation; `jax.numpy` for others.
 
     Args:
@@ -43,7 +44,7 @@ def array_namespace(array) -> Any:
     return np if isinstance(array, np.ndarray | np.generic) else jnp
 
 
-def as_real(value) -> Any:
+def as_real(value: Any) -> Any:
     """Converter of every real field: a floating array, never a Python float.
 
     A Python float in a Module would be static under `jit`: a new value would
@@ -71,7 +72,7 @@ def as_real(value) -> Any:
         return value
 
 
-def as_array(value, dtype) -> Array:
+def as_array(value: Any, dtype: Any) -> Array:
     """`jnp.asarray`; values without JAX arrays are cast by NumPy, without compilation.
 
     Args:
@@ -87,7 +88,7 @@ def as_array(value, dtype) -> Array:
     return jnp.asarray(value, dtype=dtype)
 
 
-def as_count(value):
+def as_count(value: Any) -> Any:
     """Converter of every count: a Python integer, which is static under `jit`.
 
     Args:

@@ -110,11 +110,11 @@ class Problem:
         self.bounds = tuple(_bounds(constraints))
         self.size = 1.0
 
-    def scaled(self, values) -> np.ndarray:
+    def scaled(self, values: Any) -> np.ndarray:
         """Values of the variables in the unit box."""
         return (np.asarray(values) - self.lower) / self.width
 
-    def values(self, unit) -> np.ndarray:
+    def values(self, unit: np.ndarray) -> np.ndarray:
         """Values of the variables [SI], exact at the bounds."""
         inside = np.clip(self.lower + self.width * unit, self.lower, self.upper)
         return np.where(unit >= 1.0, self.upper, inside)
@@ -156,7 +156,7 @@ class Problem:
             asked.append(partial(element.warnings, self.cases, solution))
         return lambda: [text for judge in asked for text in judge()]
 
-    def run(self, unit, slopes: bool) -> "Run":
+    def run(self, unit: np.ndarray, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""
         return _program(
             self.element,

@@ -112,15 +112,15 @@ class RatingLife(OfLife):
         return self.life(element_of(element), cases, solution)
 
     @property
-    def as_objective(self):
+    def as_objective(self) -> "AbstractMeasure":
         return Damage(self.conditions, self.hours)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "rating life"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "h" if self.hours else "rev"
 
 
@@ -136,20 +136,20 @@ class Damage(OfLife):
         return 1.0 / self.life(element_of(element), cases, solution)
 
     @property
-    def reported_as(self):
+    def reported_as(self) -> "AbstractMeasure":
         return RatingLife(self.conditions, self.hours)
 
-    def reported_value(self, value):
+    def reported_value(self, value: Any) -> Any:
         return 1.0 / value
 
     @property
-    def maximised(self):
+    def maximised(self) -> bool:
         return True
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "damage"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "1/h" if self.hours else "1/rev"

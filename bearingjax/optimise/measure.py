@@ -114,7 +114,7 @@ class AbstractLargest(AbstractSmooth):
     def __call__(self, element, cases, solution):
         return smooth_maximum(self.samples(solution), self.exponent)
 
-    def exact(self, element, cases, solution):
+    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return jnp.max(self.samples(solution))
 
 
@@ -134,15 +134,15 @@ class PeakPressure(AbstractLargest):
 
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
-    def samples(self, solution):
+    def samples(self, solution: Any) -> Float[Array, "..."]:
         return _pressures(solution)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "peak pressure"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(Solution, "roller_pressure")
 
 
@@ -164,15 +164,15 @@ class MeanPressure(AbstractSmooth):
         peaks = jax.vmap(lambda p: smooth_maximum(p, self.exponent))(pressure)
         return _mean(peaks, cases)
 
-    def exact(self, element, cases, solution):
+    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return _mean(jnp.max(_pressures(solution), axis=1), cases)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "mean peak pressure"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(Solution, "roller_pressure")
 
 
@@ -187,7 +187,7 @@ class EdgeLoad(AbstractLargest):
 
     exponent: float = eqx.field(static=True, default=EXPONENT)
 
-    def samples(self, solution):
+    def samples(self, solution: Any) -> Float[Array, "..."]:
         solution = loads_of(solution)
         if not isinstance(solution, RollerSolution):
             raise ValueError(
@@ -196,11 +196,11 @@ class EdgeLoad(AbstractLargest):
         return solution.edge_load
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "edge load"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(RollerSolution, "edge_load")
 
 
@@ -220,7 +220,7 @@ class Displacement(AbstractLargest):
     def __check_init__(self):
         _check_freedom(self, self.freedom)
 
-    def samples(self, solution):
+    def samples(self, solution: Any) -> Float[Array, "..."]:
         solution = loads_of(solution)
         if self.freedom not in solution.free:
             raise ValueError(
@@ -231,11 +231,11 @@ class Displacement(AbstractLargest):
         return jnp.abs(moved[:, FREEDOMS.index(self.freedom)])
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"displacement {self.freedom}"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(Solution, "displacement", (FREEDOMS.index(self.freedom),))
 
 
@@ -261,15 +261,15 @@ class Stiffness(AbstractSmooth):
         values = _stiffness(solution, self.freedom, self.freedom)
         return smooth_minimum(values, self.exponent)
 
-    def exact(self, element, cases, solution):
+    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return jnp.min(_stiffness(solution, self.freedom, self.freedom))
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"stiffness {self.freedom}"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(Solution, "stiffness", 2 * (FREEDOMS.index(self.freedom),))
 
 
@@ -304,18 +304,18 @@ class StiffnessTarget(AbstractMeasure):
         return _mean((value / self.target - 1.0) ** 2, cases)
 
     @property
-    def least_size(self):
+    def least_size(self) -> float:
         # A difference of 1 %: divided by less, round-off about a target that is met
         # would look like a slope.
         return 1e-4
 
     @property
-    def label(self):
+    def label(self) -> str:
         pair = self.freedom if self.other is None else f"{self.freedom} {self.other}"
         return f"miss of stiffness {pair}"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return ""
 
 

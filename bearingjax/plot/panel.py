@@ -37,7 +37,9 @@ class Axis:
     shown: tuple[float, str] | None = None
 
     @classmethod
-    def of(cls, result: Any, field: str, shown: tuple[float, str] | None = None):
+    def of(
+        cls, result: Any, field: str, shown: tuple[float, str] | None = None
+    ) -> "Axis":
         """Return the axis of a field of a result, with the unit of its metadata."""
         return cls(field.replace("_", " "), unit_of(result, field), shown)
 
@@ -81,7 +83,7 @@ class Curve:
     look: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     to: Any = None
 
-    def draw(self, ax, across: float, up: float) -> None:
+    def draw(self, ax: Axes, across: float, up: float) -> None:
         """Draw the curve, in the units displayed."""
         x, y = across * np.asarray(self.x, float), up * np.asarray(self.y, float)
         if self.to is not None:
@@ -114,7 +116,7 @@ class Bars:
     labels: Any = None
     look: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
-    def draw(self, ax, across: float, up: float) -> None:
+    def draw(self, ax: Axes, across: float, up: float) -> None:
         """Draw the bars, in the unit displayed."""
         heights = up * np.asarray(self.heights, float)
         places = np.arange(len(heights)) + self.away

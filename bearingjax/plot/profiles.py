@@ -48,7 +48,7 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     return ax
 
 
-def arc_gaps(bearing: AbstractRollerBearing, position) -> np.ndarray:
+def arc_gaps(bearing: AbstractRollerBearing, position: np.ndarray) -> np.ndarray:
     """Return the gaps that the arcs of roller and raceways leave along the roller.
 
     Args:

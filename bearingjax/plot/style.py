@@ -1,5 +1,6 @@
 """Common parts of all plots: matplotlib on demand, colours, labels."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,10 @@ if TYPE_CHECKING:
 else:  # names alone: it is imported at the first plot
     Axes, Figure = "matplotlib.axes.Axes", "matplotlib.figure.Figure"
     Ax = "matplotlib.axes.Axes | None"
+
+Size = tuple[float, float]
+Points = np.ndarray | Sequence
+"""One point or several: arrays, or the numbers themselves."""
 
 OUTER = "#0072B2"
 """Colour of the outer ring and its raceway (Okabe and Ito, colour-blind safe)."""
@@ -34,7 +39,7 @@ SPIN_COLOURS = (GREY, ROLLER, INNER)
 """Parts of the spin of a ball, x, y and z."""
 
 
-def pyplot():
+def pyplot() -> Any:
     """`matplotlib.pyplot`, imported at the first plot.
 
     Raises:
@@ -49,7 +54,7 @@ def pyplot():
     return plt
 
 
-def axes_or_new(ax: Ax, size=(7.0, 5.0), polar: bool = False) -> Axes:
+def axes_or_new(ax: Ax, size: Size = (7.0, 5.0), polar: bool = False) -> Axes:
     """Return given axes, or those of a new figure, without an offset of ticks.
 
     Args:
@@ -95,7 +100,7 @@ def power_of_ten(largest: float) -> tuple[float, str]:
     return 10.0**-power, f"10{str(power).translate(_POWERS)}"
 
 
-def widen_limits(values, least: float, share: float = 0.08) -> tuple[float, float]:
+def widen_limits(values: Any, least: float, share: float = 0.08) -> tuple[float, float]:
     """Return limits of an axis around values, wide enough to hide round-off.
 
     Args:
@@ -121,7 +126,7 @@ def raceway_index(raceway: str) -> int:
     return RACEWAYS.index(raceway)
 
 
-def row_slices(solution) -> list[slice]:
+def row_slices(solution: Any) -> list[slice]:
     """Return the slices of the rows on the element axis.
 
     Args:
@@ -133,7 +138,7 @@ def row_slices(solution) -> list[slice]:
     ]
 
 
-def row_slice(solution, row: int) -> slice:
+def row_slice(solution: Any, row: int) -> slice:
     """Return the slice of one row on the element axis.
 
     Args:
@@ -149,7 +154,7 @@ def row_slice(solution, row: int) -> slice:
     return rows[row]
 
 
-def degrees(azimuth) -> np.ndarray:
+def degrees(azimuth: Any) -> np.ndarray:
     """Return azimuths from 0 up to 360 degrees, without round-off at the seam.
 
     Args:
@@ -170,7 +175,7 @@ def force_text(force: float) -> str:
     return f"{1e-3 * force:.3g} kN"
 
 
-def towards_white(colour, share: float) -> tuple[float, ...]:
+def towards_white(colour: Any, share: float) -> tuple[float, ...]:
     """Return a lighter colour.
 
     Args:
@@ -182,6 +187,6 @@ def towards_white(colour, share: float) -> tuple[float, ...]:
     return tuple(c + share * (1.0 - c) for c in to_rgb(colour))
 
 
-def head(figure, title: str, **place) -> None:
+def head(figure: Any, title: str, **place: Any) -> None:
     """Write the title of a page literally: file names may contain a dollar."""
     figure.suptitle(title, fontsize=14, fontweight="bold", parse_math=False, **place)

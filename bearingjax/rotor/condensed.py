@@ -44,11 +44,11 @@ class Condensed(eqx.Module):
     supports: tuple[AbstractSupport, ...]
     speed: Scalar | Float[Array, " support"]
 
-    def motion(self, y):
+    def motion(self, y: Float[Array, " m"]) -> Float[Array, " motion"]:
         """Return all motions [m, rad]."""
         return self.back @ y + self.there
 
-    def of_supports(self, y) -> Supported:
+    def of_supports(self, y: Float[Array, " m"]) -> Supported:
         """Force, stiffness and damping of every support."""
         moved = self.rows @ y
         if jnp.ndim(self.speed):
@@ -63,12 +63,14 @@ class Condensed(eqx.Module):
         matrices = jnp.tile(none, (n, N_STATION, N_STATION))
         return matrices[:, 0], matrices, matrices
 
-    def out_of_balance(self, y, force):
+    def out_of_balance(
+        self, y: Float[Array, " m"], force: Float[Array, "support 5"]
+    ) -> Float[Array, " m"]:
         """Return the force of springs and supports less the applied one (m,) [N]."""
         along = jnp.einsum("sim,si->m", self.rows, force)
         return along + self.stiffness @ y - self.force
 
-    def slope(self, stiffness):
+    def slope(self, stiffness: Float[Array, "support 5 5"]) -> Float[Array, "m m"]:
         """Return the total stiffness, from that of the supports (m, m) [N/m]."""
         rows = self.rows
         return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness

@@ -30,7 +30,7 @@ DAMPING_UNITS = (
 )
 
 
-def check_station(owner, station) -> None:
+def check_station(owner: Any, station: Any) -> None:
     """Check that a station is a whole number from 0."""
     whole = isinstance(station, int) and not isinstance(station, bool)
     if not whole or station < 0:
@@ -163,13 +163,13 @@ class PointMass(AbstractPart):
         return Disc(self.station, self.mass, nothing, nothing).inertia()
 
 
-def square_matrix(value):
+def square_matrix(value: Any) -> Any:
     """Converter: a number, or one per freedom, becomes a diagonal matrix."""
     value = as_real(value)
     return jnp.diag(value) if getattr(value, "ndim", 0) == 1 else value
 
 
-def check_matrix(owner, name, size):
+def check_matrix(owner: Any, name: str, size: int) -> None:
     """Raise unless a field is a square matrix of stiffness or damping."""
     value = getattr(owner, name)
     allowed = f"{(size, size)}, or {size} numbers, those of the diagonal"
@@ -208,7 +208,7 @@ class Housing(eqx.Module):
         check_matrix(self, "damping", 3)
 
 
-def check_support(owner) -> None:
+def check_support(owner: Any) -> None:
     """Check fields of a support: station, damping (5, 5), housing or `None`."""
     check_station(owner, owner.station)
     check_matrix(owner, "damping", 5)

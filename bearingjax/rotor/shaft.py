@@ -177,7 +177,7 @@ class Shaft(eqx.Module):
             for name in ("elastic_modulus", "poisson_ratio", "density")
         )
 
-    def matrices(self):
+    def matrices(self) -> tuple[Array, Array, Array]:
         """Return mass, gyroscopic and stiffness matrix of the free shaft.
 
         Returns:

@@ -162,7 +162,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
     return loads
 
 
-def search_equilibrium(parts: Condensed, length) -> Minimum:
+def search_equilibrium(parts: Condensed, length: Scalar | float) -> Minimum:
     """Search the equilibrium, without derivatives; its memory are the supports.
 
     Args:
@@ -228,7 +228,7 @@ def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]
 
 @program(quick=True)
 def equilibrium_at(
-    rotor, loads, speed
+    rotor: Rotor, loads: RotorLoads, speed: Any
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
     """Return the result, and the end point of the search even if it failed (motion,).
 

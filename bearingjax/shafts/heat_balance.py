@@ -16,6 +16,7 @@ from jaxtyping import Array, Float
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import eigvals, solve_any
+from ..numerics.types import T
 from ..numerics.units import unit
 
 HOTTEST = 300.0
@@ -68,7 +69,7 @@ def steady_rises(
     return rise, -found.fastest, found.residual, found.steps, found.solved
 
 
-def with_slope(heat, rise):
+def with_slope(heat: Callable, rise: Float[Array, " node"]) -> tuple:
     """Return heat made at every node, its slope over the rises, and something else.
 
     Args:
@@ -110,7 +111,9 @@ class _Search(NamedTuple):
         return (self.residual <= _TOLERANCE) & (self.fastest < 0)
 
 
-def search_temperatures(evaluated, network, nothing, while_loop):
+def search_temperatures(
+    evaluated: Callable, network: Any, nothing: Any, while_loop: Callable
+) -> tuple:
     """Search the temperatures that a system reaches from the cold.
 
     Args:
@@ -131,7 +134,7 @@ def search_temperatures(evaluated, network, nothing, while_loop):
     return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
 
 
-def stepped_while(going, step, carry):
+def stepped_while(going: Callable, step: Callable, carry: T) -> T:
     """`lax.while_loop` of steps that are compiled one by one."""
     while going(carry):
         carry = step(carry)
@@ -197,7 +200,14 @@ def rises_over_time(
 _GAMMA = 1.0 - np.sqrt(0.5)
 
 
-def integrate_heat(evaluated, made, network, times, n, scan):
+def integrate_heat(
+    evaluated: Callable,
+    made: Callable,
+    network: Any,
+    times: Array,
+    n: int,
+    scan: Callable,
+) -> Array:
     """Return rises over time (time, node) [K].
 
     Args:
@@ -223,7 +233,7 @@ def integrate_heat(evaluated, made, network, times, n, scan):
     return jnp.concatenate([start[None], found])
 
 
-def stepped_scan(step, carry, given):
+def stepped_scan(step: Callable, carry: Any, given: Any) -> tuple[Any, Array]:
     """`lax.scan` of steps that are compiled one by one."""
     found = []
     for one in np.asarray(given):

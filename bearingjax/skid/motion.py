@@ -282,7 +282,13 @@ class SkidSystem(AbstractSystem):
         of_ball = own[..., :n], own[..., n], own[..., n + 1]
         return SkidState(*of_ball, shared[0], shared[1], own[..., n + 2 :], shared[2:])
 
-    def body(self, which, time, own, shared):
+    def body(
+        self,
+        which: Any,
+        time: Scalar,
+        own: Float[Array, " k"],
+        shared: Float[Array, " m"],
+    ) -> tuple[Float[Array, " k"], Float[Array, " m"], Float[Array, " w"]]:
         """Return rates and powers of a ball, as `AbstractSystem`."""
         environment, state = self.environment, self._state(own, shared)
         ball = one_ball(environment, time, which, state)
@@ -302,7 +308,9 @@ class SkidSystem(AbstractSystem):
         units = self._units
         return own / units[0], shared / units[1], work / self.energy
 
-    def rest(self, time, shared):
+    def rest(
+        self, time: Scalar, shared: Float[Array, " m"]
+    ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
         """Return rates from cage rotation and ring load, as `AbstractSystem`."""
         loads, units = self.environment.loads, self._units[1]
         own = shared * units

@@ -1,5 +1,8 @@
 """Loads on the ring over time."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -76,7 +79,9 @@ class SinusoidalLoad(eqx.Module):
         return self.mean + self.amplitude * jnp.sin(self.speed * time + self.phase)
 
 
-def rising_and_finite(self, time: Float[Array, " knot"], names) -> None:
+def rising_and_finite(
+    self: Any, time: Float[Array, " knot"], names: Iterable[str]
+) -> None:
     """Check a table over time.
 
     Args:

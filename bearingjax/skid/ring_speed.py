@@ -50,7 +50,9 @@ class SpeedTable(eqx.Module):
         )
 
 
-def ramp(duration, end: Speed, start: Speed | None = None) -> SpeedTable:
+def ramp(
+    duration: Scalar | float, end: Speed, start: Speed | None = None
+) -> SpeedTable:
     """Create a table with a linear ramp between two speeds, then constant.
 
     Args:

@@ -300,7 +300,7 @@ def contact_results(
     choices: Any,
     bearing: AbstractBearing | BearingSet,
     rows: tuple[RowResults, ...],
-    points,
+    points: Any,
 ) -> dict:
     """Results of the contacts of solved rows; register a new kind of choices here.
 

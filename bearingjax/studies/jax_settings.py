@@ -4,12 +4,13 @@ import contextlib
 import os
 import sys
 import warnings
+from argparse import Namespace
 from pathlib import Path
 
 from .status import complain
 
 
-def configure(options) -> None:
+def configure(options: Namespace) -> None:
     """Enable float64, and the cache of compiled programs between runs."""
     # Matrices are small: LAPACK threads would only wait for each other, thirty times as
     # long on a busy machine. Read when SciPy is first imported.
@@ -47,7 +48,7 @@ def configure(options) -> None:
     keep_programs(keep=jax.config.values["jax_enable_compilation_cache"])
 
 
-def devices(options) -> int:
+def devices(options: Namespace) -> int:
     """Return the number of CPU devices of a sweep: as requested, or all cores."""
     from ..files import SceneError
 

@@ -1,16 +1,20 @@
 """Options shared by several commands."""
 
+import argparse
+from argparse import ArgumentParser
 from pathlib import Path
 
+Commands = argparse._SubParsersAction
 
-def add_scene(command) -> None:
+
+def add_scene(command: ArgumentParser) -> None:
     """Add the scene argument, and options for settings and JSON."""
     command.add_argument("scene", metavar="SCENE", help=".toml file or a shipped scene")
     add_json(command)
     add_set(command)
 
 
-def add_set(command, what: str = "change the scene") -> None:
+def add_set(command: ArgumentParser, what: str = "change the scene") -> None:
     """Add `--set`, changes to the input."""
     command.add_argument(
         "--set",
@@ -21,34 +25,36 @@ def add_set(command, what: str = "change the scene") -> None:
     )
 
 
-def add_json(command) -> None:
+def add_json(command: ArgumentParser) -> None:
     """Add `--json`, numbers in a file."""
     _add_output(command, "--json", "write numbers in SI")
 
 
-def add_plot(command, what: str = "write a picture") -> None:
+def add_plot(command: ArgumentParser, what: str = "write a picture") -> None:
     """Add `--plot`, a picture."""
     _add_output(command, "--plot", f"{what} (.png, .pdf, .svg)")
 
 
-def add_drawing(command, what: str = "of the one bearing that is named") -> None:
+def add_drawing(
+    command: ArgumentParser, what: str = "of the one bearing that is named"
+) -> None:
     """Add `--drawing`, a drawing of a bearing."""
     text = f"write a drawing {what}, with all its dimensions (.png, .pdf, .svg)"
     _add_output(command, "--drawing", text)
 
 
-def add_table(command, row: str) -> None:
+def add_table(command: ArgumentParser, row: str) -> None:
     """Add `--table`, a table with one row per `row`."""
     _add_output(command, "--table", f"write a row per {row} (.csv, .parquet, .xlsx)")
 
 
-def add_report(command, what: str) -> None:
+def add_report(command: ArgumentParser, what: str) -> None:
     """Add `--report`, a self-contained report with inputs and `what`."""
     text = f"write a report that stands alone (.html), with inputs and {what}"
     _add_output(command, "--report", text)
 
 
-def add_quiet(command, without: str = "progress bar") -> None:
+def add_quiet(command: ArgumentParser, without: str = "progress bar") -> None:
     """Add `--quiet`, no progress on standard error."""
     command.add_argument("--quiet", action="store_true", help=f"no {without}")
 

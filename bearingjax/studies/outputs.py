@@ -1,7 +1,8 @@
 """Output files of commands: checked before a run, written after it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 from .status import complain
 
@@ -17,7 +18,7 @@ _ENDINGS = {
 }
 
 
-def write_outputs(outputs) -> bool:
+def write_outputs(outputs: Iterable[tuple[Path | None, Callable]]) -> bool:
     """Write files, pairs of a path (`None`: not requested) and its writer.
 
     Reports which files of an earlier run were removed, and which failed: a failed
@@ -36,7 +37,7 @@ def write_outputs(outputs) -> bool:
     return bool(written.failed)
 
 
-def save(figure, path, **format) -> None:
+def save(figure: Any, path: Any, **format: Any) -> None:
     """Write a picture, to a file or a stream."""
     figure.savefig(path, dpi=150, **format)
     # Laid out once: a layout of what has its place already would shift it.
@@ -52,7 +53,7 @@ def failure_of_output(error: Exception) -> str:
     return f"could not be made: {type(error).__name__}: {error}"
 
 
-def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
+def check_outputs(options: Any, inputs: Sequence[Path] | None = None) -> None:
     """Fail before solving if outputs cannot be written or overwrite an input.
 
     Args:
@@ -79,7 +80,7 @@ def check_outputs(options, inputs: Sequence[Path] | None = None) -> None:
     check_outputs({f"--{name}": path for name, path in outputs.items()}, inputs)
 
 
-def check_table(options, rows: int = 0) -> None:
+def check_table(options: Any, rows: int = 0) -> None:
     """Fail before solving if a table with this number of rows cannot be written."""
     from ..files import SceneError
     from ..files.table_file import check_writable
@@ -105,6 +106,6 @@ def check_matplotlib() -> None:
     matplotlib.use("Agg")
 
 
-def sources_of(options) -> list[str]:
+def sources_of(options: Any) -> list[str]:
     """Return the scenes of a command."""
     return options.scenes if hasattr(options, "scenes") else [options.scene]

@@ -1,11 +1,13 @@
 """`bearingjax schema`."""
 
 import json
+from argparse import Namespace
 
+from .options import Commands
 from .status import SOLVED
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "schema",
@@ -24,7 +26,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options: Namespace) -> int:
     """Print the JSON Schema, or tables of keys."""
     from .scene_schema import key_guide, scene_schema
 

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ...numerics.compiled.batched_loop import Loop
 from ...numerics.linear import dot, solve_symmetric
@@ -96,7 +96,7 @@ class ConjugateGradients(AbstractPressureSolver):
     max_steps: int = eqx.field(static=True, default=500)
     preconditioned: bool = eqx.field(static=True, default=True)
 
-    def init(self, problem):
+    def init(self, problem: Problem) -> Any:
         pressure, touching = _start(problem)
         displacement = problem.influence(pressure)
         return _State(
@@ -112,7 +112,7 @@ class ConjugateGradients(AbstractPressureSolver):
             steps=jnp.asarray(0, jnp.int32),
         )
 
-    def step(self, problem, state):
+    def step(self, problem: Problem, state: Any) -> Any:
         area = problem.grid.area
         enters = ~state.touching & (state.distance < 0) & state.opens
         touching = state.touching | enters
@@ -172,12 +172,12 @@ class ConjugateGradients(AbstractPressureSolver):
             steps=state.steps + 1,
         )
 
-    def terminate(self, problem, state):
+    def terminate(self, problem: Problem, state: Any) -> Any:
         # NaN compares false, and ends it.
         going = state.residual > self._goal(state.pressure)
         return ~(going & (state.steps < self.max_steps))
 
-    def finish(self, problem, state):
+    def finish(self, problem: Problem, state: Any) -> Pressed:
         done = state.residual <= self._goal(state.pressure)
         result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
         finite = jnp.isfinite(state.residual) & jnp.all(jnp.isfinite(state.rigid))
@@ -200,7 +200,9 @@ class ConjugateGradients(AbstractPressureSolver):
         return 2e-5 * max(1.0, pressure.size / 1000)
 
 
-def rigid_fit(problem: Problem, touching, distance) -> Float[Array, " k"]:
+def rigid_fit(
+    problem: Problem, touching: Bool[Array, "m n"], distance: Float[Array, "m n"]
+) -> Float[Array, " k"]:
     """Rigid motion nearest to a distance of the surfaces in contact (k,) [m]."""
     modes, area = problem.modes, problem.grid.area
     if not modes.shape[0]:
@@ -210,7 +212,9 @@ def rigid_fit(problem: Problem, touching, distance) -> Float[Array, " k"]:
     return solve_symmetric(matrix, jnp.einsum("kmn,mn->k", weighted, distance))
 
 
-def projected_pressure(problem: Problem, touching, rest) -> Float[Array, "m n"]:
+def projected_pressure(
+    problem: Problem, touching: Bool[Array, "m n"], rest: Float[Array, "m n"]
+) -> Float[Array, "m n"]:
     """Estimated pressure in contact, without load and moment [Pa]."""
     modes = problem.modes
     if not modes.shape[0]:

@@ -195,7 +195,7 @@ def _odd(xp, count, dtype):
     return xp.asarray(2.0 * np.arange(count + 1) - 1.0, dtype)
 
 
-def padded_size(n):
+def padded_size(n: int) -> int:
     """Even length, at least 2n, of factors 2, 3 and 5."""
     size = 2 * n
     while not _is_smooth(size):
@@ -210,7 +210,7 @@ def _is_smooth(n):
     return n == 1
 
 
-def cosine_sums(size):
+def cosine_sums(size: int) -> np.ndarray:
     """Transform of an even sequence, given from distance 0 to size/2 (f, lag)."""
     lag = np.arange(size // 2 + 1)
     twice = np.where((lag == 0) | (lag == size // 2), 1.0, 2.0)

@@ -65,7 +65,7 @@ def _asinh_ratio(v, u, xp):
     return xp.where(none, 0.0, xp.arcsinh(v / xp.abs(xp.where(none, 1.0, u))))
 
 
-def namespace(*values) -> Any:
+def namespace(*values: Any) -> Any:
     """NumPy where no value is traced, so that tables are made in double precision.
 
     The differences lose digits that single precision does not have.

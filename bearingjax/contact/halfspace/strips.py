@@ -1,6 +1,6 @@
 """The paper's iteration strip by strip, as printed and corrected, for comparison."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,7 +12,7 @@ from ...numerics.lapack import solve_any
 from ...numerics.result import Result
 from .gradients import AbstractPressureSolver
 from .influence import EvenInfluence, cosine_sums, padded_size
-from .problem import Pressed
+from .problem import Pressed, Problem
 
 _INNER = 40
 """Limit of changes of the active set within a strip."""
@@ -54,7 +54,7 @@ class Strips(AbstractPressureSolver):
     tolerance: float = eqx.field(static=True, default=1e-9)
     max_steps: int = eqx.field(static=True, default=2000)
 
-    def init(self, problem):
+    def init(self, problem: Problem) -> Any:
         grid = problem.grid
         if (
             not isinstance(problem.influence, EvenInfluence)
@@ -73,7 +73,7 @@ class Strips(AbstractPressureSolver):
         one = jnp.ones((), pressure.dtype)
         return _State(pressure, approach, one, jnp.asarray(0, jnp.int32))
 
-    def step(self, problem, state):
+    def step(self, problem: Problem, state: Any) -> Any:
         table = _table(problem)
         given, pressure = problem.given, state.pressure
         if problem.load is not None:
@@ -134,13 +134,13 @@ class Strips(AbstractPressureSolver):
 
         return solve
 
-    def terminate(self, problem, state):
+    def terminate(self, problem: Problem, state: Any) -> Any:
         going = (state.change > self.tolerance) & jnp.isfinite(state.change)
         # Where it diverges, it does so by powers.
         going = going & (jnp.max(state.pressure) < _far_too_large(problem))
         return ~(going & (state.steps < self.max_steps))
 
-    def finish(self, problem, state):
+    def finish(self, problem: Problem, state: Any) -> Pressed:
         done = state.change <= self.tolerance
         finite = jnp.isfinite(state.change)
         result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))

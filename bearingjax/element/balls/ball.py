@@ -1,12 +1,12 @@
 """One ball between its rings: its contacts with the grooves, and its orbit."""
 
 import dataclasses
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ...contact.hertz import EXPONENT
 from ...contact.point_law import at_angle
@@ -61,26 +61,26 @@ class Ball(AbstractRollingElement):
     energy = ball_energy
 
     @property
-    def diameter(self):
+    def diameter(self) -> Scalar:
         return self.ball_diameter
 
     @property
-    def tether(self):
+    def tether(self) -> Scalar:
         return self.spring
 
-    def axes(self, azimuth):
+    def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
         return self.geometry.axes(azimuth)
 
-    def with_heights(self, heights):
+    def with_heights(self, heights: Float[Array, "2"]) -> "AbstractRollingElement":
         of_contacts = jnp.repeat(heights, len(self.grooves.on_outer) // 2)
         reach = self.grooves.reach - of_contacts
         grooves = dataclasses.replace(self.grooves, reach=reach)
         return dataclasses.replace(self, grooves=grooves)
 
-    def coordinates(self, rings, x):
+    def coordinates(self, rings: RingMotion, x: Unknowns) -> Any:
         return self.geometry.moved(rings, x)
 
-    def respond(self, coordinates):
+    def respond(self, coordinates: Any) -> Expansion:
         contacts = self.grooves.touch(coordinates)
         c = self.constants(contacts)
         power = positive_power(contacts.approach, _N - _D, _D)
@@ -120,7 +120,9 @@ class Ball(AbstractRollingElement):
         """Whether orbit and gyroscopic moment follow the operating angles. Static."""
         return self.ball_inertia is not None and self.ball_inertia.control.has_reaction
 
-    def reaction(self, rings, x):
+    def reaction(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[RingMotion, Unknowns] | None:
         if not self.has_reaction:
             return None
         now = self._carried(self.contacts(rings, x))
@@ -139,10 +141,10 @@ class Ball(AbstractRollingElement):
         directions = self.grooves.directions(contacts, load, self.diameter)
         return carried_loads(self.ball_inertia, *directions)
 
-    def motion(self, rings, x):
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
         return self.geometry.motion(rings, x)
 
-    def inertia(self, rings, x):
+    def inertia(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"] | None:
         t = self.ball_inertia
         if t is None:
             return None
@@ -155,28 +157,28 @@ class Ball(AbstractRollingElement):
         return jnp.stack([jnp.zeros_like(force), force, moment])
 
     @property
-    def has_potential(self):
+    def has_potential(self) -> bool:
         return not (self.follows_angle or self.has_reaction)
 
     @property
-    def is_convex(self):
+    def is_convex(self) -> bool:
         return self.geometry.is_linear
 
     @property
-    def sees_difference(self):
+    def sees_difference(self) -> bool:
         # Inertia does work on the motion of both rings.
         return self.geometry.is_linear and self.ball_inertia is None
 
     @property
-    def places_itself(self):
+    def places_itself(self) -> bool:
         return not self.geometry.is_linear
 
     @property
-    def n_displacements(self):
+    def n_displacements(self) -> int:
         return self.geometry.n_displacements
 
     @property
-    def hints(self):
+    def hints(self) -> SearchHints:
         return BallSearchHints(self)
 
 
@@ -186,27 +188,27 @@ class BallSearchHints(SearchHints):
     element: Ball
 
     @property
-    def gap(self):
+    def gap(self) -> Scalar:
         return self.element.grooves.gap
 
-    def reach(self, rings):
+    def reach(self, rings: Any) -> Scalar:
         return self.element.geometry.reach(rings)
 
-    def pressed(self, approach):
+    def pressed(self, approach: Scalar) -> Scalar:
         grooves = self.element.grooves
         one = jnp.ones_like(grooves.reach)
         free = Contacts(one, one, one, grooves.free, jnp.ones_like(grooves.free))
         constant = self.element.constants(free)
         return jnp.max(constant) * positive_power(approach, _N, _D)
 
-    def inertia_scale(self):
+    def inertia_scale(self) -> Scalar | None:
         inertia = self.element.ball_inertia
         return None if inertia is None else inertia.centrifugal
 
-    def midpoint(self, rings):
+    def midpoint(self, rings: Any) -> Float[Array, " n"]:
         return self.element.geometry.midpoint(rings)
 
-    def at_rest(self, rings):
+    def at_rest(self, rings: Any) -> tuple[Float[Array, " n"], Bool[Array, ""]] | None:
         """A turning ball that does not reach the inner ring lies in the outer one.
 
         From the midpoint a small centrifugal force would take it there in steps of any
@@ -234,18 +236,20 @@ class BallSearchHints(SearchHints):
         return seat, jnp.max(inner) < 0.0
 
     @property
-    def keeps_response(self):
+    def keeps_response(self) -> bool:
         return False
 
     @property
-    def slots(self):
+    def slots(self) -> tuple[int, int]:
         return 128, 64
 
     @property
-    def corrects_steps(self):
+    def corrects_steps(self) -> bool:
         return True
 
-    def corrected(self, rings, x, step, size):
+    def corrected(
+        self, rings: Any, x: Float[Array, " n"], step: Float[Array, " n"], size: Scalar
+    ) -> Float[Array, " n"]:
         """Step along the groove that carries most, no deeper into others than needed.
 
         Straight, a step along a groove would press the ball into it by step²/(2l);
@@ -270,10 +274,10 @@ class BallSearchHints(SearchHints):
         return bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
 
     @property
-    def may_be_ejected(self):
+    def may_be_ejected(self) -> bool:
         return self.element.grooves.washers or super().may_be_ejected
 
-    def is_ejected(self, rings, x):
+    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
         away = super().is_ejected(rings, x)
         if not self.element.grooves.washers:
             return away

@@ -86,23 +86,25 @@ class LinearisedBall(AbstractBallGeometry):
     is_linear: ClassVar[bool] = True
     n_displacements: ClassVar[int] = 2
 
-    def axes(self, azimuth):
+    def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
         shift = jnp.eye(3, dtype=self.sides.dtype).at[0, 2].set(-self.pitch_radius)
         return shift @ section_matrix(azimuth)
 
-    def moved(self, rings, x):
+    def moved(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
         between = rings.between
         moved = self.sides[:, None] * between[None, :2] + x[None, :]
         return moved - self.tilted * between[2]
 
-    def places(self, rings, x):
+    def places(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[Float[Array, "2"], Float[Array, "2 3"]]:
         return rings.mean[:2] + x, jnp.stack(rings)
 
-    def motion(self, rings, x):
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
         place = rings.mean[:2] + x
         return jnp.stack([place[0], place[1], jnp.zeros_like(place[0])])
 
-    def reach(self, rings):
+    def reach(self, rings: RingMotion) -> Scalar:
         between = rings.between
         lever = jnp.max(jnp.abs(self.tilted))
         return jnp.abs(between[0]) + jnp.abs(between[1]) + lever * jnp.abs(between[2])
@@ -138,7 +140,7 @@ class FiniteBall(AbstractBallGeometry):
     is_linear: ClassVar[bool] = False
     n_displacements: ClassVar[int] = 3
 
-    def axes(self, azimuth):
+    def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:
         c, s = jnp.cos(azimuth), jnp.sin(azimuth)
         o, i = jnp.zeros_like(c), jnp.ones_like(c)
         rows = [[c, s, o], [-s, c, o], [o, o, i]]
@@ -167,14 +169,16 @@ class FiniteBall(AbstractBallGeometry):
         away = jnp.sqrt(radius * radius + change)
         return jnp.stack([axial, change / (away + radius)])
 
-    def moved(self, rings, x):
+    def moved(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
         from_outer = jnp.stack([x[1], jnp.zeros_like(x[0]), x[0]])
         away = jnp.stack([from_outer, from_outer - rings.between[:3]])
         both = jax.vmap(self._against)(away, jnp.stack(rings))
         both = both.at[1, 0].add(-self.inner_offset)
         return jnp.repeat(both, self.n_arcs, axis=0)
 
-    def places(self, rings, x):
+    def places(
+        self, rings: RingMotion, x: Unknowns
+    ) -> tuple[Float[Array, "2"], Float[Array, "2 3"]]:
         ball = jnp.stack([rings.outer[2] + x[0], rings.outer[0] + x[1]])
         ring = [
             jnp.stack(
@@ -188,11 +192,11 @@ class FiniteBall(AbstractBallGeometry):
         ]
         return ball, jnp.stack(ring)
 
-    def motion(self, rings, x):
+    def motion(self, rings: RingMotion, x: Unknowns) -> Float[Array, "3"]:
         outer = rings.outer
         return jnp.stack([outer[2] + x[0], outer[0] + x[1], jnp.zeros_like(x[0])])
 
-    def midpoint(self, rings):
+    def midpoint(self, rings: RingMotion) -> Unknowns:
         between = rings.between[:3]
         gx, gy = rings.inner[3], rings.inner[4]
         sine, versine = turn_factors(gx * gx + gy * gy)
@@ -201,9 +205,9 @@ class FiniteBall(AbstractBallGeometry):
         r = between[0] + sine * gy * self.along - versine * gy * gy * self.pitch_radius
         return jnp.stack([z, r])
 
-    def reach(self, rings):
+    def reach(self, rings: RingMotion) -> Scalar:
         moved = self.moved(rings, self.midpoint(rings))
         return jnp.max(jnp.sum(jnp.abs(moved), axis=1))
 
-    def lever(self, x):
+    def lever(self, x: Unknowns) -> Scalar | float:
         return self.along + x[0]

@@ -93,7 +93,7 @@ def ball_inertia(
 
 def carried_loads(
     t: BallInertia, normals: Float[Array, "2 2"], loads: Float[Array, "2"]
-):
+) -> Carried:
     """Orbit, rotation and tractions of a ball at given contact angles.
 
     Args:

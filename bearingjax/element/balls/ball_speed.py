@@ -76,20 +76,20 @@ class AbstractRacewayControl(eqx.Module):
 class OuterControl(AbstractRacewayControl):
     """Outer raceway control: pure rolling there, which takes the whole moment."""
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return jnp.ones_like(load[0])
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         return jnp.stack([demand, jnp.zeros_like(demand)])
 
 
 class InnerControl(AbstractRacewayControl):
     """Inner raceway control: pure rolling there, which takes the whole moment."""
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return jnp.zeros_like(load[0])
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         return jnp.stack([jnp.zeros_like(demand), demand])
 
 
@@ -99,20 +99,20 @@ class EqualShare(AbstractRacewayControl):
     Source: Han & Chu, J. Sound Vib. 354 (2015), λ_i = λ_o = 1.
     """
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return jnp.ones_like(load[0])
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         return jnp.stack([0.5 * demand, 0.5 * demand])
 
 
 class LoadShare(AbstractRacewayControl):
     """Both raceways share the moment, and the spin axis, by their contact loads."""
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return _outer_share(load)
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         share = _outer_share(load)
         return demand * jnp.stack([share, 1.0 - share])
 
@@ -133,10 +133,10 @@ class FrictionLimited(AbstractRacewayControl):
     def __check_init__(self):
         positive(self, "friction")
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return _outer_share(load)
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         total = load[0] + load[1] + _NO_LOAD
         needed = demand / total
         return jnp.clip(needed, -self.friction, self.friction) * load
@@ -146,13 +146,13 @@ class AbstractWithoutMoment(AbstractRacewayControl):
     """No gyroscopic moment; the spin axis is that of outer control."""
 
     @property
-    def has_moment(self):
+    def has_moment(self) -> bool:
         return False
 
-    def rolling_share(self, load):
+    def rolling_share(self, load: Float[Array, "2"]) -> Scalar:
         return jnp.ones_like(load[0])
 
-    def traction(self, load, demand):
+    def traction(self, load: Float[Array, "2"], demand: Scalar) -> Float[Array, "2"]:
         return jnp.zeros_like(load)
 
 
@@ -172,7 +172,7 @@ class CentrifugalOnly(AbstractWithoutMoment):
     """
 
     @property
-    def has_reaction(self):
+    def has_reaction(self) -> bool:
         return False
 
 

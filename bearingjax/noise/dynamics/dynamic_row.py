@@ -27,7 +27,7 @@ class Untilted(Linearised):
     """Linearised kinematics of rings without tilt, also for self-aligning bearings."""
 
     @property
-    def turns_far(self):
+    def turns_far(self) -> bool:
         return True
 
 

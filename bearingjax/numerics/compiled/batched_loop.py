@@ -65,7 +65,7 @@ class Loop(NamedTuple):
     trivial_result: Callable[[Any], Any] | None = None
     is_trivial: Callable[[Any], Bool[Array, ""]] | None = None
 
-    def run(self, given) -> Any:
+    def run(self, given: Any) -> Any:
         """Run the iteration on one problem and return its result."""
         begin = self.init(given)
         pack, unpack = packing(begin)
@@ -87,7 +87,7 @@ class Loop(NamedTuple):
         nothing = self.trivial_result(given)
         return jax.tree.map(lambda a, b: jnp.where(resting, a, b), nothing, found)
 
-    def shapes(self, given) -> Any:
+    def shapes(self, given: Any) -> Any:
         """Shapes and types of the result of `run`."""
         return jax.eval_shape(
             self.run if self.trivial_result is None else self.trivial_result, given
@@ -110,7 +110,7 @@ class Either(NamedTuple):
     no: Any
 
 
-def packing(example) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
+def packing(example: Any) -> tuple[Callable[[Any], list[Array]], Callable[[Any], Any]]:
     """Functions that pack the small leaves of a state into one array, and unpack it.
 
     A pass of a compiled loop then ends in one kernel, not in one per leaf: in batches
@@ -178,7 +178,7 @@ def _is_either(node):
     return isinstance(node, Either)
 
 
-def run(loop: Loop, given, slots: int = SLOTS, idle: int = IDLE) -> Any:
+def run(loop: Loop, given: Any, slots: int = SLOTS, idle: int = IDLE) -> Any:
     """`loop.run(given)`, which under `vmap` lets few lanes wait for others.
 
     The loop is traced when the program is lowered, and so once: one problem and a

@@ -1,5 +1,7 @@
 """Axial section of a ball bearing or a set of them, to scale."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...design import (
@@ -8,6 +10,7 @@ from ...design import (
     BearingSet,
     rows_of,
 )
+from ...design.bearing_set import SetRow
 from ..style import COLOURS, GREY, ROLLER, SMALL, Ax, Axes, axes_or_new
 from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
 
@@ -90,7 +93,13 @@ def _dimensions(ax, row, low, high, alone):
     ax.update_datalim([left, high + np.array([0.5 * diameter, 0.18 * tall])])
 
 
-def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
+def ball_row(
+    ax: Axes,
+    bearing: AbstractBallBearing,
+    place: Callable[[np.ndarray], np.ndarray],
+    reach: float = np.inf,
+    apart: float = 0.0,
+) -> np.ndarray:
     """Draw one ball, its lines of contact without load, and both rings.
 
     Args:
@@ -108,7 +117,7 @@ def ball_row(ax, bearing, place, reach=np.inf, apart=0.0) -> np.ndarray:
     return outlines
 
 
-def row_position(row) -> float:
+def row_position(row: SetRow) -> float:
     """Return z of the circle of the centres of its rolling elements [mm].
 
     Args:
@@ -139,7 +148,9 @@ def _ball(ax, bearing, place):
     ax.plot(*place(np.zeros((1, 2))).T, marker="+", color=GREY, zorder=5)
 
 
-def contour(bearing, name, reach=np.inf) -> np.ndarray:
+def contour(
+    bearing: AbstractBallBearing, name: str, reach: float = np.inf
+) -> np.ndarray:
     """Return the outline of a ring on the side of the ball (point, 2) [mm].
 
     Args:

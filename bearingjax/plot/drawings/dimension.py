@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...numerics.units import unit_of
-from ..style import GREY, SMALL, Axes
+from ..style import GREY, SMALL, Axes, Points, Size
 
 ARROW: dict[str, Any] = {
     "arrowstyle": "<|-|>",
@@ -79,7 +79,9 @@ def width(text: str) -> float:
     return max(line.get_extents().width for line in lines) / 72.0
 
 
-def fit_view(ax: Axes, points, size, middle=(0.48, 0.86)) -> None:
+def fit_view(
+    ax: Axes, points: Points, size: Size, middle: tuple[float, float] = (0.48, 0.86)
+) -> None:
     """Set the limits of a view, to scale, with its parts in the middle.
 
     Args:
@@ -98,7 +100,7 @@ def fit_view(ax: Axes, points, size, middle=(0.48, 0.86)) -> None:
     ax.set_axis_off()
 
 
-def put_labels(ax: Axes, labels: list[Label], size, column=0.25):
+def put_labels(ax: Axes, labels: list[Label], size: Size, column: float = 0.25) -> None:
     """Write labels in columns at both sides of a view, each with a line to its point.
 
     Args:
@@ -187,7 +189,7 @@ def middle_only(ax: Axes, column: float) -> None:
         artist.set_clip_path(room)
 
 
-def spread_labels(wanted, heights) -> np.ndarray:
+def spread_labels(wanted: Points, heights: Points) -> np.ndarray:
     """Return centres of labels in a column from 0 to 1, near given ones.
 
     Args:
@@ -212,7 +214,9 @@ def spread_labels(wanted, heights) -> np.ndarray:
     return np.clip(pooled, low, max(low, high)) + steps
 
 
-def between(ax: Axes, start, stop, shift=(0.0, 0.0)) -> np.ndarray:
+def between(
+    ax: Axes, start: Points, stop: Points, shift: Points = (0.0, 0.0)
+) -> np.ndarray:
     """Draw a dimension line between two points, offset by extension lines.
 
     Args:
@@ -233,7 +237,7 @@ def between(ax: Axes, start, stop, shift=(0.0, 0.0)) -> np.ndarray:
     return 0.5 * (ends[0] + ends[1])
 
 
-def squeeze(ax: Axes, start, stop, tail: float) -> None:
+def squeeze(ax: Axes, start: Points, stop: Points, tail: float) -> None:
     """Draw the dimension of a short distance by arrows from outside.
 
     Args:
@@ -250,7 +254,7 @@ def squeeze(ax: Axes, start, stop, tail: float) -> None:
         )
 
 
-def radius(ax: Axes, centre, point) -> np.ndarray:
+def radius(ax: Axes, centre: Points, point: Points) -> np.ndarray:
     """Draw an arrow from the centre of an arc to the arc.
 
     Returns:
@@ -263,7 +267,7 @@ def radius(ax: Axes, centre, point) -> np.ndarray:
     return centre + 0.8 * (point - centre)
 
 
-def angle(ax: Axes, centre, size: float, ends) -> np.ndarray:
+def angle(ax: Axes, centre: Points, size: float, ends: Points) -> np.ndarray:
     """Draw the angle between two lines through a point.
 
     Args:
@@ -284,7 +288,7 @@ def angle(ax: Axes, centre, size: float, ends) -> np.ndarray:
     return centre + size * _way(0.5 * (ends[0] + ends[1]))
 
 
-def pitch_arrow(ax: Axes, at, diameter: Any) -> None:
+def pitch_arrow(ax: Axes, at: Points, diameter: Any) -> None:
     """Draw an arrow from the axis, which is out of view, to the pitch circle.
 
     Args:
@@ -315,9 +319,9 @@ def pitch_arrow(ax: Axes, at, diameter: Any) -> None:
 
 def contact_angle(
     ax: Axes,
-    centre,
+    centre: Points,
     contact: float,
-    top,
+    top: float,
     sense: float = 1.0,
     name: str = "contact angle",
     alone: bool = True,
@@ -353,7 +357,9 @@ def contact_angle(
     )
 
 
-def on_line(ax: Axes, at, text: str, turn: float = 0.0, ha: str = "center") -> None:
+def on_line(
+    ax: Axes, at: Points, text: str, turn: float = 0.0, ha: str = "center"
+) -> None:
     """Write a label on or next to its dimension line within a rolling element.
 
     Args:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...design import AbstractBearing
-from ..style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, Axes, axes_or_new
+from ..style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, Axes, Size, axes_or_new
 from .dimension import AXIS, angle, between, fit_view, label
 
 DEVIATIONS = {
@@ -15,7 +15,7 @@ DEVIATIONS = {
 """Factor and unit of fields that differ between rolling elements."""
 
 
-def face_view(ax: Axes, bearing: AbstractBearing, size) -> None:
+def face_view(ax: Axes, bearing: AbstractBearing, size: Size) -> None:
     """Draw the pitch circle and its rolling elements along the axis, to scale.
 
     Args:

@@ -1,13 +1,19 @@
 """A row of rollers in its axial section."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ..style import COLOURS, RACEWAYS, ROLLER, towards_white
+from ..style import COLOURS, RACEWAYS, ROLLER, Axes, towards_white
 from .outline import Section
 
 
 def roller_row(
-    ax, parts: Section, place=np.asarray, apart=0.0, behind=False
+    ax: Axes,
+    parts: Section,
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray,
+    apart: float = 0.0,
+    behind: bool = False,
 ) -> np.ndarray:
     """Draw one roller and both rings.
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...design import AbstractBallBearing, BearingSet
 from ...design.bearing_set import is_self_aligning
-from ..style import INNER, SMALL, Axes
+from ..style import INNER, SMALL, Axes, Size
 from .ball_section import ball_row, row_position
 from .dimension import (
     AXIS,
@@ -23,7 +23,9 @@ _APART = 0.25
 """Gap between the labels of adjacent rows [inch]."""
 
 
-def arrangement_view(ax: Axes, bearing: BearingSet, turned: list[int], size) -> None:
+def arrangement_view(
+    ax: Axes, bearing: BearingSet, turned: list[int], size: Size
+) -> None:
     """Draw the axial section of all rows, to scale, with their dimensions in the set.
 
     Args:

@@ -1,5 +1,6 @@
 """Mode shapes of a rotor, and its natural frequencies over the speed."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -138,7 +139,7 @@ def campbell_diagram(
     return ax
 
 
-def runs(chosen):
+def runs(chosen: np.ndarray) -> Iterator[tuple[int, int]]:
     """Return first and last point of every run of chosen segments."""
     edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)

@@ -71,7 +71,9 @@ class ChangeOfParameter(eqx.Module):
     Source: Filipkovskii & Belomyttsev (2014), eq. (13).
     """
 
-    def direction(self, tangent, before):
+    def direction(
+        self, tangent: Float[Array, " x"], before: Float[Array, " x"]
+    ) -> tuple[Array, Array]:
         """Return directions as in `Arclength.direction`."""
         unknowns, ratio = jnp.abs(before[:-1]), jnp.abs(before[-1])
         fastest = jnp.argmax(unknowns)

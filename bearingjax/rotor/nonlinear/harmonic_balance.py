@@ -15,13 +15,14 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
-from ...numerics.types import as_count
+from ...numerics.types import Scalar, as_count
 from ...numerics.units import unit
 from .flow import transition, transition_phases
-from .method import AbstractMethod
-from .system import inertia, out_of_balance
+from .method import AbstractMethod, Motion
+from .system import AbstractVibratingSystem, inertia, out_of_balance
 
 
 class Basis(NamedTuple):
@@ -105,7 +106,7 @@ class HarmonicBalance(AbstractMethod):
     def _series(self, z):
         return z.reshape(2 * self.harmonics + 1, -1)
 
-    def unknowns(self, motion):
+    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
         u = motion[0]
         given = u.shape[0]
         found = jnp.asarray(
@@ -116,7 +117,9 @@ class HarmonicBalance(AbstractMethod):
         short = jnp.zeros((self.harmonics - cosine.shape[0], u.shape[1]), u.dtype)
         return jnp.concatenate([mean, cosine, short, sine, short]).reshape(-1)
 
-    def state(self, z):
+    def state(
+        self, z: Float[Array, " m"]
+    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
         at, series = self._basis(z.dtype), self._series(z)
         return at.value[0] @ series, at.rate[0] @ series
 
@@ -125,14 +128,18 @@ class HarmonicBalance(AbstractMethod):
         at, series = self._basis(z.dtype), self._series(z)
         return at.value @ series, at.rate @ series, at.second @ series
 
-    def residual(self, system, z, ratio):
+    def residual(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Float[Array, " m"]:
         at = self._basis(z.dtype)
         left = jax.vmap(
             lambda phase, *motion: out_of_balance(system, phase, ratio, *motion)
         )(at.phase, *self._motion(z))
         return (at.analysis @ left).reshape(-1)
 
-    def slopes(self, system, z, ratio):
+    def slopes(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Any:
         """Return the residual of the equations of motion (sample, n), and its Jacobians
         in u, u', u'' (sample, n, n) and ν (sample, n)."""
 
@@ -146,7 +153,7 @@ class HarmonicBalance(AbstractMethod):
         slopes, left = jax.vmap(one)(self._basis(z.dtype).phase, *self._motion(z))
         return left, slopes
 
-    def projected(self, slopes, bases):
+    def projected(self, slopes: Any, bases: Any) -> Float[Array, "m m"]:
         """Return the Jacobian in the coefficients, from slopes in values of `bases`."""
         pairs = zip(slopes, bases, strict=True)
         terms = [jnp.einsum("tij,tb->tibj", slope, base) for slope, base in pairs]
@@ -155,7 +162,9 @@ class HarmonicBalance(AbstractMethod):
         size = terms.shape[1] * terms.shape[2]
         return jnp.tensordot(analysis, terms, 1).reshape(size, size)
 
-    def linearised(self, system, z, ratio):
+    def linearised(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
         at = self._basis(z.dtype)
         left, (*slopes, speed) = self.slopes(system, z, ratio)
         columns = self.projected(slopes, (at.value, at.rate, at.second))
@@ -163,10 +172,18 @@ class HarmonicBalance(AbstractMethod):
         jacobian = jnp.concatenate([columns, both[1][:, None]], axis=1)
         return both[0], jacobian, jnp.stack(slopes[:2])
 
-    def motion(self, system, z, ratio):
+    def motion(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Motion:
         return self._motion(z)[:2]
 
-    def monodromy(self, system, ratio, jacobian, slopes):
+    def monodromy(
+        self,
+        system: AbstractVibratingSystem,
+        ratio: Scalar,
+        jacobian: Float[Array, "m x"],
+        slopes: Any,
+    ) -> Float[Array, "state state"]:
         # Between the samples the slopes are those of the trigonometric interpolant,
         # so that no force is evaluated anew.
         between = interpolation(transition_phases(self.steps), self.samples)

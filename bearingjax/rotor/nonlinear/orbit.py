@@ -178,7 +178,7 @@ def newton(
     return Corrected(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
 
 
-def along_frequency(size: int, dtype) -> Float[Array, " x"]:
+def along_frequency(size: int, dtype: Any) -> Float[Array, " x"]:
     """Return the direction that holds the frequency."""
     return jnp.zeros(size + 1, dtype).at[-1].set(1.0)
 

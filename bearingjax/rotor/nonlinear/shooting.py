@@ -3,12 +3,16 @@
 Source: Filipkovskii & Belomyttsev (2014), eqs. (6), (7), (10) to (12), (14).
 """
 
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
-from ...numerics.types import as_count
+from ...numerics.types import Scalar, as_count
 from .flow import flow_slopes, integrate
-from .method import AbstractMethod
+from .method import AbstractMethod, Motion
+from .system import AbstractVibratingSystem
 
 
 class Shooting(AbstractMethod):
@@ -24,24 +28,38 @@ class Shooting(AbstractMethod):
 
     steps: int = eqx.field(static=True, converter=as_count, default=48)
 
-    def unknowns(self, motion):
+    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
         return jnp.concatenate([motion[0][0], motion[1][0]])
 
-    def state(self, z):
+    def state(
+        self, z: Float[Array, " m"]
+    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
         u, rate = jnp.split(z, 2)
         return u, rate
 
-    def residual(self, system, z, ratio):
+    def residual(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Float[Array, " m"]:
         return integrate(system, z, ratio, self.steps)[0] - z
 
-    def linearised(self, system, z, ratio):
+    def linearised(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
         end, jacobian = flow_slopes(system, z, ratio, self.steps)
         return end - z, jacobian - jnp.eye(*jacobian.shape, dtype=z.dtype), ()
 
-    def motion(self, system, z, ratio):
+    def motion(
+        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+    ) -> Motion:
         _, states = integrate(system, z, ratio, self.steps)
         u, rate = jnp.split(states, 2, axis=1)
         return u, rate
 
-    def monodromy(self, system, ratio, jacobian, slopes):
+    def monodromy(
+        self,
+        system: AbstractVibratingSystem,
+        ratio: Scalar,
+        jacobian: Float[Array, "m x"],
+        slopes: Any,
+    ) -> Float[Array, "state state"]:
         return jacobian[:, :-1] + jnp.eye(jacobian.shape[0], dtype=jacobian.dtype)

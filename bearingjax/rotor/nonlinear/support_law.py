@@ -132,7 +132,7 @@ class FixedAngle(AbstractSupportLaw):
         constant, angle, approach = _preload(element, offset)
         return cls(constant, angle, approach / jnp.sin(angle), element.bearing.n_balls)
 
-    def potential(self, motion):
+    def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion
         cosine, sine = jnp.cos(self.contact_angle), jnp.sin(self.contact_angle)
         radial = sum(
@@ -175,7 +175,7 @@ class MovingAngle(AbstractSupportLaw):
         distance = bearing.centre_distance
         return cls(constant, angle, approach, distance, bearing.n_balls)
 
-    def potential(self, motion):
+    def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion
         apart = self.centre_distance + self.preload_approach
         radial = sum(
@@ -223,7 +223,7 @@ class CubicExpansion(AbstractSupportLaw):
         """Create the law of a ball bearing; arguments as in `FixedAngle.of_bearing`."""
         return cls.of(FixedAngle.of_bearing(element, offset))
 
-    def potential(self, motion):
+    def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion
         square, z0 = x**2 + y**2, self.preload_displacement
         tangent2 = jnp.tan(self.contact_angle) ** 2

@@ -118,14 +118,22 @@ class VibratingSystem(AbstractVibratingSystem):
                     f" a matrix ({n}, {n}) is wanted"
                 )
 
-    def damping_matrix(self, frequency):
+    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
         speed = frequency if self.speed is None else self.speed
         return self.damping + speed * self.gyroscopic
 
-    def force(self, q, velocity, phase, frequency):
+    def force(
+        self,
+        q: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        phase: Scalar,
+        frequency: Scalar,
+    ) -> Float[Array, " n"]:
         return self.restoring(q, velocity, phase, frequency)
 
-    def excitation(self, phase, frequency, acceleration):
+    def excitation(
+        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+    ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 
 

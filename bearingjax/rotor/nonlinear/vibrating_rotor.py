@@ -60,10 +60,16 @@ class VibratingRotor(AbstractVibratingSystem):
     def _speed(self, frequency):
         return self.rotation * frequency if self.speed is None else self.speed
 
-    def damping_matrix(self, frequency):
+    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
         return self.damping + self._speed(frequency) * self.gyroscopic
 
-    def force(self, q, velocity, phase, frequency):
+    def force(
+        self,
+        q: Float[Array, " n"],
+        velocity: Float[Array, " n"],
+        phase: Scalar,
+        frequency: Scalar,
+    ) -> Float[Array, " n"]:
         force, speed = self.stiffness @ q, self._speed(frequency)
         if not self.supports:
             return force
@@ -78,7 +84,9 @@ class VibratingRotor(AbstractVibratingSystem):
         )
         return force + jnp.einsum("sim,si->m", self.rows, each)
 
-    def excitation(self, phase, frequency, acceleration):
+    def excitation(
+        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+    ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 
     def freedoms(self, motion: Float[Array, " motion"]) -> Float[Array, " n"]:

@@ -6,12 +6,15 @@ orbit, with derivatives along it by the interpolating trigonometric polynomial.
 """
 
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from ...element.balls.ball_speed import ball_mass
+from ...element.solved_row import RowResults, SolvedRow
+from ...numerics.types import Scalar
 from ..ball_motion import (
     LEAST_LOAD,
     BallState,
@@ -22,7 +25,7 @@ from ..ball_motion import (
 )
 from ..loaded import contact_loads, loaded_ball
 from .orbit_search import AbstractOrbit
-from .steady_results import Power, SteadySkid, driving
+from .steady_results import Power, SteadyMotion, SteadySkid, driving
 
 
 class BallOrbit(AbstractOrbit):
@@ -38,24 +41,35 @@ class BallOrbit(AbstractOrbit):
     n_own: ClassVar = 4
     n_common: ClassVar = 0
 
-    def excess(self, own, common):
+    def excess(
+        self, own: Float[Array, "place k"], common: Float[Array, " c"]
+    ) -> Float[Array, "..."]:
         return own[:, 3]
 
-    def loaded(self, row):
+    def loaded(self, row: RowResults) -> tuple[Any, Array]:
         of, law = self.model.bearing, self.model.point_law
         make = partial(loaded_ball, of, law, self.model.oil)
         ball = jax.vmap(make)(*contact_loads(row, of, law))
         rolls = jax.vmap(partial(rolling, speed=self.speed))(ball)
         return ball, jnp.concatenate([rolls.spin, rolls.orbit[:, None]], axis=1)
 
-    def motion(self, body, rolls, own):
+    def motion(
+        self, body: Any, rolls: Float[Array, " k"], own: Float[Array, " k"]
+    ) -> Float[Array, " k"]:
         normal, across = _axes(body)
         lever = body.pitch_radius + 0.5 * body.diameter * normal[1]
         turned = own[1] + own[3] * lever / (0.5 * body.diameter)
         spin = turned * across + (own[2] - own[3] * normal[2]) * normal
         return rolls + jnp.append(spin.at[0].add(own[0]), own[3])
 
-    def local(self, body, rolls, own, slope, common):
+    def local(
+        self,
+        body: Any,
+        rolls: Float[Array, " k"],
+        own: Float[Array, " k"],
+        slope: Float[Array, " k"],
+        common: Float[Array, " c"],
+    ) -> tuple[Float[Array, " k+c"], Scalar]:
         state, _, pulls, drag = self.forces(body, rolls, own)
         moment, force = residual_moments(body, state, pulls, drag)
         change = state.orbit * slope
@@ -74,7 +88,7 @@ class BallOrbit(AbstractOrbit):
         size = jnp.sum(jnp.abs(pulls.resultants.force)) + jnp.abs(drag)
         return out, size + jnp.sum(jnp.abs(pulls.resultants.moment)) / radius
 
-    def forces(self, ball, rolls, own):
+    def forces(self, ball: Any, rolls: Any, own: Any) -> tuple:
         """Return the motion of a ball, its sliding, tractions, and drag of the oil
         [N]."""
         whole = self.motion(ball, rolls, own)
@@ -111,7 +125,7 @@ class BallOrbit(AbstractOrbit):
         )
         return state, moving, tractions(ball, self.model.traction, moving), drag
 
-    def inertia(self):
+    def inertia(self) -> Float[Array, "unknown unknown"]:
         bearing, places = self.model.bearing, self.azimuth.shape[0]
         diameter, pitch = bearing.ball_diameter, bearing.pitch_diameter
         mass, moment = ball_mass(diameter, bearing.material.density)
@@ -121,7 +135,9 @@ class BallOrbit(AbstractOrbit):
         whole = jnp.kron(jnp.eye(places, dtype=own.dtype), own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(self, y, solved, **known):
+    def described(
+        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
+    ) -> SteadyMotion:
         speed, (own, _, _) = self.speed, self.parts(y)
         ball, rolls = self.bodies(y, solved)
 

@@ -10,12 +10,15 @@ Source: T. A. Harris, An Analytical Method to Predict Skidding in High Speed Rol
     inertia of the spin.
 """
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from ...element.inertia import Speed, mass_and_inertia
+from ...element.solved_row import RowResults, SolvedRow
+from ...numerics.types import Scalar
 from ..conditions import conditions_of
 from ..loaded import loaded_rollers
 from ..roller_motion import (
@@ -27,7 +30,7 @@ from ..roller_motion import (
     tractions,
 )
 from .orbit_search import AbstractOrbit
-from .steady_results import Power, SteadyRollerSkid, driving
+from .steady_results import Power, SteadyMotion, SteadyRollerSkid, driving
 
 
 class RollerOrbit(AbstractOrbit):
@@ -36,10 +39,12 @@ class RollerOrbit(AbstractOrbit):
     n_own: ClassVar = 1
     n_common: ClassVar = 1
 
-    def excess(self, own, common):
+    def excess(
+        self, own: Float[Array, "place k"], common: Float[Array, " c"]
+    ) -> Float[Array, "..."]:
         return common[0]
 
-    def loaded(self, row):
+    def loaded(self, row: RowResults) -> tuple[Any, Array]:
         roller = loaded_rollers(row, self.model.oil)
         return roller, jax.vmap(self.rolls)(roller).spin[:, None]
 
@@ -47,7 +52,14 @@ class RollerOrbit(AbstractOrbit):
         """Motion of a roller in pure rolling."""
         return rolling(roller, self.speed)
 
-    def local(self, body, rolls, own, slope, common):
+    def local(
+        self,
+        body: Any,
+        rolls: Float[Array, " k"],
+        own: Float[Array, " k"],
+        slope: Float[Array, " k"],
+        common: Float[Array, " c"],
+    ) -> tuple[Float[Array, " k+c"], Scalar]:
         state, _, pulls, drag = self.forces(body, own[0], common[0])
         moment, force = residual_moments(body, pulls, drag)
         radius = 0.5 * body.diameter
@@ -55,7 +67,7 @@ class RollerOrbit(AbstractOrbit):
         size = jnp.sum(jnp.abs(pulls.force)) + jnp.abs(drag)
         return jnp.stack([out, force]), size
 
-    def forces(self, roller, spin, orbit):
+    def forces(self, roller: Any, spin: Any, orbit: Any) -> tuple:
         """Return the motion of a roller, its sliding, tractions, and the force of
         the oil between the rings [N]; `spin` and `orbit` from pure rolling."""
         rolls = self.rolls(roller)
@@ -69,7 +81,7 @@ class RollerOrbit(AbstractOrbit):
         )
         return state, moving, tractions(roller, self.model.traction, moving), drag
 
-    def inertia(self):
+    def inertia(self) -> Float[Array, "unknown unknown"]:
         constants = self.model.element.model(self.speed).rows[0].element.constants
         mass, moment, _ = mass_and_inertia(constants)
         radius, spin = constants.pitch_radius, moment / (0.5 * constants.diameter)
@@ -79,7 +91,9 @@ class RollerOrbit(AbstractOrbit):
         whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(self, y, solved, **known):
+    def described(
+        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
+    ) -> SteadyMotion:
         speed, (own, common, _) = self.speed, self.parts(y)
         roller, _ = self.bodies(y, solved)
 

@@ -62,7 +62,7 @@ class Cubic(diffrax.AbstractLocalInterpolation):
     y1: Any
     bend: Any
 
-    def evaluate(self, t0, t1=None, left=True):
+    def evaluate(self, t0: Any, t1: Any = None, left: bool = True) -> Any:
         """Return the motion at a time, or its change between two."""
         if t1 is not None:
             return jax.tree.map(jnp.subtract, self.evaluate(t1), self.evaluate(t0))
@@ -87,23 +87,32 @@ class Rodas(diffrax.AbstractAdaptiveSolver):
     term_structure: ClassVar = diffrax.AbstractTerm
     interpolation_cls: ClassVar[Callable[..., Cubic]] = Cubic
 
-    def order(self, terms):
+    def order(self, terms: Any) -> int:
         """Order of the method."""
         return 4
 
-    def error_order(self, terms):
+    def error_order(self, terms: Any) -> float:
         """Order of the error of a step."""
         return 4.0
 
-    def init(self, terms, t0, t1, y0, args):
+    def init(self, terms: Any, t0: Any, t1: Any, y0: Any, args: Any) -> None:
         """Return no state: nothing is kept from step to step."""
         return None
 
-    def func(self, terms, t0, y0, args):
+    def func(self, terms: Any, t0: Any, y0: Any, args: Any) -> Any:
         """Right-hand side."""
         return args.rates(t0, y0)
 
-    def step(self, terms, t0, t1, y0, args, solver_state, made_jump):
+    def step(
+        self,
+        terms: Any,
+        t0: Any,
+        t1: Any,
+        y0: Any,
+        args: Any,
+        solver_state: Any,
+        made_jump: Any,
+    ) -> tuple:
         """Make a step, by Diffrax's interface."""
         h, real = t1 - t0, y0.own.dtype
         slopes, masses = args.slopes(t0, y0), args.masses

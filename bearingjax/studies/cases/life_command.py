@@ -1,13 +1,14 @@
 """`bearingjax life`."""
 
 import dataclasses
+from argparse import Namespace
 
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..solve.solution_outcome import solution_outcome
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "life",
@@ -25,7 +26,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Compute the rating life of the bearing of a scene."""
     from ...files.scene_file import has_cases
 

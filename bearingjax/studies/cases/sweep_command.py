@@ -3,17 +3,18 @@
 import shlex
 import signal
 import time
+from argparse import Namespace
 
 import numpy as np
 
 from .. import jax_settings
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..outputs import check_table
 from ..status import NOT_SOLVED, SOLVED
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "sweep",
@@ -42,7 +43,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Solve the cases of a scene."""
     from ...cases import sweep_table
     from ...files import SceneError

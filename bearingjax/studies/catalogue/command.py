@@ -1,11 +1,13 @@
 """`bearingjax catalogue`."""
 
-from ..options import add_drawing, add_json, add_plot
+from argparse import Namespace
+
+from ..options import Commands, add_drawing, add_json, add_plot
 from ..outputs import check_outputs, save, write_outputs
 from ..status import BAD_INPUT, SOLVED
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "catalogue",
@@ -34,7 +36,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options: Namespace) -> int:
     """List bearings of the catalogue."""
     from ...catalogue import catalogue_entries
     from ...files import SceneError

@@ -1,9 +1,12 @@
 """`bearingjax examples`."""
 
+from argparse import Namespace
+
+from ..options import Commands
 from ..status import SOLVED
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "examples",
@@ -15,7 +18,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options: Namespace) -> int:
     """List the shipped scenes, or print one."""
     from ...files import SceneError, shipped_scenes
     from ...files.table import not_among

@@ -1,9 +1,12 @@
 """`bearingjax new`."""
 
+from argparse import Namespace
+
+from ..options import Commands
 from ..status import SOLVED
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "new",
@@ -31,7 +34,7 @@ def add(commands):
     return command
 
 
-def run(options) -> int:
+def run(options: Namespace) -> int:
     """Print a scene of a bearing, of the catalogue or estimated, or of shafts."""
     from ...catalogue.estimated_entry import SIZES, estimated_entry
     from ...files import SceneError, shipped_scenes

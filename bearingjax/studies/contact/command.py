@@ -1,11 +1,13 @@
 """`bearingjax contact`."""
 
-from ..options import add_plot, add_report, add_scene
+from argparse import Namespace
+
+from ..options import Commands, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools
 from ..solve.solution_outcome import why_unsolved
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "contact",
@@ -33,7 +35,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Solve a single contact, or one of a bearing."""
     from ...files import SceneError
     from ..bearing.read_scene import read_scene

@@ -1,12 +1,13 @@
 """`bearingjax noise`."""
 
+from argparse import Namespace
 from pathlib import Path
 
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "noise",
@@ -36,7 +37,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Simulate the vibration of a bearing with form errors."""
     from ...files import SceneError
     from .output import noise_as_dict, noise_columns, write_noise_sound

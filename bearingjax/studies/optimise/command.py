@@ -1,10 +1,12 @@
 """`bearingjax optimise`."""
 
-from ..options import add_plot, add_quiet, add_report, add_scene
+from argparse import Namespace
+
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene
 from ..outcome import Outcome, Tools
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "optimise",
@@ -20,7 +22,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Optimise the bearing, or the system of shafts, of a scene."""
     from ...numerics import SolveError
     from ...optimise.system import element_of

@@ -1,10 +1,12 @@
 """`bearingjax rotor`."""
 
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from argparse import Namespace
+
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "rotor",
@@ -28,7 +30,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Analyse a shaft on its bearings."""
     from ...files import SceneError
     from .output import rotor_as_dict, rotor_columns, rotor_series

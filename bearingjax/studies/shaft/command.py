@@ -1,10 +1,12 @@
 """`bearingjax shaft`."""
 
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from argparse import Namespace
+
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "shaft",
@@ -24,7 +26,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Analyse a system of shafts."""
     from .output import shaft_columns, shafts_as_dict
     from .read import read_shafts

@@ -1,10 +1,12 @@
 """`bearingjax skid`."""
 
-from ..options import add_plot, add_quiet, add_report, add_scene, add_table
+from argparse import Namespace
+
+from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "skid",
@@ -26,7 +28,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Simulate the motion of balls or rollers and their cage."""
     from .output import skid_as_dict, skid_columns, skid_message
     from .read import read_skid

@@ -1,12 +1,14 @@
 """`bearingjax solve`."""
 
-from ..options import add_drawing, add_plot, add_report, add_scene
+from argparse import Namespace
+
+from ..options import Commands, add_drawing, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools
 from ..status import complain
 from .solution_outcome import solution_outcome
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "solve",
@@ -21,7 +23,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Solve the bearing of a scene."""
     from ...files.scene_file import has_cases
     from ..bearing.read_scene import read_scene

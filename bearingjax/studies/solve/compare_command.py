@@ -1,11 +1,13 @@
 """`bearingjax compare`."""
 
-from ..options import add_json, add_report, add_set, add_table
+from argparse import Namespace
+
+from ..options import Commands, add_json, add_report, add_set, add_table
 from ..outcome import Outcome, Tools
 from .solution_outcome import why_unsolved
 
 
-def add(commands):
+def add(commands: Commands) -> None:
     """Add the command and its options."""
     command = commands.add_parser(
         "compare",
@@ -23,7 +25,7 @@ def add(commands):
     return command
 
 
-def run(options, tools: Tools) -> Outcome:
+def run(options: Namespace, tools: Tools) -> Outcome:
     """Solve and compare scenes."""
     from ...files import SceneError
     from ..bearing.read_scene import read_scene

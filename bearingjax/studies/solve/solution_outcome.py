@@ -1,9 +1,14 @@
 """Outcome of a solved bearing, for `solve` and the commands based on it."""
 
+from collections.abc import Callable
+from typing import Any
+
 from ..outcome import Outcome
 
 
-def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
+def solution_outcome(
+    scene: Any, numbers: Callable | None = None, brief: Any = None
+) -> Outcome:
     """Solve the bearing of a scene for its load.
 
     Args:
@@ -45,7 +50,7 @@ def solution_outcome(scene, numbers=None, brief=None) -> Outcome:
     )
 
 
-def why_unsolved(found) -> str:
+def why_unsolved(found: Any) -> str:
     """Return the reason why a bearing was not solved.
 
     Args:
