@@ -77,13 +77,13 @@ def branch(preloads):
     )
     amplitude = jax.vmap(amplitudes)(found.motion)[:, 3] * SCALE
     radius = jnp.max(jnp.abs(jnp.linalg.eigvals(found.monodromy)), axis=1)
-    used = jnp.arange(POINTS) < found.count
+    used = jnp.arange(POINTS) < found.n_points
     return {
         "frequency": jnp.where(used, found.x[:, -1] * unit, jnp.nan),
         "amplitude": jnp.where(used, amplitude, jnp.nan),
         "unstable": jnp.sum(used & (radius > 1.0 + 1e-6)),
         "residual": jnp.max(jnp.where(used, found.residual, 0.0)),
-        "count": found.count,
+        "count": found.n_points,
         "ending": found.ending,
     }
 

@@ -172,6 +172,31 @@ def test_public_names_are_listed(path):
     assert set(listed) - modules - {"__version__"} <= headed
 
 
+def public_functions(body, in_class=False):
+    """Public functions and methods of a module: name, arguments, what they return."""
+    for node in body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            given = node.args
+            arguments = [*given.posonlyargs, *given.args, *given.kwonlyargs]
+            more = [a for a in (given.vararg, given.kwarg) if a is not None]
+            static = "staticmethod" in map(ast.unparse, node.decorator_list)
+            first = 1 if in_class and not static else 0
+            yield node.name, arguments[first:] + more, node.returns
+        elif isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            yield from public_functions(node.body, True)
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_public_functions_are_annotated(path):
+    functions = public_functions(ast.parse(path.read_text()).body)
+    bare = [
+        name
+        for name, arguments, returned in functions
+        if returned is None or any(a.annotation is None for a in arguments)
+    ]
+    assert not bare
+
+
 def test_no_star_imports():
     for path in PACKAGE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):

@@ -63,7 +63,7 @@ class SolvedCases(NamedTuple):
         displacement: Displacement of the moving ring [m, rad].
         stiffness: Stiffness of the moving ring.
         usable: Whether cases may start from it.
-        count: Number of solved cases.
+        n_solved: Number of solved cases.
     """
 
     load: Annotated[Float[Array, "known 6"], mixed("N", "N m")]
@@ -71,7 +71,7 @@ class SolvedCases(NamedTuple):
     displacement: Annotated[Float[Array, "known 6"], mixed("m", "rad")]
     stiffness: Float[Array, "known 6 6"]
     usable: Bool[Array, " known"]
-    count: Int[Array, " 1"]
+    n_solved: Int[Array, " 1"]
 
 
 def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
@@ -224,7 +224,7 @@ def add_solved(
     sound = (solutions.result == 0) & (
         jax.vmap(unrestrained_directions)(solutions) == 0
     )
-    at = jnp.minimum(known.count[0], KEPT)
+    at = jnp.minimum(known.n_solved[0], KEPT)
 
     def put(old, new):
         new = jnp.where(jnp.isfinite(new), new, jnp.zeros_like(new)).astype(old.dtype)
@@ -232,7 +232,7 @@ def add_solved(
 
     new = (_rotate_about_z(load, back), other, there, k, sound)
     rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
-    return SolvedCases._make([*rows, known.count + len(load)]), ~sound
+    return SolvedCases._make([*rows, known.n_solved + len(load)]), ~sound
 
 
 def _angle(load, pitch):

@@ -309,14 +309,14 @@ def estimate_geometry(
     readings.sort(key=lambda reading: reading[2][0].misfit)
     raised, known, fits = readings[0]
     best = fits[0]
-    others = [(fits[0].count, fits[0].misfit) for _, _, fits in readings[1:]]
+    others = [(fits[0].n_elements, fits[0].misfit) for _, _, fits in readings[1:]]
     return GeometryEstimate(
         bearing=_design(kind, known, best),
         dynamic_error=best.errors[0],
         static_error=best.errors[1],
         raised=raised,
         misfit=best.misfit,
-        rivals=tuple((fit.count, fit.misfit) for fit in fits[1:5]),
+        rivals=tuple((fit.n_elements, fit.misfit) for fit in fits[1:5]),
         other_reading=others[0] if others else None,
         assumed_contact_angle=contact_angle is None and typical.angle.spread > 1e-3,
     )
@@ -336,13 +336,13 @@ class _Fit(NamedTuple):
     """The best sizes with a number of rolling elements.
 
     Attributes:
-        count: The number.
+        n_elements: Number of rolling elements.
         sizes: As `_sizes`.
         misfit: Sum of squares.
         errors: Errors of C and C0 [1].
     """
 
-    count: int
+    n_elements: int
     sizes: np.ndarray
     misfit: float
     errors: Annotated[tuple[float, float], unit("1")]
@@ -610,17 +610,17 @@ def _design(kind, known, fit) -> AbstractBearing | BearingSet:
     balls = _KINDS[kind].balls
     diameter, pitch, length, angle = (float(size) for size in sizes)
     if kind == "tapered_roller":
-        return _taper(fit.count, pitch, diameter, length, angle)
+        return _taper(fit.n_elements, pitch, diameter, length, angle)
     if kind in ("spherical_roller", "toroidal_roller", "spherical_thrust_roller"):
-        return _barrels(kind, fit.count, pitch, diameter, length, angle, known)
+        return _barrels(kind, fit.n_elements, pitch, diameter, length, angle, known)
     if balls is None:
         sizes, profile = (pitch, diameter, length), Logarithmic()
         if kind == "crossed_roller":
-            row = CrossedRollerRow(2 * fit.count, *sizes, roller_profile=profile)
+            row = CrossedRollerRow(2 * fit.n_elements, *sizes, roller_profile=profile)
             return BearingSet.crossed(row)
-        return _CYLINDERS[kind](fit.count, *sizes, roller_profile=profile)
+        return _CYLINDERS[kind](fit.n_elements, *sizes, roller_profile=profile)
     outer, inner = balls.open
-    row = fit.count, pitch, diameter
+    row = fit.n_elements, pitch, diameter
     if kind == "self_aligning_ball":
         offset = 0.5 * pitch * np.tan(angle)
         return BearingSet.self_aligning(

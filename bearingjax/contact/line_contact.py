@@ -359,8 +359,8 @@ class SliceContact(LineContact):
         alike = (1,) * some.ndim + (_OF_ENERGY,)
         inner = load_at(some[..., None] * jnp.asarray(t**3, some.dtype).reshape(alike))
         weight = jnp.asarray(1.5 * weight * t * t, some.dtype)
-        found = some * (inner @ weight), load, stiffness
-        return tuple(jnp.where(pressed, values, 0.0) for values in found)
+        energy = jnp.where(pressed, some * (inner @ weight), 0.0)
+        return energy, jnp.where(pressed, load, 0.0), jnp.where(pressed, stiffness, 0.0)
 
 
 def _vertex(left, top, right):

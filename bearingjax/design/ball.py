@@ -242,7 +242,7 @@ class AbstractBallBearing(AbstractBearing):
         return jnp.maximum(axial, 0.5 * self.clearance)
 
     @property
-    def groove_axis(self) -> float:
+    def groove_axis(self) -> Scalar | float:
         """Contact angle in the middle of the raceways [rad]."""
         return 0.0
 

@@ -45,7 +45,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
     )
 
     @property
-    def arc_radii(self) -> tuple[Scalar, Scalar, Scalar] | None:
+    def arc_radii(self) -> tuple[Scalar, Scalar, Scalar]:
         assert self.outer_raceway_radius is not None
         return (
             self.roller_profile_radius,

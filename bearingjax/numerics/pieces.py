@@ -46,7 +46,9 @@ class Pieces(AbstractQuadrature):
     def reference(self) -> tuple[np.ndarray, np.ndarray]:
         return ContactMapped(self.points).reference()
 
-    def table(self, offset: Offset, kinks: tuple, dtype: Any) -> tuple:
+    def table(
+        self, offset: Offset, kinks: tuple | Array, dtype: Any, arcs: bool = False
+    ) -> tuple:
         """Table of the rule; `kinks` are the ends of the intervals, (interval + 1,).
 
         `offset` is taken at (interval, n) positions, a row in each interval.

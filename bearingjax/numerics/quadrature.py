@@ -65,7 +65,7 @@ class AbstractQuadrature(eqx.Module):
 
     @abc.abstractmethod
     def table(
-        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+        self, offset: Offset, kinks: tuple | Array, dtype: Any, arcs: bool = False
     ) -> tuple:
         """Return the terms that depend on the offset h only, once per design; `arcs`
         as in `nodes`."""
@@ -115,7 +115,7 @@ class Midpoint(AbstractQuadrature):
         return middle, np.full(self.points, 2.0 / self.points)
 
     def table(
-        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+        self, offset: Offset, kinks: tuple | Array, dtype: Any, arcs: bool = False
     ) -> tuple:
         tau, _ = self.reference()
         return (offset(jnp.asarray(tau, dtype=dtype)),)
@@ -180,7 +180,7 @@ class ContactMapped(AbstractQuadrature):
         return 2.0 * graded - 1.0, w * slope
 
     def table(
-        self, offset: Offset, kinks: tuple, dtype: Any, arcs: bool = False
+        self, offset: Offset, kinks: tuple | Array, dtype: Any, arcs: bool = False
     ) -> tuple:
         one = jnp.ones((), dtype=dtype)
         ends = jnp.stack([-one, *kinks, one])
@@ -202,7 +202,7 @@ class ContactMapped(AbstractQuadrature):
         arcs: bool = False,
     ) -> Nodes:
         start, end, *_ = table
-        frozen = stop_gradient((*table, a, b))
+        frozen: Any = stop_gradient((*table, a, b))
         if arcs:
             left, right, inner = _loaded_arcs(offset, stop_gradient(args), *frozen)
         else:
@@ -340,7 +340,7 @@ def refined_edges(
     inside: Array,
     outside: Array,
     side: Any,
-    some: Array,
+    some: Array | bool,
 ) -> Array:
     """Zeros of a + b ξ - h, one between each two points of unlike sign.
 

@@ -83,16 +83,14 @@ class AbstractMeasure(eqx.Module):
 
 
 class AbstractSmooth(AbstractMeasure):
-    """A measure with a smooth maximum or minimum in it."""
+    """A measure with a smooth maximum or minimum in it.
 
-    @property
-    @abc.abstractmethod
-    def exponent(self) -> float:
-        """Exponent of the smooth maximum or minimum, above 1.
+    Attributes:
+        exponent: Exponent of the smooth maximum or minimum, above 1. With a larger one
+            it is closer to the true one, but its derivative changes faster.
+    """
 
-        With a larger one it is closer to the true one, but its derivative changes
-        faster.
-        """
+    exponent: eqx.AbstractVar[float]
 
     def __check_init__(self):
         number(self, "exponent")

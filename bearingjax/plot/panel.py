@@ -120,7 +120,7 @@ class Bars:
         """Draw the bars, in the unit displayed."""
         heights = up * np.asarray(self.heights, float)
         places = np.arange(len(heights)) + self.away
-        more = {"label": self.label} if self.label else {}
+        more: Any = {"label": self.label} if self.label else {}
         bars = ax.bar(places, heights, self.width, color=self.colour, **more)
         if self.labels is not None:
             words = isinstance(self.labels, list)

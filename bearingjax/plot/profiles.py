@@ -2,6 +2,7 @@
 
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array
 
 from ..design import AbstractRollerBearing
 from ..design.profile import between_arcs, drops
@@ -48,7 +49,7 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     return ax
 
 
-def arc_gaps(bearing: AbstractRollerBearing, position: np.ndarray) -> np.ndarray:
+def arc_gaps(bearing: AbstractRollerBearing, position: Array) -> np.ndarray:
     """Return the gaps that the arcs of roller and raceways leave along the roller.
 
     Args:

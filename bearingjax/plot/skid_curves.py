@@ -187,9 +187,11 @@ def sliding_spectrum(
     highest, apart = lines.frequency[-1], lines.frequency[1]
     if 2.0 * apart < lines.cage <= highest:
         highest = min(highest, 12.0 * lines.cage)
-        for k in range(1, int(highest / lines.cage) + 1):
-            mark = ax.axvline(k * lines.cage, color=GREY, linestyle=":", linewidth=0.8)
-        mark.set_label(f"multiples of the cage's {lines.cage:.4g} Hz")
+        n_marks, name = int(highest / lines.cage), f"the cage's {lines.cage:.4g} Hz"
+        for k in range(1, n_marks + 1):
+            label = f"multiples of {name}" if k == n_marks else None
+            at = k * lines.cage
+            ax.axvline(at, color=GREY, linestyle=":", linewidth=0.8, label=label)
         ax.legend(fontsize=SMALL, loc="upper right")
     else:
         note = f"lines {apart:.3g} Hz apart: too few for the cage's {lines.cage:.3g} Hz"

@@ -67,10 +67,12 @@ def axes_or_new(ax: Ax, size: Size = (7.0, 5.0), polar: bool = False) -> Axes:
     """
     if ax is None:
         figure = pyplot().figure(figsize=size, layout="constrained")
-        ax = figure.add_subplot(projection="polar" if polar else None)
-    if polar and ax.name != "polar":
+        axes: Axes = figure.add_subplot(projection="polar" if polar else None)
+    else:
+        axes = ax
+    if polar and axes.name != "polar":
         raise ValueError('load_zone needs polar axes: subplot(projection="polar").')
-    return without_offset(ax)
+    return without_offset(axes)
 
 
 def without_offset(ax: Axes) -> Axes:

@@ -193,7 +193,12 @@ class Shaft(eqx.Module):
         place = 5 * np.arange(len(segment))[:, None] + np.arange(10)
         nothing = jnp.zeros((5 * self.n_nodes,) * 2, dtype=length.dtype)
         rows, columns = place[:, :, None], place[:, None, :]
-        return tuple(nothing.at[rows, columns].add(part) for part in elements)
+        mass, gyroscopic, stiffness = elements
+
+        def assembled(parts: Array) -> Array:
+            return nothing.at[rows, columns].add(parts)
+
+        return assembled(mass), assembled(gyroscopic), assembled(stiffness)
 
 
 def seat_size_warnings(

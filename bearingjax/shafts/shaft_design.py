@@ -419,7 +419,7 @@ class ShaftMass(AbstractMeasure):
     def __call__(self, element: Any, cases, solution):
         system = element.system
         beams = (system.beam(k) for k in range(len(system.shafts)))
-        return sum(jnp.sum(beam.element_masses()) for beam in beams)
+        return jnp.sum(jnp.stack([jnp.sum(b.element_masses()) for b in beams]))
 
     @property
     def label(self):

@@ -215,6 +215,6 @@ def test_many_systems_at_once():
 
     found = run(jnp.array([0.05, 0.2]))
     assert (np.asarray(found.ending) == BranchEnd.LIMIT).all()
-    assert found.count[1] > found.count[0]
-    ends = found.x[jnp.arange(2), found.count - 1, -1]
+    assert found.n_points[1] > found.n_points[0]
+    ends = found.x[jnp.arange(2), found.n_points - 1, -1]
     assert np.allclose(ends, 1.6)

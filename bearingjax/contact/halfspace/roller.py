@@ -326,7 +326,7 @@ class RollerContact(eqx.Module):
                 " example `contact.grid(1.6 * half_width)`."
             )
         radius = float(self.relative_radius(jnp.zeros_like(self.roller_length)))
-        width = 1e-2 * radius
+        width, inside = 1e-2 * radius, 0.0
         most = 0.98 * float(_reach(self, jnp.zeros_like(self.roller_length)))
         cells: tuple[int, float] = (32, 2.0)
         for _ in range(24):

@@ -75,8 +75,8 @@ def ball_forces(
     # How far each ball has moved against each groove centre.
     moved_z = jnp.stack([places[:, 0] - z[k] for k in of])
     moved_r = jnp.stack([places[:, 1] - r[k] for k in of])
-    tilted = tilts != [None, None]
-    if tilted:
+    tilt_z = tilt_r = None
+    if tilts != [None, None]:
         tilt_z, tilt_r = each(geometry.tilted[..., 0]), each(geometry.tilted[..., 1])
         known = [jnp.zeros_like(z[0]) if t is None else t for t in tilts]
         tilt = (known[1] - known[0])[None]
@@ -90,7 +90,7 @@ def ball_forces(
         mine = slice(of.index(ring), len(of) - of[::-1].index(ring))
         axial, outwards = -add(force_z[mine]), -add(force_r[mine])
         moment = None
-        if tilted:
+        if tilt_z is not None and tilt_r is not None:
             moment = turned * add(tilt_z * force_z + tilt_r * force_r) - arm * axial
         on_rings.append(Section(axial, outwards, moment))
     # The tether holds a ball where nothing else does, and does not pull the rings.

@@ -48,7 +48,7 @@ _MARK = b"bearingjax program\n"
 class _Place(NamedTuple):
     """Placeholder of an array in the result of a program."""
 
-    index: int
+    number: int
 
 
 class _Program(NamedTuple):
@@ -58,7 +58,7 @@ class _Program(NamedTuple):
         executable: From `jax.experimental.serialize_executable`.
         inputs: Number of its arguments, all arrays.
         outputs: Result of the function, with a `_Place` for every array.
-        count: Number of arrays that it returns.
+        n_outputs: Number of arrays that it returns.
         lapack: Whether it calls LAPACK.
         devices: Number of devices that it runs on.
     """
@@ -66,7 +66,7 @@ class _Program(NamedTuple):
     executable: bytes
     inputs: int
     outputs: Any
-    count: int
+    n_outputs: int
     lapack: bool
     devices: int
 
@@ -271,7 +271,7 @@ def _fill(outputs: Any, values: list) -> Any:
         return isinstance(leaf, _Place)
 
     return jax.tree.map(
-        lambda leaf: values[leaf.index] if is_place(leaf) else leaf,
+        lambda leaf: values[leaf.number] if is_place(leaf) else leaf,
         outputs,
         is_leaf=is_place,
     )
@@ -393,7 +393,7 @@ def _load(place: int | None, name: str):
         if program.lapack:
             lapack.prepare()
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
-        outputs = jax.tree.structure([0] * program.count)
+        outputs = jax.tree.structure([0] * program.n_outputs)
         devices = jax.devices()[: program.devices]
         with _quiet():
             run = deserialize_and_load(

@@ -1,6 +1,7 @@
 """Axial section of a ball bearing or a set of them, to scale."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -123,7 +124,8 @@ def row_position(row: SetRow) -> float:
     Args:
         row: A `SetRow`.
     """
-    within = 1e3 * float(row.bearing.axial_place)
+    bearing: Any = row.bearing
+    within = 1e3 * float(bearing.axial_place)
     return 1e3 * float(row.position) + (-within if row.mirrored else within)
 
 

@@ -141,7 +141,7 @@ def _uncross_labels(labels, low_high, left_right, edge, height):
     """Labels from below, and their places, so that no two lines to points cross."""
     corner = np.array([left_right[0], low_high[0]])
     whole = np.array([np.ptp(left_right), np.ptp(low_high)])
-    labels = list(labels)
+    labels, places = list(labels), np.zeros(len(labels))
     for _ in range(len(labels) + 1):
         ats = [(np.asarray(one.at, dtype=float) - corner) / whole for one in labels]
         lines = np.array([1 + one.text.count("\n") for one in labels])
@@ -321,7 +321,7 @@ def contact_angle(
     ax: Axes,
     centre: Points,
     contact: float,
-    top: float,
+    top: tuple[float, float],
     sense: float = 1.0,
     name: str = "contact angle",
     alone: bool = True,

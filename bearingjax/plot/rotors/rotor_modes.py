@@ -143,7 +143,7 @@ def runs(chosen: np.ndarray) -> Iterator[tuple[int, int]]:
     """Return first and last point of every run of chosen segments."""
     edges = np.diff(np.concatenate([[0], chosen.astype(int), [0]]))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return zip(starts, ends, strict=True)
+    return zip(starts.tolist(), ends.tolist(), strict=True)
 
 
 def _critical(ax, critical, rpm, top):

@@ -133,7 +133,7 @@ class Traced(NamedTuple):
     residual: Annotated[Float[Array, " point"], unit("1")]
     side: Float[Array, " point"]
     newton: Int[Array, " point"]
-    count: Int[Array, ""]
+    n_points: Int[Array, ""]
     refused: Int[Array, ""]
     ending: Int[Array, ""]
 
@@ -156,7 +156,7 @@ class _State(NamedTuple):
     last: BranchPoint
     before: Float[Array, " x"]
     step: Scalar
-    count: Int[Array, ""]
+    n_points: Int[Array, ""]
     refused: Int[Array, ""]
     ending: Int[Array, ""]
 
@@ -251,7 +251,7 @@ def trace(
         beyond = bound != new[-1]
         share = jnp.where(beyond, (bound - x[-1]) / (new[-1] - x[-1]), 1.0)
         new = (x + share * state.step * guess).at[-1].set(bound)
-        first = state.count == 0
+        first = state.n_points == 0
         return (
             jnp.where(first, begin, new),
             jnp.where(beyond | first, along, normal),
@@ -260,7 +260,7 @@ def trace(
         )
 
     def attempt(state):
-        first = state.count == 0
+        first = state.n_points == 0
         x, normal, length, at_limit = predicted(state)
         limit = jnp.where(first, _FIRST_NEWTON, _NEWTON)
         towards = jnp.where(first, forward, state.last.tangent)
@@ -278,7 +278,9 @@ def trace(
         good = solved & (smooth | first)
 
         taken = jax.tree.map(
-            lambda every, one: jnp.where(good, every.at[state.count].set(one), every),
+            lambda every, one: jnp.where(
+                good, every.at[state.n_points].set(one), every
+            ),
             state.points,
             new,
         )
@@ -294,7 +296,7 @@ def trace(
         largest = jnp.minimum(steps.largest, steps.frequency / share)
         longer = jnp.minimum(state.step * factor, largest)
         step = jnp.where(good, jnp.where(first, state.step, longer), 0.5 * state.step)
-        count = state.count + good.astype(jnp.int32)
+        count = state.n_points + good.astype(jnp.int32)
         outside = (new.x[-1] <= low) | (new.x[-1] >= high)
         ended = [
             (good & ~first & (at_limit | outside), BranchEnd.LIMIT),
@@ -326,4 +328,4 @@ def trace(
         jnp.int32(_GOING),
     )  # fmt: skip
     done = lax.while_loop(lambda state: state.ending == _GOING, attempt, state)
-    return Traced(*done.points, done.count, done.refused, done.ending)
+    return Traced(*done.points, done.n_points, done.refused, done.ending)

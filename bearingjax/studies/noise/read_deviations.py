@@ -28,12 +28,12 @@ class ErrorContext(NamedTuple):
     """Context of a form error, in addition to its table.
 
     Attributes:
-        count: Number of rolling elements of the row; `None` for a raceway error.
+        n_elements: Number of rolling elements of the row; `None` for a raceway error.
         folder: Folder of the scene.
         row: Number of previous rows with the same table.
     """
 
-    count: int | None
+    n_elements: int | None
     folder: Path
     row: int
 
@@ -73,11 +73,13 @@ class DeviationKeys(Keys):
     def _each(self, values: Any, context: ErrorContext) -> Any:
         """Spread values over the rolling elements, 0 for those without the error."""
         values = np.asarray(values, dtype=float)
-        if context.count is None:
+        if context.n_elements is None:
             return values
-        which = np.arange(context.count)
+        which = np.arange(context.n_elements)
         chosen = (
-            np.ones(context.count) if self.element is None else which == self.element
+            np.ones(context.n_elements)
+            if self.element is None
+            else which == self.element
         )
         return chosen.reshape(-1, *[1] * values.ndim) * values
 
@@ -181,7 +183,9 @@ class SpectrumKeys(DirectedKeys):
         # Rows are drawn independently; the first equals that of a single-row bearing.
         seed = [self.seed, context.row] if context.row else self.seed
         orders = self.highest - self.lowest + 1
-        shape = (orders,) if context.count is None else (context.count, orders)
+        shape = (
+            (orders,) if context.n_elements is None else (context.n_elements, orders)
+        )
         phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, shape)
         sizes = self._each(np.full(1, self.amplitude), context)
         return Harmonics.spectrum(self.lowest, self.highest, sizes, self.slope, phase)
@@ -242,7 +246,7 @@ class SpallKeys(DeviationKeys):
             raise self.table.error("element", problem)
 
     def shape(self, context: ErrorContext) -> Spall:
-        every = np.zeros(() if context.count is None else (context.count,))
+        every = np.zeros(() if context.n_elements is None else (context.n_elements,))
         depth = self._each(self.depth, context)
         return Spall(every + self.angle, every + self.length, depth)
 
