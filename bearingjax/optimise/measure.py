@@ -90,7 +90,7 @@ class AbstractSmooth(AbstractMeasure):
             it is closer to the true one, but its derivative changes faster.
     """
 
-    exponent: eqx.AbstractVar[float]
+    exponent: float = eqx.field(static=True, default=EXPONENT, kw_only=True)
 
     def __check_init__(self):
         number(self, "exponent")
@@ -130,8 +130,6 @@ class PeakPressure(AbstractLargest):
     Static: exponent.
     """
 
-    exponent: float = eqx.field(static=True, default=EXPONENT)
-
     def samples(self, solution: Any) -> Float[Array, "..."]:
         return _pressures(solution)
 
@@ -154,8 +152,6 @@ class MeanPressure(AbstractSmooth):
 
     Static: exponent.
     """
-
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def __call__(self, element, cases, solution):
         pressure = _pressures(solution)
@@ -182,8 +178,6 @@ class EdgeLoad(AbstractLargest):
 
     Static: exponent.
     """
-
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def samples(self, solution: Any) -> Float[Array, "..."]:
         solution = loads_of(solution)
@@ -213,7 +207,6 @@ class Displacement(AbstractLargest):
     """
 
     freedom: str = eqx.field(static=True)
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def __check_init__(self):
         _check_freedom(self, self.freedom)
@@ -250,7 +243,6 @@ class Stiffness(AbstractSmooth):
     """
 
     freedom: str = eqx.field(static=True)
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def __check_init__(self):
         _check_freedom(self, self.freedom)

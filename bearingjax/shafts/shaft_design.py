@@ -22,7 +22,7 @@ from ..life.rating import check_alike
 from ..numerics.units import unit
 from ..numerics.warning import warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
-from ..optimise.smooth import EXPONENT, smooth_maximum, smooth_minimum
+from ..optimise.smooth import smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
@@ -317,7 +317,6 @@ class Worst(AbstractSmooth):
 
     kind: str = eqx.field(static=True)
     of: str | None = eqx.field(static=True, default=None)
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def __check_init__(self):
         super().__check_init__()

@@ -14,7 +14,6 @@ from ..numerics.result import Result
 from ..numerics.types import Real
 from ..numerics.units import real, unit_of
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
-from ..optimise.smooth import EXPONENT
 from ..optimise.system import AbstractSystem
 from ..statics.load_case import load_case
 from ..statics.options import SolveOptions
@@ -148,8 +147,6 @@ class CageSlip(AbstractLargest):
 
     Static: exponent.
     """
-
-    exponent: float = eqx.field(static=True, default=EXPONENT)
 
     def samples(self, solution: Any) -> Float[Array, "..."]:
         return jnp.abs(_skidding(self, solution).cage_slip)

@@ -108,7 +108,7 @@ def test_gradients_of_all_measures_are_those_of_differences(fujiwara, cases):
     ]
     measures = [
         bj.optimise.PeakPressure(),
-        bj.optimise.MeanPressure(16.0),
+        bj.optimise.MeanPressure(exponent=16.0),
         bj.optimise.EdgeLoad(),
         bj.optimise.Displacement("uy"),
         bj.optimise.Stiffness("uy"),
@@ -534,7 +534,10 @@ def test_wrong_calls(straight, one_case, name):
             lambda: bj.optimise.Variable(PLAY, 0.0, 1.0, 2.0),
             "is 2; it must lie between",
         ),
-        (lambda: bj.optimise.PeakPressure(1.0), "`exponent` is 1; it must be above 1"),
+        (
+            lambda: bj.optimise.PeakPressure(exponent=1.0),
+            "`exponent` is 1; it must be above 1",
+        ),
         (
             lambda: bj.optimise.Stiffness("gz"),
             "`freedom` is 'gz'; it must be one of ux",

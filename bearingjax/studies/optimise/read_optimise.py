@@ -292,7 +292,7 @@ def _optimisation(
 ) -> Optimisation:
     keys, balls = read_keys(OptimiseKeys, table), scene.element.bearing.is_ball
     with table.building():
-        PeakPressure(keys.exponent)
+        PeakPressure(exponent=keys.exponent)
     measured = _Measured(keys.exponent, balls, _life(scene, cases))
     objective = measured.objective(keys)
     table.table("variables", required=True)
@@ -461,17 +461,17 @@ class _Measured(NamedTuple):
                 raise keys.table.error(key, problem)
             return self.life
         if kind == "peak_pressure":
-            return PeakPressure(self.exponent)
+            return PeakPressure(exponent=self.exponent)
         if kind == "mean_pressure":
-            return MeanPressure(self.exponent)
+            return MeanPressure(exponent=self.exponent)
         if kind == "edge_load":
             if self.balls:
                 problem = "balls have no ends; `edge_load` is for rollers"
                 raise keys.table.error(key, problem)
-            return EdgeLoad(self.exponent)
+            return EdgeLoad(exponent=self.exponent)
         freedom = keys.freedom or keys.table.choice("freedom", FREEDOMS[:5])
         of = Displacement if kind == "displacement" else Stiffness
-        return of(freedom, self.exponent)
+        return of(freedom, exponent=self.exponent)
 
 
 def _kind_of(measure) -> str:

@@ -201,7 +201,7 @@ def _measure(
     if kind in _OF_SYSTEM:
         return _OF_SYSTEM[kind]()
     with table.building():
-        return Worst(kind, of, exponent)
+        return Worst(kind, of, exponent=exponent)
 
 
 def shaft_numbers(scene: ShaftScene) -> dict[str, tuple[str, ...]]:
