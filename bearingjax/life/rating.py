@@ -360,7 +360,7 @@ def _together(parts, each) -> tuple[Scalar, Scalar]:
         c, c0 = (jnp.where(parts[0].alike, value, jnp.nan) for value in each[0])
         return c, c0
     c, c0 = (jnp.stack(values) for values in zip(*each, strict=True))
-    weight = jnp.stack([part.rows.row.count * part.rows.row.length for part in parts])
+    weight = jnp.stack([part.rows.row.n_elements * part.rows.row.length for part in parts])
     # Of alike rows this is C_1 i^(7/9).
     tired = jnp.sum((weight / c) ** 4.5)
     return jnp.sum(weight) * tired ** (-2 / 9), jnp.sum(c0)
@@ -376,7 +376,7 @@ def _rate_part(part: _Part) -> tuple[Float[Array, "3"], Bool[Array, "3"]]:
     grown = now / jax.lax.stop_gradient(now)
     rows, (alone, reduction) = part.rows, part.alone
     axial = is_axial(part.is_thrust, rows.row.contact_angle)
-    many = jnp.where(axial, rows.one_way, rows.count / alone)
+    many = jnp.where(axial, rows.one_way, rows.n_rows / alone)
     dynamic = grown[0] * many**rows.row.power / jnp.where(axial, 1.0, reduction)
     scaled = jnp.stack([dynamic, *2 * [grown[1] * many]])
     published = part.holds & (part.published > 0)
@@ -405,7 +405,7 @@ def row_ratings(
     else:
         rows = first.rows
         axial = is_axial(first.is_thrust, rows.row.contact_angle)
-        count = jnp.where(axial, rows.one_way, rows.count)
+        count = jnp.where(axial, rows.one_way, rows.n_rows)
         shares = [(count**-rows.row.power, 1.0 / count)] * len(rows_of(bearing))
     return [
         (rated.dynamic_capacity * c, rated.fatigue_load_limit * limit)
@@ -428,10 +428,10 @@ def _limit_of(parts, static):
 def _contact_limit(rows, is_thrust):
     row, angle = rows.row, rows.row.contact_angle
     axial = is_axial(is_thrust, angle)
-    radial = 0.2288 * rows.count * jnp.cos(angle)
+    radial = 0.2288 * rows.n_rows * jnp.cos(angle)
     share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
     large = _large(row.pitch_diameter)
-    return row.count * by_row.ball_fatigue(row) * share / large**0.5
+    return row.n_elements * by_row.ball_fatigue(row) * share / large**0.5
 
 
 def _large(pitch):

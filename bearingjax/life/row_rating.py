@@ -67,14 +67,14 @@ class BallRow(NamedTuple):
     """Numbers of one row of balls.
 
     Attributes:
-        count: Balls in the row.
+        n_elements: Balls in the row.
         diameter: Ball diameter [m].
         pitch_diameter: Pitch diameter [m].
         contact_angle: Nominal contact angle [rad].
         osculation: Outer (`None`: a sphere) and inner [1].
     """
 
-    count: Scalar | int
+    n_elements: Scalar | int
     diameter: Annotated[Scalar, unit("m")]
     pitch_diameter: Annotated[Scalar, unit("m")]
     contact_angle: Annotated[Scalar, unit("rad")]
@@ -104,7 +104,7 @@ class BallRow(NamedTuple):
             pairs = THRUST, kind
             kind = jax.tree.map(lambda a, b: jnp.where(axial, a, b), *pairs)
         rate = thrust_ball_dynamic if is_thrust else steep_ball_dynamic
-        dynamic = radial_ball_dynamic(self, kind, rows.count)
+        dynamic = radial_ball_dynamic(self, kind, rows.n_rows)
         return dynamic, rate(self, kind, rows.one_way), ball_static(self, kind)
 
 
@@ -112,7 +112,7 @@ class RollerRow(NamedTuple):
     """Numbers of one row of rollers.
 
     Attributes:
-        count: Rollers in the row.
+        n_elements: Rollers in the row.
         diameter: Mean roller diameter [m].
         length: Effective length [m].
         pitch_diameter: Pitch diameter [m].
@@ -120,7 +120,7 @@ class RollerRow(NamedTuple):
         quality: b_m of the type, for today's material and manufacture [1].
     """
 
-    count: Scalar | int
+    n_elements: Scalar | int
     diameter: Annotated[Scalar, unit("m")]
     length: Annotated[Scalar, unit("m")]
     pitch_diameter: Annotated[Scalar, unit("m")]
@@ -143,7 +143,7 @@ class RollerRow(NamedTuple):
         Args:
             rows, is_thrust, axial: As in `BallRow.capacity`.
         """
-        dynamic = radial_roller_dynamic(self, rows.count)
+        dynamic = radial_roller_dynamic(self, rows.n_rows)
         return dynamic, steep_roller_dynamic(self, rows.one_way), roller_static(self)
 
 
@@ -153,13 +153,13 @@ class Rows(NamedTuple):
     Attributes:
         row: One of them.
         kind: Constants of the standards for their type; `None` for rollers.
-        count: Number of rows.
+        n_rows: Number of rows.
         one_way: Number of rows that share an axial load: the weaker of two sides.
     """
 
     row: BallRow | RollerRow
     kind: BallKind | None
-    count: Scalar
+    n_rows: Scalar
     one_way: Scalar
 
 
@@ -173,9 +173,9 @@ def capacities(rows: Rows, is_thrust: bool) -> tuple[Scalar, Scalar]:
     row, angle = rows.row, rows.row.contact_angle
     axial = is_thrust | (angle > THRUST_ANGLE)
     dynamic, steep, load = row.capacity(rows, is_thrust, axial)
-    radial = 0.2 * rows.count * jnp.cos(angle)
+    radial = 0.2 * rows.n_rows * jnp.cos(angle)
     share = jnp.where(axial, rows.one_way * jnp.sin(angle), radial)
-    return jnp.where(axial, steep, dynamic), row.count * load * share
+    return jnp.where(axial, steep, dynamic), row.n_elements * load * share
 
 
 def radial_ball_dynamic(row: BallRow, kind: BallKind, rows: Scalar | int) -> Scalar:
@@ -327,7 +327,7 @@ def _balls(row):
     """Z^(2/3) D^1.8 [mm^1.8], less for large balls."""
     size = _PER_MM * row.diameter
     grown = size**1.4 * jnp.minimum(size, _LARGE_BALL) ** 0.4
-    return row.count ** (2 / 3) * grown
+    return row.n_elements ** (2 / 3) * grown
 
 
 def _roller_factor(row, reduction, weight):
@@ -341,5 +341,5 @@ def _roller_factor(row, reduction, weight):
 def _rollers(row, rows):
     """b_m (i L)^(7/9) Z^(3/4) D^(29/27) [mm^(50/27)]."""
     size, length = _PER_MM * row.diameter, _PER_MM * row.length
-    grown = row.count**0.75 * size ** (29 / 27)
+    grown = row.n_elements**0.75 * size ** (29 / 27)
     return row.quality * (rows * length) ** (7 / 9) * grown
