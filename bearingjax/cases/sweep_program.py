@@ -4,6 +4,7 @@ import functools
 import math
 import time
 from collections.abc import Callable
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -15,6 +16,7 @@ from jax.sharding import Mesh, NamedSharding
 from jax.sharding import PartitionSpec as Spec
 
 from ..design import rows_of
+from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions, life_outputs, rating_life
 from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
@@ -23,7 +25,7 @@ from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import Support
 from ..statics.warning import sizes
-from .cases import solve_case
+from .cases import Cases, solve_case
 from .near_starts import (
     add_solved,
     common_properties,
@@ -72,13 +74,15 @@ class Task(eqx.Module):
     lives: tuple[str, ...] = eqx.field(static=True, default=())
     life: LifeConditions | None = None
 
-    def solve(self, element, case, start=None) -> Solution:
+    def solve(
+        self, element: BearingElement, case: Cases, start: Any = None
+    ) -> Solution:
         """Solve a case, with the design that it selects."""
         if case.design is not None:
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
         return solve_case(element, case, self.support, self.options, start)
 
-    def outputs(self, solution) -> dict[str, jax.Array]:
+    def outputs(self, solution: Solution) -> dict[str, jax.Array]:
         """Outputs of a solution by name; floats of a failed solve are NaN."""
         solved = solution.converged
 
@@ -133,7 +137,13 @@ class Program:
         self.element, self.task, self.chunk = element, task, chunk
         self.mesh = Mesh(devices, ("case",))
 
-    def run(self, cases, near=True, progress=False, stop=None):
+    def run(
+        self,
+        cases: Cases,
+        near: bool = True,
+        progress: Any = False,
+        stop: Callable | None = None,
+    ) -> dict[str, np.ndarray]:
         """All outputs of all cases, NumPy arrays by name; after `stop` the rest are
         `NOT_RUN`.
 

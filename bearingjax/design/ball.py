@@ -10,7 +10,7 @@ positive contact angle α carries an inner-ring load along +z.
 import abc
 import dataclasses
 import math
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -204,7 +204,7 @@ class AbstractBallBearing(AbstractBearing):
     def touching_angle(self) -> Scalar:
         return self.free_contact_angle
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         return dataclasses.replace(self, radial_internal_clearance=clearance)
 
     @property
@@ -213,7 +213,7 @@ class AbstractBallBearing(AbstractBearing):
         return self.pitch_diameter - across, self.pitch_diameter + across
 
     @property
-    def deviation_bounds(self):
+    def deviation_bounds(self) -> tuple[Any, ...]:
         return self.centre_distances
 
     @property
@@ -221,7 +221,7 @@ class AbstractBallBearing(AbstractBearing):
         return frozenset({1} if self.is_one_sided else {1, -1})
 
     @property
-    def shoulders(self):
+    def shoulders(self) -> tuple[Any, ...]:
         both = self.outer_shoulder, self.inner_shoulder
         return tuple(height for height in both if height is not None)
 

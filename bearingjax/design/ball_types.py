@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,6 +10,7 @@ import numpy as np
 
 from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real
+from .abstract import AbstractBearing
 from .ball import AbstractBallBearing, Groove
 from .checks import check, check_fields, concrete, in_range, number
 
@@ -42,7 +43,7 @@ class DeepGrooveBallBearing(AbstractBallBearing):
     )
 
     @property
-    def clearance(self):
+    def clearance(self) -> Scalar:
         if self.radial_internal_clearance is not None:
             return self.radial_internal_clearance
         if self.contact_angle is not None:
@@ -50,35 +51,35 @@ class DeepGrooveBallBearing(AbstractBallBearing):
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
-    def free_contact_angle(self):
+    def free_contact_angle(self) -> Scalar:
         if self.contact_angle is not None:
             return self.contact_angle
         return super().free_contact_angle
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         return jnp.minimum(1.0, 1.0 - 0.5 * self.clearance / self.centre_distance)
 
     @property
-    def nominal_contact_angle(self):
+    def nominal_contact_angle(self) -> Scalar:
         return as_real(0.0)
 
     @property
-    def touching_angle(self):
+    def touching_angle(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         return dataclasses.replace(
             self, radial_internal_clearance=clearance, contact_angle=None
         )
 
     @property
-    def raceway_diameters(self):
+    def raceway_diameters(self) -> tuple[Scalar, Scalar]:
         pitch, size = self.pitch_diameter, self.ball_diameter
         return pitch - size, pitch + size
 
     @property
-    def grooves(self):
+    def grooves(self) -> tuple[Groove, ...]:
         outer, inner = self.centre_distances
         # Radially the groove centres are nearer by half of the diametral play.
         share = 1.0 - 0.5 * self.clearance / self.centre_distance
@@ -143,26 +144,26 @@ class AngularContactBallBearing(AbstractBallBearing):
     )
 
     @property
-    def free_contact_angle(self):
+    def free_contact_angle(self) -> Scalar:
         return self.contact_angle
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         return jnp.cos(self.contact_angle)
 
     @property
-    def nominal_contact_angle(self):
+    def nominal_contact_angle(self) -> Scalar:
         return _nominal(self)
 
     @property
-    def touching_angle(self):
+    def touching_angle(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
-    def clearance(self):
+    def clearance(self) -> Scalar:
         return clearance_of(self.contact_angle, self.centre_distance)
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         quarter = clearance / (4.0 * self.centre_distance)
         known = concrete(clearance, quarter)
         if known is not None:
@@ -182,15 +183,15 @@ class AngularContactBallBearing(AbstractBallBearing):
         angle = 2.0 * jnp.arcsin(jnp.sqrt(quarter))
         return dataclasses.replace(self, contact_angle=angle)
 
-    def rated_as(self, drawing):
+    def rated_as(self, drawing: "AbstractBearing") -> "AbstractBearing":
         return _rated_as(self, drawing)
 
     @property
-    def is_one_sided(self):
+    def is_one_sided(self) -> bool:
         return True
 
     @property
-    def grooves(self):
+    def grooves(self) -> tuple[Groove, ...]:
         return _pair(self, self.free_contact_angle, open_side=True)
 
     def __check_init__(self):
@@ -211,27 +212,27 @@ class ThrustBallBearing(AbstractBallBearing):
     is_thrust: ClassVar[bool] = True
 
     @property
-    def free_contact_angle(self):
+    def free_contact_angle(self) -> Scalar:
         return jnp.full_like(self.pitch_diameter, 0.5 * np.pi)
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         return jnp.zeros_like(self.pitch_diameter)
 
     @property
-    def clearance(self):
+    def clearance(self) -> Scalar:
         return 2.0 * self.centre_distance
 
     @property
-    def groove_axis(self):
+    def groove_axis(self) -> Scalar | float:
         return 0.5 * np.pi
 
     @property
-    def is_one_sided(self):
+    def is_one_sided(self) -> bool:
         return True
 
     @property
-    def grooves(self):
+    def grooves(self) -> tuple[Groove, ...]:
         outer, inner = self.centre_distances
         zero, radius = jnp.zeros_like(outer), 0.5 * self.ball_diameter
         one = jnp.ones_like(outer)
@@ -280,23 +281,23 @@ class FourPointBallBearing(AbstractBallBearing):
     )
 
     @property
-    def clearance(self):
+    def clearance(self) -> Scalar:
         return self.radial_internal_clearance
 
     @property
-    def nominal_contact_angle(self):
+    def nominal_contact_angle(self) -> Scalar:
         return _nominal(self)
 
-    def rated_as(self, drawing):
+    def rated_as(self, drawing: "AbstractBearing") -> "AbstractBearing":
         return _rated_as(self, drawing)
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         play = 0.5 * self.clearance / self.centre_distance
         return jnp.minimum(1.0, jnp.cos(self.shim_angle) - play)
 
     @property
-    def grooves(self):
+    def grooves(self) -> tuple[Groove, ...]:
         outer, inner = self.centre_distances
         half = 0.25 * self.clearance
         sine, cosine = jnp.sin(self.shim_angle), jnp.cos(self.shim_angle)
@@ -363,40 +364,40 @@ class SelfAligningBallRow(AbstractBallBearing):
     )
 
     @property
-    def free_contact_angle(self):
+    def free_contact_angle(self) -> Scalar:
         return jnp.arctan2(self.row_offset, 0.5 * self.pitch_diameter)
 
     @property
-    def free_cosine(self):
+    def free_cosine(self) -> Scalar:
         return jnp.cos(self.free_contact_angle)
 
     @property
-    def groove_axis(self):
+    def groove_axis(self) -> Scalar | float:
         return self.free_contact_angle
 
     @property
-    def clearance(self):
+    def clearance(self) -> Scalar:
         return self.radial_internal_clearance
 
     @property
-    def centre_distances(self):
+    def centre_distances(self) -> tuple[Scalar, Scalar]:
         gap = 0.25 * self.clearance * self.free_cosine
         outer = jnp.sqrt(0.25 * self.pitch_diameter**2 + self.row_offset**2)
         return outer + gap, (self.inner_osculation - 0.5) * self.ball_diameter
 
     @property
-    def play(self):
+    def play(self) -> Scalar:
         # The gap along the contact angle gives axial play over its sine, radial play
         # over its cosine.
         longer = jnp.maximum(1.0, 0.5 * self.pitch_diameter / self.row_offset)
         return 0.5 * self.clearance * longer
 
     @property
-    def axial_place(self):
+    def axial_place(self) -> Scalar:
         return self.row_offset
 
     @property
-    def grooves(self):
+    def grooves(self) -> tuple[Groove, ...]:
         outer, inner = self.centre_distances
         gap = 0.25 * self.clearance * self.free_cosine
         near = inner - gap

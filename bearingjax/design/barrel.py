@@ -57,7 +57,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
     def gap(self) -> Scalar:
         return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         return eqx.tree_at(lambda b: b.radial_internal_clearance, self, clearance)
 
     @property
@@ -396,7 +396,7 @@ class CrossedRollerRow(AbstractRollerBearing):
     caged: ClassVar[bool] = True
     is_crossed: ClassVar[bool] = True
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         return eqx.tree_at(lambda b: b.radial_internal_clearance, self, clearance)
 
     @property

@@ -1,7 +1,7 @@
 """Roller bearings as on the drawing: dimensions and their checks."""
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax
@@ -158,7 +158,7 @@ class AbstractRollerBearing(AbstractBearing):
     def clearance(self) -> Scalar:
         return 4.0 * self.gap / jnp.cos(self.touching_angle)
 
-    def with_clearance(self, clearance):
+    def with_clearance(self, clearance: Scalar) -> Any:
         # The clearance of a taper is along the normal.
         own = clearance * jnp.cos(self.touching_angle)
         return eqx.tree_at(lambda b: b.radial_internal_clearance, self, own)
@@ -170,11 +170,11 @@ class AbstractRollerBearing(AbstractBearing):
         return pitch - size * jnp.cos(axis - half), pitch + size * jnp.cos(axis + half)
 
     @property
-    def deviation_bounds(self):
+    def deviation_bounds(self) -> tuple[Any, ...]:
         return (0.5 * self.roller_diameter,)
 
     @property
-    def element_length(self):
+    def element_length(self) -> Any:
         return self.roller_length
 
     @property

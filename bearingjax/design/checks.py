@@ -20,19 +20,19 @@ from jax.core import Tracer
 from ..numerics.units import unit_of
 
 
-def is_traced(value) -> bool:
+def is_traced(value: Any) -> bool:
     """Whether a value is being traced, so that its number is not known."""
     return isinstance(value, Tracer)
 
 
-def concrete(*values) -> list[float] | None:
+def concrete(*values: Any) -> list[float] | None:
     """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
     if any(is_traced(v) or not is_real(v) for v in values):
         return None
     return [float(v) for v in values]
 
 
-def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
+def check(owner: Any, name: str, ok: Any, allowed: str, *given: Any) -> None:
     """Raise unless `ok`.
 
     Args:
@@ -52,7 +52,7 @@ def check(owner, name: str, ok, allowed: str, *given: Any) -> None:
     raise ValueError(f"{_title(owner)}: `{name}` is {shown}; it must be {allowed}.")
 
 
-def is_real(value) -> bool:
+def is_real(value: Any) -> bool:
     """Whether a value is a real number or an array of them; traced ones pass."""
     if is_traced(value):
         return True
@@ -62,7 +62,7 @@ def is_real(value) -> bool:
         return False
 
 
-def number(owner, name: str, *given: Any) -> None:
+def number(owner: Any, name: str, *given: Any) -> None:
     """A single finite number.
 
     Args:
@@ -84,7 +84,7 @@ def number(owner, name: str, *given: Any) -> None:
         check(owner, name, np.isfinite(value), "a finite number", value, unit)
 
 
-def real_numbers(owner: str, name: str, value, wanted: str) -> None:
+def real_numbers(owner: str, name: str, value: Any, wanted: str) -> None:
     """Real numbers: an array, or lists of them.
 
     Args:
@@ -117,25 +117,25 @@ _ODD = "OUSc"
 """Kinds of NumPy's dtypes that are no real numbers: objects, texts, complex ones."""
 
 
-def finite(owner, name: str, *given: Any) -> None:
+def finite(owner: Any, name: str, *given: Any) -> None:
     """A finite number, or an array of them; arguments as in `check`."""
     value, _ = given or _field(owner, name)
     if not is_traced(value):
         check(owner, name, np.isfinite(value), "finite", *given)
 
 
-def positive(owner, name: str, *given: Any) -> None:
+def positive(owner: Any, name: str, *given: Any) -> None:
     """A finite number above zero; arguments as in `check`."""
     _check_bounds(owner, name, 0.0, np.inf, False, given)
 
 
-def non_negative(owner, name: str, *given: Any) -> None:
+def non_negative(owner: Any, name: str, *given: Any) -> None:
     """A finite number of at least zero; arguments as in `check`."""
     _check_bounds(owner, name, 0.0, np.inf, True, given)
 
 
 def in_range(
-    owner, name: str, low, high, *given: Any, include_low: bool = False
+    owner: Any, name: str, low: Any, high: Any, *given: Any, include_low: bool = False
 ) -> None:
     """A finite number between `low` and `high`.
 
@@ -160,7 +160,7 @@ def _check_bounds(owner, name, low, high, include_low, given):
     check(owner, name, inside, _with_unit(words, unit), value, unit)
 
 
-def check_fields(owner) -> None:
+def check_fields(owner: Any) -> None:
     """Fields in the ranges, or among the words, that they state; `None` if by default.
 
     Args:
@@ -188,7 +188,7 @@ _INSIDE = {"above": gt, "least": ge, "below": lt, "most": le}
 _WORDS = {"above": "above", "least": "at least", "below": "below", "most": "at most"}
 
 
-def count(owner, name: str, value) -> None:
+def count(owner: Any, name: str, value: Any) -> None:
     """A whole number of at least one; bools do not pass.
 
     Raises:
@@ -203,7 +203,7 @@ def count(owner, name: str, value) -> None:
     check(owner, name, value >= 1, "a whole number of at least 1", value, "")
 
 
-def instance(owner, name: str, *kinds: type | None) -> None:
+def instance(owner: Any, name: str, *kinds: type | None) -> None:
     """A field that holds an object of one of several classes, or `None`.
 
     Raises:
@@ -215,7 +215,7 @@ def instance(owner, name: str, *kinds: type | None) -> None:
     of_class(owner, name, getattr(owner, name), known, f"a {allowed}")
 
 
-def of_class(owner, name: str, value, kinds: Any, allowed: str) -> None:
+def of_class(owner: Any, name: str, value: Any, kinds: Any, allowed: str) -> None:
     """An object of a class, or of one of several.
 
     Args:
@@ -232,7 +232,7 @@ def of_class(owner, name: str, value, kinds: Any, allowed: str) -> None:
         raise TypeError(f"{_title(owner)}: `{name}` is a {kind}; it must be {allowed}.")
 
 
-def integration(owner, options) -> None:
+def integration(owner: Any, options: Any) -> None:
     """Numerics of an integration in time, with its limits.
 
     Args:
@@ -249,7 +249,7 @@ def integration(owner, options) -> None:
     one_of(owner, "derivatives", options.derivatives, modes, " or ".join(modes))
 
 
-def of_shape(owner, name: str, fits: bool, allowed: str, *given: Any) -> None:
+def of_shape(owner: Any, name: str, fits: bool, allowed: str, *given: Any) -> None:
     """An array of an allowed shape.
 
     Args:
@@ -269,7 +269,9 @@ def of_shape(owner, name: str, fits: bool, allowed: str, *given: Any) -> None:
         )
 
 
-def one_of(owner, name: str, value, names: Collection[str], allowed: str = "") -> None:
+def one_of(
+    owner: Any, name: str, value: Any, names: Collection[str], allowed: str = ""
+) -> None:
     """One of several names.
 
     Args:

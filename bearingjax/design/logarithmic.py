@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..numerics.types import Real
+from ..numerics.types import Real, Scalar
 from ..numerics.units import real
 from .checks import check_fields, in_range
 from .profile import AbstractProfile

@@ -154,7 +154,13 @@ class RollerChoices(AbstractChoices):
     names = ("line_law", "quadrature", "kinematics")
 
     @classmethod
-    def of(cls, rows, line_law=None, quadrature=None, kinematics=None):
+    def of(
+        cls,
+        rows: tuple[SetRow, ...],
+        line_law: Any = None,
+        quadrature: Any = None,
+        kinematics: Any = None,
+    ) -> "AbstractChoices":
         law = line_law or Palmgren()
         if isinstance(law, CoupledSlices):
             if quadrature:
@@ -167,7 +173,7 @@ class RollerChoices(AbstractChoices):
         kinematics = kinematics or usual_kinematics(rows, law)
         return cls(line_law=law, quadrature=quadrature, kinematics=kinematics)
 
-    def check(self, part, speed):
+    def check(self, part: SetRow, speed: Speed | None) -> None:
         kinematics, bearing = self.kinematics, part.bearing
         kinematics.check("roller")
         assert isinstance(bearing, AbstractRollerBearing)
@@ -187,7 +193,9 @@ class RollerChoices(AbstractChoices):
                     f" profiles of barrel rollers, as is `{which}`; use Linearised()."
                 )
 
-    def rolling_element(self, part, speed, deviation):
+    def rolling_element(
+        self, part: SetRow, speed: Speed | None, deviation: Scalar | None
+    ) -> AbstractRollingElement:
         # Coupled slices take a rule as all laws do, and do not use it.
         quadrature = self.quadrature or ContactMapped()
         bearing: Any = part.bearing
@@ -223,7 +231,13 @@ class BallChoices(AbstractChoices):
     names = ("point_law", "raceway_control", "kinematics")
 
     @classmethod
-    def of(cls, rows, point_law=None, raceway_control=None, kinematics=None):
+    def of(
+        cls,
+        rows: tuple[SetRow, ...],
+        point_law: Any = None,
+        raceway_control: Any = None,
+        kinematics: Any = None,
+    ) -> "AbstractChoices":
         aligning = any(row.bearing.aligns for row in rows)
         default = Finite() if aligning else Linearised()
         return cls(
@@ -232,7 +246,7 @@ class BallChoices(AbstractChoices):
             kinematics=kinematics or default,
         )
 
-    def check(self, part, speed):
+    def check(self, part: SetRow, speed: Speed | None) -> None:
         kinematics, bearing = self.kinematics, part.bearing
         kinematics.check("ball")
         name = type(kinematics).__name__
@@ -258,7 +272,9 @@ class BallChoices(AbstractChoices):
                 " Linearised()."
             )
 
-    def rolling_element(self, part, speed, deviation):
+    def rolling_element(
+        self, part: SetRow, speed: Speed | None, deviation: Scalar | None
+    ) -> AbstractRollingElement:
         bearing: Any = part.bearing
         diameter = bearing.ball_diameter
         balls, grooves = balls_of(bearing), bearing.grooves

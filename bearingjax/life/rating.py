@@ -360,7 +360,9 @@ def _together(parts, each) -> tuple[Scalar, Scalar]:
         c, c0 = (jnp.where(parts[0].alike, value, jnp.nan) for value in each[0])
         return c, c0
     c, c0 = (jnp.stack(values) for values in zip(*each, strict=True))
-    weight = jnp.stack([part.rows.row.n_elements * part.rows.row.length for part in parts])
+    weight = jnp.stack(
+        [part.rows.row.n_elements * part.rows.row.length for part in parts]
+    )
     # Of alike rows this is C_1 i^(7/9).
     tired = jnp.sum((weight / c) ** 4.5)
     return jnp.sum(weight) * tired ** (-2 / 9), jnp.sum(c0)

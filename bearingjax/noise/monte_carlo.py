@@ -5,7 +5,7 @@ are taken outside of it, and of a record only its levels are kept.
 """
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import equinox as eqx
@@ -245,7 +245,7 @@ class Records:
         self.counts = options.turns, options.settle, samples, steps
         self.batch = options.batch
 
-    def parts(self, n: int):
+    def parts(self, n: int) -> Iterator[tuple[int, np.ndarray]]:
         """Yield the number of bearings of each batch, padding left out, and indices."""
         size = min(self.batch, n)
         for begin in range(0, n, size):
@@ -253,7 +253,12 @@ class Records:
             at = np.minimum(np.arange(begin, begin + size), n - 1)
             yield min(size, n - begin), at
 
-    def batches(self, keys, progress=None, factors=None):
+    def batches(
+        self,
+        keys: Any,
+        progress: Callable[[int], Any] | None = None,
+        factors: Any = None,
+    ) -> Iterator[tuple]:
         """Yield the number of bearings, accelerations and result codes by batch."""
         # Factors of all sources, so that one program serves all calls.
         names, given = self.given[1].sources, factors or {}

@@ -14,11 +14,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..cases.cases import check_hours
+from ..cases.cases import Cases, check_hours
 from ..design.checks import one_of
+from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
+from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..numerics.warning import warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
@@ -113,10 +115,10 @@ class ShaftDesign(AbstractSystem):
                 check_alike(seat.installed.drawing.bearing)
 
     @property
-    def element(self):
+    def element(self) -> BearingElement[Any]:
         raise TypeError("ShaftDesign: it has several bearings, `system.seats`.")
 
-    def check(self, cases):
+    def check(self, cases: Cases) -> None:
         pass
 
     def solve_case(self, case: Any, support: Any, options: Any) -> DutyResult:
@@ -162,10 +164,10 @@ class ShaftDesign(AbstractSystem):
             friction=None if self.oils is None else jnp.stack(powers),
         )
 
-    def failure_message(self, solved):
+    def failure_message(self, solved: Any) -> str:
         return "the shafts find no equilibrium on their bearings"
 
-    def warnings(self, cases, solved):
+    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
             every = warnings_of_cases(jax.device_get(sizes), ALL)
@@ -240,31 +242,31 @@ class PowerOf(AbstractMeasure):
     def __call__(self, element: Any, cases, solution):
         return self.measure(element, cases, solution) ** self.power
 
-    def exact(self, element: Any, cases, solution):
+    def exact(self, element: Any, cases: Any, solution: Any) -> Scalar:
         return self.measure.exact(element, cases, solution) ** self.power
 
     @property
-    def reported_as(self):
+    def reported_as(self) -> "AbstractMeasure":
         return self.measure
 
-    def reported_value(self, value):
+    def reported_value(self, value: Any) -> Any:
         return value ** (1.0 / self.power)
 
     @property
-    def maximised(self):
+    def maximised(self) -> bool:
         return self.power < 0
 
     @property
-    def least_size(self):
+    def least_size(self) -> float:
         # Of angles: a microradian. Divided by less round-off would look like a slope.
         return 0.0 if self.maximised else 1e-12
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"{self.measure.label} to the power {self.power}"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return ""
 
 
@@ -278,15 +280,15 @@ class SystemLife(AbstractMeasure):
         return system_life(element.system, element.hours(cases, solution))
 
     @property
-    def as_objective(self):
+    def as_objective(self) -> "AbstractMeasure":
         return PowerOf(self, -1)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "system life"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "h"
 
 
@@ -366,7 +368,7 @@ class Worst(AbstractSmooth):
         of = smooth_minimum if self._power < 0 else smooth_maximum
         return of(self.samples(element, cases, solution), self.exponent)
 
-    def exact(self, element: Any, cases, solution):
+    def exact(self, element: Any, cases: Any, solution: Any) -> Scalar:
         of = jnp.min if self._power < 0 else jnp.max
         return of(self.samples(element, cases, solution))
 
@@ -375,16 +377,16 @@ class Worst(AbstractSmooth):
         return _WORST[self.kind][1]
 
     @property
-    def as_objective(self):
+    def as_objective(self) -> "AbstractMeasure":
         return self if self._power == 1 else PowerOf(self, self._power)
 
     @property
-    def label(self):
+    def label(self) -> str:
         of = f" of {self.of}" if self.of else ""
         return f"{self.kind.replace('_', ' ')}{of}"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return _WORST[self.kind][0]
 
 
@@ -404,11 +406,11 @@ class PowerLoss(AbstractMeasure):
         return jnp.sum(hour_weights(cases) * lost)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "power loss"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "W"
 
 
@@ -421,9 +423,9 @@ class ShaftMass(AbstractMeasure):
         return jnp.sum(jnp.stack([jnp.sum(b.element_masses()) for b in beams]))
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "mass of the shafts"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "kg"

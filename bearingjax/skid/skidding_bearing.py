@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 
 from ..cases.cases import Cases, case_support, solve_case
 from ..design.checks import instance, number
+from ..element.bearing_element import BearingElement
 from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Real
@@ -51,10 +52,10 @@ class SkiddingBearing(AbstractSystem):
         check_places("SkiddingBearing", self.model.bearing, self.places)
 
     @property
-    def element(self):
+    def element(self) -> BearingElement[Any]:
         return self.model.element
 
-    def check(self, cases):
+    def check(self, cases: Cases) -> None:
         if cases.inner_speed is None and cases.outer_speed is None:
             raise ValueError(
                 "optimise: `cases` have no ring speeds; give `inner_speed` or"
@@ -74,7 +75,7 @@ class SkiddingBearing(AbstractSystem):
         whole = load_case(model.bearing, loaded.load, held, speed=speed)
         return end_state(model, solution, whole, speed, places)
 
-    def failure_message(self, solved):
+    def failure_message(self, solved: Any) -> str:
         if int(solved.result) == Result.GRID_MISFIT:
             count = self.model.bearing.n_elements
             return (
@@ -83,7 +84,7 @@ class SkiddingBearing(AbstractSystem):
             )
         return f"no end state of skidding: {solved.failure_message}"
 
-    def warnings(self, cases, solved):
+    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
         still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
         rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
         speed = jax.vmap(Speed)(*rings)
@@ -105,11 +106,11 @@ class FrictionTorque(AbstractMeasure):
         return jnp.sum(hour_weights(cases) * jnp.abs(torque))
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "friction torque"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return unit_of(SteadyMotion, "friction_torque")
 
 
@@ -125,11 +126,11 @@ class FrictionPower(AbstractMeasure):
         return jnp.sum(hour_weights(cases) * power)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "friction power"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return "W"
 
 
@@ -152,11 +153,11 @@ class CageSlip(AbstractLargest):
         return jnp.abs(_skidding(self, solution).cage_slip)
 
     @property
-    def label(self):
+    def label(self) -> str:
         return "slip of the cage"
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         return ""
 
 

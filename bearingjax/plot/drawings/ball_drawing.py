@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...design import AbstractBallBearing
-from ..style import COLOURS, RACEWAYS, SMALL, Axes
+from ..style import COLOURS, RACEWAYS, SMALL, Axes, Size
 from .ball_section import SHOULDER, ball_row, contour
 from .dimension import (
     AXIS,
@@ -23,7 +23,7 @@ _GAP = 0.07
 """Drawn gap of the clearance, ball diameters."""
 
 
-def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size) -> None:
+def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size: Size) -> None:
     """Draw the axial section of a row, to scale, with all its dimensions.
 
     Args:
@@ -145,7 +145,7 @@ def _offset(ax, bearing, high):
     return Label(label(bearing, "row_offset"), at)
 
 
-def ball_clearance_view(ax: Axes, bearing, size) -> None:
+def ball_clearance_view(ax: Axes, bearing: AbstractBallBearing, size: Size) -> None:
     """Draw the clearance of a row of balls, magnified.
 
     Args:

@@ -11,7 +11,7 @@ from ...design import (
     TaperedRollerBearing,
 )
 from ...design.abstract import nearest_entry
-from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Axes, towards_white
+from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Axes, Size, towards_white
 from .ball_drawing import clearance_title
 from .dimension import (
     ARROW,
@@ -38,7 +38,7 @@ PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 
 
 def dimensioned_rollers(
-    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size
+    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size: Size
 ) -> None:
     """Draw the axial section of a row, to scale, with all its dimensions.
 
@@ -137,7 +137,7 @@ def _angles(ax, bearing, parts):
 
 
 def roller_clearance_view(
-    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size
+    ax: Axes, bearing: AbstractRollerBearing, parts: Section, size: Size
 ) -> None:
     """Draw the clearance of a row of rollers, magnified.
 
@@ -170,7 +170,7 @@ def rib_view(
     bearing: AbstractRollerBearing,
     parts: Section,
     names: list[str],
-    size,
+    size: Size,
 ) -> None:
     """Draw a rib and the end of a roller, with the gap magnified.
 

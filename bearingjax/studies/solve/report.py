@@ -335,7 +335,7 @@ def _stated_columns(solution, shown, **formats) -> list[Column]:
     return columns
 
 
-def by_ring(name, values, *given):
+def by_ring(name: str, values: Any, *given: Any) -> list[Column]:
     """Return a column of the outer raceway and one of the inner.
 
     Args:
