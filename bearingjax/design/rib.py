@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Real, as_real
+from ..numerics.types import Real, Scalar, as_real
 from ..numerics.units import real
 from .checks import check_fields, instance, number, one_of
 

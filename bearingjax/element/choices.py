@@ -154,7 +154,7 @@ class RollerChoices(AbstractChoices):
     names = ("line_law", "quadrature", "kinematics")
 
     @classmethod
-    def of(
+    def of(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
         cls,
         rows: tuple[SetRow, ...],
         line_law: Any = None,
@@ -231,7 +231,7 @@ class BallChoices(AbstractChoices):
     names = ("point_law", "raceway_control", "kinematics")
 
     @classmethod
-    def of(
+    def of(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
         cls,
         rows: tuple[SetRow, ...],
         point_law: Any = None,

@@ -256,7 +256,7 @@ class Records:
     def batches(
         self,
         keys: Any,
-        progress: Callable[[int], Any] | None = None,
+        progress: Callable[[int, int], Any] | None = None,
         factors: Any = None,
     ) -> Iterator[tuple]:
         """Yield the number of bearings, accelerations and result codes by batch."""

@@ -22,7 +22,7 @@ from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.types import Scalar
 from ..numerics.units import unit
-from ..numerics.warning import warnings_of, warnings_of_cases
+from ..numerics.warning import Warning, warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem

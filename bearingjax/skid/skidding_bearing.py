@@ -14,6 +14,7 @@ from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Real
 from ..numerics.units import real, unit_of
+from ..numerics.warning import Warning
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
 from ..optimise.system import AbstractSystem
 from ..statics.load_case import load_case

@@ -1,5 +1,7 @@
 """Dimensions of one row of balls, on its axial section."""
 
+from typing import Any
+
 import numpy as np
 
 from ...design import AbstractBallBearing
@@ -145,7 +147,7 @@ def _offset(ax, bearing, high):
     return Label(label(bearing, "row_offset"), at)
 
 
-def ball_clearance_view(ax: Axes, bearing: AbstractBallBearing, size: Size) -> None:
+def ball_clearance_view(ax: Axes, bearing: Any, size: Size) -> None:
     """Draw the clearance of a row of balls, magnified.
 
     Args:

@@ -313,7 +313,7 @@ def _duty(
         duty = solve_duty(systems, lives)
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
-    rings = None
+    rings = lost = None
     if states:
         rings = np.array([[s.inner_ring, s.outer_ring] for s in states])
         rings = rings.transpose(0, 2, 1)
@@ -332,7 +332,7 @@ def _duty(
     if not failed.size:
         return duty, rings, ""
     label = Result(int(duty.result[failed[0]])).label
-    if states and lost[failed[0]]:
+    if lost is not None and lost[failed[0]]:
         label = states[failed[0]].failure_message
     many = f"{failed.size} of {len(cases)} cases not solved"
     return duty, rings, f"{many} (case {failed[0]}: {label})"
