@@ -1,15 +1,15 @@
 """`bearingjax life`."""
 
 import dataclasses
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..solve.solution_outcome import solution_outcome
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "life",
         help="rating life, of one load or of a load spectrum",

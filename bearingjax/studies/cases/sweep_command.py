@@ -3,7 +3,7 @@
 import shlex
 import signal
 import time
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from ..outputs import check_table
 from ..status import NOT_SOLVED, SOLVED
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "sweep",
         help="many cases: loads, displacements, speeds, designs",

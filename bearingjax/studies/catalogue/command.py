@@ -1,14 +1,14 @@
 """`bearingjax catalogue`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_drawing, add_json, add_plot
 from ..outputs import check_outputs, save, write_outputs
 from ..status import BAD_INPUT, SOLVED
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "catalogue",
         help="bearings by their designation",

@@ -1,13 +1,13 @@
 """`bearingjax examples`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands
 from ..status import SOLVED
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "examples",
         help="the scenes that come with the package",

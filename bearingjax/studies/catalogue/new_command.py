@@ -1,13 +1,13 @@
 """`bearingjax new`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands
 from ..status import SOLVED
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "new",
         help="a scene of a bearing of the catalogue or another, or of shafts",

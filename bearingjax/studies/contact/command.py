@@ -1,14 +1,14 @@
 """`bearingjax contact`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools
 from ..solve.solution_outcome import why_unsolved
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "contact",
         help="one roller on one raceway, its ends included",

@@ -1,14 +1,14 @@
 """`bearingjax noise`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "noise",
         help="vibration and noise from form errors",

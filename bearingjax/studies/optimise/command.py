@@ -1,13 +1,13 @@
 """`bearingjax optimise`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_quiet, add_report, add_scene
 from ..outcome import Outcome, Tools
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "optimise",
         help="the free numbers of a design that make a measure least",

@@ -1,6 +1,6 @@
 """`bearingjax solve`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_drawing, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools
@@ -8,8 +8,8 @@ from ..status import complain
 from .solution_outcome import solution_outcome
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "solve",
         help="where the rings go under load",

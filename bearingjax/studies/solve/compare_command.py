@@ -1,14 +1,14 @@
 """`bearingjax compare`."""
 
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_json, add_report, add_set, add_table
 from ..outcome import Outcome, Tools
 from .solution_outcome import why_unsolved
 
 
-def add(commands: Commands) -> None:
-    """Add the command and its options."""
+def add(commands: Commands) -> ArgumentParser:
+    """Add the command and its options; return its parser."""
     command = commands.add_parser(
         "compare",
         help="several designs side by side",
