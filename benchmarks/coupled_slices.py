@@ -118,7 +118,7 @@ def contact_of(law, row):
 def evaluated(contact, a, b):
     made = contact.table(RULE)
     got = response(contact, made, RULE, a, b)
-    return got.load, contact.along(made, jnp.zeros((1,)), a, b)[0]
+    return got.load, contact.load_along(made, jnp.zeros((1,)), a, b)[0]
 
 
 def errors(rows, law):

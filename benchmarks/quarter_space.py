@@ -57,7 +57,7 @@ from bench import benchmark
 from scipy.interpolate import CubicSpline
 from scipy.special import k0, k1
 
-from bearingjax.contact.halfspace.ends import WEDGE, Mirrored
+from bearingjax.contact.halfspace.ends import WEDGE, MirroredWeight
 
 POISSON = (0.0, 0.15, 0.3, 0.4, 0.5)
 TIMES = (1.0, 2.0, 5.0, 20.0)
@@ -164,7 +164,7 @@ def orders(edge):
 
 def given(poisson, x, y, other):
     """Factor that `FreeEnds` uses."""
-    weight = Mirrored(jnp.asarray(1.0), jnp.asarray(poisson), None)
+    weight = MirroredWeight(jnp.asarray(1.0), jnp.asarray(poisson), None)
     return weight(x, y, other, np)
 
 

@@ -19,13 +19,7 @@ from bearingjax.cases.sweep import SUMMARIES
 from bearingjax.files.quantity import KINDS, kind_of
 from bearingjax.numerics.labels import axes_of
 from bearingjax.numerics.types import as_real
-from bearingjax.numerics.units import (
-    field_metadata,
-    mixed,
-    shown_count,
-    unit,
-    unit_of,
-)
+from bearingjax.numerics.units import field_metadata, shown_count, unit, unit_of, units
 from bearingjax.statics.solution import BallSolution, RollerSolution
 
 MEASURES = [
@@ -197,7 +191,7 @@ def test_units_of_named_tuples_are_those_of_the_docstring(kind):
 
 def test_unit_of_a_named_tuple():
     class Example(NamedTuple):
-        force: Annotated[float, mixed("N", "N m")]
+        force: Annotated[float, units("N", "N m")]
         moments: Annotated[list, unit(("N", "N m"))]
         life: Annotated[float | None, unit("rev")]
         ratio: Annotated[float, unit("1")]

@@ -18,7 +18,7 @@ from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from ..statics.solution import Solution
 from ..statics.support import Support
 from ..statics.warning_sizes import unrestrained_directions
@@ -66,9 +66,9 @@ class SolvedCases(NamedTuple):
         n_solved: Number of solved cases.
     """
 
-    load: Annotated[Float[Array, "known 6"], mixed("N", "N m")]
+    load: Annotated[Float[Array, "known 6"], units("N", "N m")]
     other: Float[Array, "known k"]
-    displacement: Annotated[Float[Array, "known 6"], mixed("m", "rad")]
+    displacement: Annotated[Float[Array, "known 6"], units("m", "rad")]
     stiffness: Float[Array, "known 6 6"]
     usable: Bool[Array, " known"]
     n_solved: Int[Array, " 1"]

@@ -19,7 +19,7 @@ from typing import Annotated, Any, NamedTuple
 
 from ..design.bearing_set import rows_of
 from ..design.keywords import bearing_of
-from ..design.published import Published, rated_dimensions, with_published
+from ..design.published import PublishedRatings, rated_dimensions, with_published
 from ..fits.fit_limits import (
     CLEARANCE_CLASSES,
     MOTOR_CLASS,
@@ -262,7 +262,7 @@ class CatalogueEntry:
         bearing = bearing_of(self.design)
         return with_published(bearing, self.published(rows_of(bearing)[0].bearing))
 
-    def published(self, row: Any) -> Published | None:
+    def published(self, row: Any) -> PublishedRatings | None:
         """Return its ratings and axial factors for a row; `None`: not published.
 
         Of the axial factors of a self-aligning ball bearing Y2 is printed; the others
@@ -276,7 +276,9 @@ class CatalogueEntry:
         given = self.dynamic_capacity, self.static_capacity, self.fatigue_load_limit
         y2 = self.printed.get("axial_factor", 0.0) / 0.65
         factors = self.printed.get("axial_factors", (0.42 * y2, 0.65 * y2, 0.44 * y2))
-        return Published([x or 0.0 for x in given], factors, rated_dimensions(row))
+        return PublishedRatings(
+            [x or 0.0 for x in given], factors, rated_dimensions(row)
+        )
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:

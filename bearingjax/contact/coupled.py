@@ -115,13 +115,13 @@ class CoupledContact(AbstractLineContact):
     def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
         return self.line.drop(xi)
 
-    def pressed(self, approach: Scalar) -> Scalar:
+    def approximate_load(self, approach: Scalar) -> Scalar:
         # Of the logarithm that grows with the length, a usual value.
         return jnp.pi * self.modulus * self.line.length * approach / 10.0
 
     def table(self, quadrature: AbstractQuadrature) -> Any:
         n, dtype = self.radius.shape[0], self.line.length.dtype
-        count = _OF_A_TABLE if self.line.measured else _SAMPLES
+        count = _OF_A_TABLE if self.line.has_table else _SAMPLES
         nodes, weights = np.polynomial.legendre.leggauss(count)
         at = _middles(n, dtype)[None] + jnp.asarray(nodes / n, dtype)[:, None]
         drop = jnp.asarray(0.5 * weights, dtype) @ self.drop(at)
@@ -140,7 +140,7 @@ class CoupledContact(AbstractLineContact):
         held, curved = stop_gradient(loads) > 0, _curvature(table, loads)
         columns = jnp.stack([jnp.ones_like(xi), xi], axis=1)
         inside = jnp.where(held[:, None], columns, 0.0)
-        bent = _divide(_free(table.matrix, curved, held), inside)
+        bent = _divide(_held_stiffness(table.matrix, curved, held), inside)
         aa, ab, bb = (inside[:, i] @ bent[:, k] for i, k in ((0, 0), (0, 1), (1, 1)))
         given = a + b * xi - table.drop
         scale = jnp.pi * self.modulus * self.line.length / table.drop.shape[0]
@@ -150,10 +150,10 @@ class CoupledContact(AbstractLineContact):
             scale * jnp.stack([aa, ab, bb]),
         )
 
-    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
+    def contact_state(self, table: Any, a: Scalar, b: Scalar) -> Any:
         return jnp.pi * self.modulus * _solve_slices(table, a, b)
 
-    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
+    def load(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
         return jnp.interp(xi, _middles(carried.shape[0], xi.dtype), carried)
 
     def summits(
@@ -180,7 +180,7 @@ def _influence(n, length, smoothing):
     return lags[np.abs(place[:, None] - place[None])]
 
 
-def _own(table, loads):
+def _own_approach(table, loads):
     """Approach of a slice by its own load, added to the smoothed influence [m]."""
     some = jnp.minimum(loads, table.limit)
     loaded = some > 0
@@ -189,7 +189,7 @@ def _own(table, loads):
 
 
 def _curvature(table, loads):
-    """Derivative of `_own`, zero above the limit."""
+    """Derivative of `_own_approach`, zero above the limit."""
     below = (loads > 0) & (loads < table.limit)
     return jnp.where(below, jnp.log(table.limit / jnp.where(below, loads, 1.0)), 0.0)
 
@@ -198,11 +198,11 @@ def _strain(table, loads):
     """Strain energy, over π E* and the length of a slice [m²]."""
     some = jnp.minimum(loads, table.limit)
     more = loads - some
-    own = 0.5 * some * _own(table, some) + 0.25 * some**2 + table.limit * more
+    own = 0.5 * some * _own_approach(table, some) + 0.25 * some**2 + table.limit * more
     return jnp.sum(own) + 0.5 * loads @ (table.matrix @ loads)
 
 
-def _free(matrix, curvature, held):
+def _held_stiffness(matrix, curvature, held):
     """Stiffness matrix of the slices that are held, the identity for the others."""
     both = held[:, None] & held[None]
     n = matrix.shape[0]
@@ -214,9 +214,9 @@ def _divide(matrix, right):
     return solve_any(matrix, right, "positive")
 
 
-def _rest(table, loads, given):
+def _remaining_overlap(table, loads, given):
     """Overlap that the loads leave, negative: still overlapping [m]."""
-    return table.matrix @ loads + _own(table, loads) - given
+    return table.matrix @ loads + _own_approach(table, loads) - given
 
 
 class _State(NamedTuple):
@@ -235,11 +235,11 @@ def _solve_slices(table, a, b):
     def balance(loads, args):
         table, a, b, held = args
         given = a + b * _middles(loads.shape[0], loads.dtype) - table.drop
-        return jnp.where(held > 0, _rest(table, loads, given), loads)
+        return jnp.where(held > 0, _remaining_overlap(table, loads, given), loads)
 
     def correction(_, loads, change, args):
         table, _, _, held = args
-        matrix = _free(table.matrix, _curvature(table, loads), held > 0)
+        matrix = _held_stiffness(table.matrix, _curvature(table, loads), held > 0)
         return -_divide(matrix, change)
 
     held = jnp.where(loads > 0, 1.0, 0.0)
@@ -257,7 +257,7 @@ def _newton(table, a, b):
     goal = (1e-11 if a.dtype == jnp.float64 else 1e-5) * size
 
     def state(loads, damping, steps):
-        rest = _rest(table, loads, given)
+        rest = _remaining_overlap(table, loads, given)
         off = jnp.where(loads > 0, jnp.abs(rest), jnp.maximum(-rest, 0.0))
         energy = _strain(table, loads) - loads @ given
         return _State(loads, rest, energy, jnp.max(off), damping, steps)
@@ -266,7 +266,7 @@ def _newton(table, a, b):
         free = (old.loads > 0) | (old.rest < 0)
         # Where a slice enters, the logarithm has no slope yet.
         near = jnp.where(old.loads > 0, old.loads, 1e-3 * jnp.max(old.loads))
-        matrix = _free(table.matrix, _curvature(table, near), free)
+        matrix = _held_stiffness(table.matrix, _curvature(table, near), free)
         down = _divide(matrix, jnp.where(free, old.rest, 0.0))
         new = state(
             jnp.maximum(old.loads - old.damping * down, 0.0),
@@ -277,12 +277,12 @@ def _newton(table, a, b):
         stay = old._replace(damping=0.25 * old.damping, steps=old.steps + 1)
         return jax.tree.map(lambda x, y: jnp.where(better, x, y), new, stay)
 
-    def going(state):
+    def continues(state):
         return (state.residual > goal) & (state.steps < _STEPS)
 
     reach = jnp.sum(table.matrix, axis=1) + 3.0
     one = jnp.ones((), a.dtype)
     begin = state(jnp.maximum(given, 0.0) / reach, one, jnp.asarray(0))
-    end = lax.while_loop(going, step, begin)
+    end = lax.while_loop(continues, step, begin)
     # Not "> goal": NaN stays NaN.
     return jnp.where(end.residual <= goal, end.loads, jnp.nan)

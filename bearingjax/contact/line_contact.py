@@ -74,7 +74,7 @@ class AbstractLineContact(eqx.Module):
         """Material removed from both bodies at ξ [m]."""
 
     @abc.abstractmethod
-    def pressed(self, approach: Scalar) -> Scalar:
+    def approximate_load(self, approach: Scalar) -> Scalar:
         """Approximate load of a roller without profile at an even approach [N]."""
 
     @abc.abstractmethod
@@ -88,12 +88,12 @@ class AbstractLineContact(eqx.Module):
         """Energy, load and stiffness; `response` adds the derivative rule."""
 
     @abc.abstractmethod
-    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
-        """Data of a solved contact that `at` takes."""
+    def contact_state(self, table: Any, a: Scalar, b: Scalar) -> Any:
+        """Data of a solved contact that `load_at` takes."""
 
     @abc.abstractmethod
-    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
-        """Load per length at ξ [N/m], from the result of `carried`."""
+    def load(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
+        """Load per length at ξ [N/m], from the result of `contact_state`."""
 
     @abc.abstractmethod
     def summits(
@@ -102,17 +102,17 @@ class AbstractLineContact(eqx.Module):
         """Positions ξ that include that of the largest pressure, both ends first.
 
         Args:
-            carried: As in `at`.
+            carried: As in `load_at`.
             scan: Ascending positions from -1 to 1, evenly spaced.
             weight: Relative radius ρ^(-9/10) there: times the approach, this is
                 largest where the pressure is.
         """
 
-    def along(
+    def load_along(
         self, table: Any, xi: Float[Array, " point"], a: Scalar, b: Scalar
     ) -> Float[Array, " point"]:
         """Load per length at ξ [N/m]."""
-        return self.at(self.carried(table, a, b), xi)
+        return self.load(self.contact_state(table, a, b), xi)
 
 
 class AbstractSliceLaw(AbstractLineLaw):
@@ -211,8 +211,8 @@ class LineContact(AbstractLineContact):
         """Approach at ξ, negative where the bodies are apart [m]."""
         if not self.exact:
             return a + b * xi - self.drop(xi)
-        arc = _Arc.of(self, a, b)
-        beyond = arc.first + arc.end(self) * xi - _hidden((self, arc.lift), xi)
+        arc = _Arc.from_line(self, a, b)
+        beyond = arc.first + arc.end(self) * xi - _hidden_depth((self, arc.lift), xi)
         return arc.approach(beyond, _points(self, xi)[2])[0]
 
     def kinks(self) -> tuple[Scalar, ...]:
@@ -233,7 +233,7 @@ class LineContact(AbstractLineContact):
         return self.roller_profile.arcs and self.raceway_profile.arcs
 
     @property
-    def measured(self) -> bool:
+    def has_table(self) -> bool:
         """Whether a profile is a table. Static."""
         profiles = self.roller_profile, self.raceway_profile
         return any(profile.knots() is not None for profile in profiles)
@@ -247,7 +247,7 @@ class LineContact(AbstractLineContact):
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)
 
-    def pressed(self, approach: Scalar) -> Scalar:
+    def approximate_load(self, approach: Scalar) -> Scalar:
         return self.length * self.line_load(approach)
 
     def table(self, quadrature: AbstractQuadrature) -> Any:
@@ -278,7 +278,7 @@ class LineContact(AbstractLineContact):
 
     def _intervals(self):
         """Ends ξ of the intervals in which measured profiles are smooth, or `None`."""
-        if not self.measured:
+        if not self.has_table:
             return None
         profiles = self.roller_profile, self.raceway_profile
         knots = [k for k in (p.knots() for p in profiles) if k is not None]
@@ -291,10 +291,10 @@ class LineContact(AbstractLineContact):
             parts.append(jnp.stack(kinks))
         return stop_gradient(jnp.sort(jnp.clip(jnp.concatenate(parts), -1.0, 1.0)))
 
-    def carried(self, table: Any, a: Scalar, b: Scalar) -> Any:
+    def contact_state(self, table: Any, a: Scalar, b: Scalar) -> Any:
         return a, b
 
-    def at(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
+    def load(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
         a, b = carried
         return self.line_load(self.approach(a, b, xi))
 
@@ -403,7 +403,7 @@ class _Arc(NamedTuple):
     first: Annotated[Scalar, unit("m")]
 
     @classmethod
-    def of(cls, line: LineContact, a: Scalar, b: Scalar) -> "_Arc":
+    def from_line(cls, line: LineContact, a: Scalar, b: Scalar) -> "_Arc":
         assert line.arc_radii is not None
         curvature, sine = 1.0 / line.arc_radii[1], 2.0 * b / line.length
         grown, cosine = 1.0 + curvature * a, jnp.sqrt(1.0 - sine * sine)
@@ -431,7 +431,7 @@ def _points(line, xi):
     return s, roller + sagitta(s, line.arc_radii[0]), raceway
 
 
-def _hidden(args, xi):
+def _hidden_depth(args, xi):
     line, lift = args
     (s, lost, raceway), curvature = _points(line, xi), 1.0 / line.arc_radii[1]
     more = raceway * (1.0 + 0.5 * curvature * raceway)
@@ -440,12 +440,12 @@ def _hidden(args, xi):
 
 def _exact_integrals(line, quadrature, a, b) -> Response:
     """∫ φ ds and its derivatives, of an approach that is not affine in a and b."""
-    arc, arcs, half_length = _Arc.of(line, a, b), line.arcs, 0.5 * line.length
+    arc, arcs, half_length = _Arc.from_line(line, a, b), line.arcs, 0.5 * line.length
     args = line, arc.lift
     table = quadrature.table(
-        partial(_hidden, args), line.kinks(), line.length.dtype, arcs
+        partial(_hidden_depth, args), line.kinks(), line.length.dtype, arcs
     )
-    nodes = quadrature.nodes(_hidden, args, table, arc.first, arc.end(line), arcs)
+    nodes = quadrature.nodes(_hidden_depth, args, table, arc.first, arc.end(line), arcs)
     tau, weight = (jnp.asarray(x, a.dtype) for x in quadrature.reference())
     xi = nodes.middle[:, None] + nodes.half[:, None] * tau[None]
     s, lost, raceway = _points(line, xi)

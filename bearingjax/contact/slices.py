@@ -87,7 +87,7 @@ def slices(
     first = jnp.min(line.drop(xi) - tilt * position)
     even = (load / (line.constant * length)) ** (EXPONENT[1] / EXPONENT[0])
 
-    def missing(approach, args):
+    def load_error(approach, args):
         line, made, load, end = args
         found = response(line, made, rule, approach, end)
         return load - found.load[0], found.stiffness[0]
@@ -97,22 +97,22 @@ def slices(
 
     def step(state):
         approach, _, steps = state
-        rest, slope = missing(approach, frozen)
+        rest, slope = load_error(approach, frozen)
         change = rest / jnp.where(slope > 0, slope, 1.0)
         return approach + change, change, steps + 1
 
-    def unfinished(state):
+    def continues(state):
         _, change, steps = state
         return (jnp.abs(change) > _ENOUGH * far) & (steps < _STEPS)
 
     begin = step((stop_gradient(first) + even, even, 0))
-    approach, change, _ = lax.while_loop(unfinished, step, begin)
+    approach, change, _ = lax.while_loop(continues, step, begin)
     # Round-off may keep the last digits moving; where more than half of them do, it is
     # no answer.
     half = jnp.finfo(change.dtype).eps ** 0.5
     approach = jnp.where(jnp.abs(change) <= half * far, approach, jnp.nan)
-    approach = attach_roots(lambda x, args: missing(x, args)[0], approach, args)
-    line_load = line.along(made, xi, approach, end)
+    approach = attach_roots(lambda x, args: load_error(x, args)[0], approach, args)
+    line_load = line.load_along(made, xi, approach, end)
     radius = contact.relative_radius(position)
     pressure = peak_pressure(line_load, radius, contact.modulus)
     return Slices(approach, line_load, pressure)

@@ -11,7 +11,7 @@ from ..numerics.types import Scalar
 from ..numerics.warning import Warning
 from .checks import count, instance, number
 from .material import Material
-from .published import Published
+from .published import PublishedRatings
 
 
 class AbstractBearing(eqx.Module):
@@ -52,7 +52,7 @@ class AbstractBearing(eqx.Module):
     raceway_deviation: eqx.AbstractVar[Float[Array, "element 2 3"] | None]
     material: eqx.AbstractVar[Material]
     ring_material: eqx.AbstractVar[Material | None]
-    published: eqx.AbstractVar[Published | None]
+    published: eqx.AbstractVar[PublishedRatings | None]
     noun: eqx.AbstractClassVar[str]
     is_thrust: eqx.AbstractClassVar[bool]
     rated_fields: eqx.AbstractClassVar[tuple[str, ...]]
@@ -194,7 +194,7 @@ class AbstractBearing(eqx.Module):
         number(self, "first_azimuth")
         instance(self, "material", Material)
         instance(self, "ring_material", Material, None)
-        instance(self, "published", Published, None)
+        instance(self, "published", PublishedRatings, None)
 
 
 def nearest_entry(table: Mapping[type, Any], instance: Any) -> Any:

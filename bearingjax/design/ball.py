@@ -19,10 +19,10 @@ from jaxtyping import Array, Float
 from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
 from .abstract import AbstractBearing
-from .checks import check, check_fields, concrete, in_range, number
+from .checks import check, check_fields, floats, in_range, number
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
-from .published import Published
+from .published import PublishedRatings
 
 
 class Groove(NamedTuple):
@@ -145,7 +145,7 @@ class AbstractBallBearing(AbstractBearing):
     )
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
-    published: Published | None = eqx.field(default=None, kw_only=True)
+    published: PublishedRatings | None = eqx.field(default=None, kw_only=True)
 
     @property
     def n_elements(self) -> int:
@@ -268,7 +268,7 @@ class AbstractBallBearing(AbstractBearing):
                 " over the ball diameter, such as 0.52."
             )
         number(self, name)
-        numbers = concrete(value)
+        numbers = floats(value)
         if numbers is not None:
             allowed = (
                 "above 0.5 and below 1: groove radius over ball diameter, such as 0.52"
@@ -281,7 +281,7 @@ class AbstractBallBearing(AbstractBearing):
         in_range(self, name, 0.0, self.ball_diameter)
 
     def _check_row(self):
-        numbers = concrete(
+        numbers = floats(
             self.pitch_diameter, self.ball_diameter, self.free_contact_angle
         )
         if numbers is None:
@@ -304,7 +304,7 @@ class AbstractBallBearing(AbstractBearing):
     def _check_deviation(self):
         what = "the diameter of each ball less `ball_diameter` in m"
         value = check_deviation(self, "ball_deviation", self.n_balls, what)
-        numbers = concrete(self.ball_diameter, *self.centre_distances)
+        numbers = floats(self.ball_diameter, *self.centre_distances)
         if numbers is None:
             return
         ball, *distances = numbers

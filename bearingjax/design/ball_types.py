@@ -12,7 +12,7 @@ from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real
 from .abstract import AbstractBearing
 from .ball import AbstractBallBearing, Groove
-from .checks import check, check_fields, concrete, in_range, number
+from .checks import check, check_fields, floats, in_range, number
 
 
 class DeepGrooveBallBearing(AbstractBallBearing):
@@ -101,7 +101,7 @@ class DeepGrooveBallBearing(AbstractBallBearing):
         if clearance is None:
             return
         number(self, "radial_internal_clearance")
-        numbers = concrete(clearance, self.centre_distance)
+        numbers = floats(clearance, self.centre_distance)
         if numbers is not None:
             most = 2.0 * numbers[1]
             allowed = (
@@ -165,7 +165,7 @@ class AngularContactBallBearing(AbstractBallBearing):
 
     def with_clearance(self, clearance: Scalar) -> Any:
         quarter = clearance / (4.0 * self.centre_distance)
-        known = concrete(clearance, quarter)
+        known = floats(clearance, quarter)
         if known is not None:
             allowed = (
                 f"above 0 and below {0.5 * known[0] / known[1]:.6g} m"
@@ -324,7 +324,7 @@ class FourPointBallBearing(AbstractBallBearing):
         _check_rated(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
-        numbers = concrete(clearance, self.centre_distance, self.shim_angle)
+        numbers = floats(clearance, self.centre_distance, self.shim_angle)
         if numbers is not None:
             most = 2.0 * numbers[1] * math.cos(numbers[2])
             allowed = (
@@ -413,7 +413,7 @@ class SelfAligningBallRow(AbstractBallBearing):
         check_fields(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
-        numbers = concrete(clearance, self.centre_distances[1], self.free_cosine)
+        numbers = floats(clearance, self.centre_distances[1], self.free_cosine)
         if numbers is not None:
             most = 4.0 * numbers[1] / numbers[2]
             allowed = (

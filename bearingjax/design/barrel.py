@@ -10,7 +10,7 @@ import numpy as np
 from ..numerics.types import Real, RealOrNone, Scalar
 from ..numerics.units import real
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
-from .checks import check, check_fields, concrete, in_range, is_traced, number, positive
+from .checks import check, check_fields, floats, in_range, is_traced, number, positive
 from .profile import sagitta
 
 _FAR = 0.01
@@ -77,7 +77,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
                 f"{type(self).__name__}: `outer_raceway_radius` is None; it must be a"
                 " number in m: only that of a sphere follows from other sizes."
             )
-        numbers = concrete(*self.arc_radii)
+        numbers = floats(*self.arc_radii)
         if numbers is None:
             return
         for name, radius in zip(("outer", "inner"), numbers[1:], strict=True):
@@ -89,7 +89,7 @@ class AbstractBarrelBearing(AbstractRollerBearing):
             check(self, key, radius >= numbers[0], allowed, radius, "m")
 
     def end_drop(self) -> float:
-        numbers = concrete(self.roller_profile_radius, self.roller_length)
+        numbers = floats(self.roller_profile_radius, self.roller_length)
         if numbers is None or not np.isfinite(numbers[0]):
             return 0.0
         # In Python's numbers: under `vmap` what JAX computes is traced, even of these.
@@ -160,7 +160,7 @@ class _AbstractSphere(AbstractBarrelBearing):
     def __check_init__(self):
         if self.outer_raceway_radius is None:
             return
-        numbers = concrete(self.outer_raceway_radius, self.sphere_radius)
+        numbers = floats(self.outer_raceway_radius, self.sphere_radius)
         if numbers is not None and np.isfinite(numbers[1]):
             allowed = (
                 f"{numbers[1]:.6g} m to {100 * _FAR:g} %, which puts the centre of the"
@@ -367,7 +367,7 @@ class TaperedThrustRollerBearing(TaperedRollerBearing):
 
     def __check_init__(self):
         outer = self.axis_angle + self.half_angle
-        numbers = concrete(outer)
+        numbers = floats(outer)
         if numbers is not None:
             allowed = (
                 "above 45° and at most 90° with `roller_axis_angle` added: the contact"
@@ -420,7 +420,7 @@ class CrossedRollerRow(AbstractRollerBearing):
         even = self.n_rollers % 2 == 0
         allowed = "even: every other roller is turned"
         check(self, "n_rollers", even, allowed, self.n_rollers, "rollers")
-        numbers = concrete(self.roller_length, self.roller_diameter)
+        numbers = floats(self.roller_length, self.roller_diameter)
         if numbers is not None:
             allowed = f"at most the roller diameter, {numbers[1]:.6g} m"
             check(self, "roller_length", numbers[0] <= numbers[1], allowed)
@@ -457,11 +457,11 @@ def pitch_on_sphere(
 
 def _radius(owner, name):
     value = getattr(owner, name)
-    numbers = concrete(value)
+    numbers = floats(value)
     if numbers is not None and numbers[0] == np.inf:
         return
     positive(owner, name)
-    length = concrete(owner.roller_length)
+    length = floats(owner.roller_length)
     if numbers is not None and length is not None:
         least = 0.5 * length[0]
         allowed = f"above half the roller length, {least:.6g} m"
@@ -470,7 +470,7 @@ def _radius(owner, name):
 
 def _no_clearance(owner):
     number(owner, "radial_internal_clearance")
-    numbers = concrete(owner.radial_internal_clearance)
+    numbers = floats(owner.radial_internal_clearance)
     if numbers is not None:
         allowed = "0 m: a thrust bearing of one direction has no clearance"
         check(owner, "radial_internal_clearance", numbers[0] == 0.0, allowed)

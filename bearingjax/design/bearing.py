@@ -12,11 +12,11 @@ from ..numerics.types import Real, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
-from .checks import check, check_fields, concrete, in_range, instance, number
+from .checks import check, check_fields, floats, in_range, instance, number
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
-from .published import Published
+from .published import PublishedRatings
 from .rib import Ribs
 
 
@@ -113,7 +113,7 @@ class AbstractRollerBearing(AbstractBearing):
     ribs: Ribs = eqx.field(default_factory=Ribs, kw_only=True)
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
-    published: Published | None = eqx.field(default=None, kw_only=True)
+    published: PublishedRatings | None = eqx.field(default=None, kw_only=True)
 
     @property
     def axis_angle(self) -> Scalar:
@@ -232,7 +232,7 @@ class AbstractRollerBearing(AbstractBearing):
     def _check_deviation(self):
         what = "the mean diameter of each roller less `roller_diameter` in m"
         value = check_deviation(self, "roller_deviation", self.n_elements, what)
-        numbers = concrete(self.roller_diameter)
+        numbers = floats(self.roller_diameter)
         if numbers is None:
             return
         diameter = numbers[0]
@@ -244,7 +244,7 @@ class AbstractRollerBearing(AbstractBearing):
 
     def _check_rib(self, name):
         rib = getattr(self.ribs, name)
-        numbers = concrete(
+        numbers = floats(
             rib.contact_height,
             rib.end_radius,
             self.roller_diameter,
@@ -265,7 +265,7 @@ class AbstractRollerBearing(AbstractBearing):
         )
 
     def _check_row(self):
-        numbers = concrete(
+        numbers = floats(
             self.pitch_diameter,
             self.roller_diameter,
             self.roller_length,
@@ -339,7 +339,7 @@ class NeedleRollerBearing(AbstractRollerBearing):
     about: ClassVar[str] = "long thin rollers, mostly without ribs"
 
     def __check_init__(self):
-        numbers = concrete(self.roller_length, self.roller_diameter)
+        numbers = floats(self.roller_length, self.roller_diameter)
         if numbers is not None:
             length, least = numbers[0], 2.5 * numbers[1]
             allowed = f"at least 2.5 roller diameters, {least:.6g} m, for a needle"
@@ -413,7 +413,7 @@ class TaperedRollerBearing(AbstractRollerBearing):
     @property
     def warnings(self) -> tuple[Warning, ...]:
         """A warning if the apexes lie apart; empty where its numbers are traced."""
-        numbers = concrete(*jax.tree.leaves(_angles_and_size(self)))
+        numbers = floats(*jax.tree.leaves(_angles_and_size(self)))
         if numbers is None or numbers[1] == 0.0:
             return ()
         axis, half, pitch, diameter = numbers

@@ -11,8 +11,8 @@ from ..numerics.units import real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
-from .checks import concrete, instance, non_negative, number, of_class, positive
 from .checks import count as whole
+from .checks import floats, instance, non_negative, number, of_class, positive
 from .overlap import overlap
 
 
@@ -199,7 +199,7 @@ class BearingSet(eqx.Module):
                 f"BearingSet: `row` is a {type(row).__name__}; it must be a"
                 " SelfAligningBallRow or a SphericalRollerRow."
             )
-        return cls._mirrored(row, staggered)
+        return cls._with_mirrored(row, staggered)
 
     @classmethod
     def crossed(cls, row: CrossedRollerRow) -> "BearingSet":
@@ -212,10 +212,10 @@ class BearingSet(eqx.Module):
             TypeError: If `row` is no `CrossedRollerRow`.
         """
         of_class(cls, "row", row, CrossedRollerRow, "a CrossedRollerRow")
-        return cls._mirrored(row, True)
+        return cls._with_mirrored(row, True)
 
     @classmethod
-    def _mirrored(cls, row, staggered):
+    def _with_mirrored(cls, row, staggered):
         turned = jnp.pi / row.n_elements if staggered else 0.0
         first = row.first_azimuth + turned
         other = eqx.tree_at(lambda r: r.first_azimuth, row, first)
@@ -244,7 +244,7 @@ class BearingSet(eqx.Module):
                     " SetRows."
                 )
             # Two spheres about different centres could not tilt together.
-            numbers = concrete(row.position)
+            numbers = floats(row.position)
             aligning = row.bearing.aligns
             if aligning and numbers is not None and numbers[0] != 0.0:
                 raise ValueError(

@@ -25,7 +25,7 @@ def is_traced(value: Any) -> bool:
     return isinstance(value, Tracer)
 
 
-def concrete(*values: Any) -> list[float] | None:
+def floats(*values: Any) -> list[float] | None:
     """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
     if any(is_traced(v) or not is_real(v) for v in values):
         return None
@@ -48,7 +48,7 @@ def check(owner: Any, name: str, ok: Any, allowed: str, *given: Any) -> None:
     value, unit = given or _field(owner, name)
     if is_traced(ok) or is_traced(value) or bool(np.all(ok)):
         return
-    shown = _with_unit(_show(value), unit)
+    shown = _with_unit(_format_value(value), unit)
     raise ValueError(f"{_title(owner)}: `{name}` is {shown}; it must be {allowed}.")
 
 
@@ -150,7 +150,7 @@ def in_range(
 def _check_bounds(owner, name, low, high, include_low, given):
     value, unit = given or _field(owner, name)
     number(owner, name, value, unit)
-    numbers = concrete(value, low, high)
+    numbers = floats(value, low, high)
     if numbers is None:
         return
     v, least, most = numbers
@@ -176,7 +176,7 @@ def check_fields(owner: Any) -> None:
         if not ends:
             continue
         number(owner, field.name)
-        known = concrete(value)
+        known = floats(value)
         if known is not None:
             inside = all(_INSIDE[name](known[0], end) for name, end in ends.items())
             words = " and ".join(f"{_WORDS[k]} {end:.6g}" for k, end in ends.items())
@@ -304,7 +304,7 @@ def _with_unit(words: str, unit: str) -> str:
     return f"{words} {unit}".strip()
 
 
-def _show(value) -> str:
+def _format_value(value) -> str:
     if is_traced(value):
         return "a traced value"
     array = np.asarray(value)

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.units import unit, unit_of
-from .checks import check, concrete, finite, is_real, is_traced, of_shape
+from .checks import check, finite, floats, is_real, is_traced, of_shape
 
 
 class Deviation(NamedTuple):
@@ -60,7 +60,7 @@ def largest_deviation(bearing: Any) -> float | None:
     Args:
         bearing: A single row.
     """
-    numbers = concrete(*bearing.deviation_bounds)
+    numbers = floats(*bearing.deviation_bounds)
     return None if numbers is None else min(numbers)
 
 
@@ -129,7 +129,7 @@ def check_spacing(owner: Any, count: int, diameter: float) -> None:
     """
     what = "the azimuth of each rolling element less that of even spacing in rad"
     value = check_deviation(owner, "azimuth_deviation", count, what)
-    numbers = concrete(owner.pitch_diameter)
+    numbers = floats(owner.pitch_diameter)
     if value is None or numbers is None or count < 2:
         return
     least = 2.0 * np.arcsin(min(1.0, diameter / numbers[0]))

@@ -41,7 +41,7 @@ class Surface(NamedTuple):
     half_width: Annotated[Scalar | None, unit("m")] = None
     pressure: Scalar | None = None
 
-    def bridged(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
+    def bridged_share(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
         """Share of waves that acts on a contact, the mean over its pressure (n,) [1].
 
         Args:
@@ -144,7 +144,7 @@ class Harmonics(AbstractShape):
         return cls(tuple(order), amplitude * share, phase)
 
     @classmethod
-    def measured(cls, points: Any, highest: int | None = None) -> "Harmonics":
+    def from_heights(cls, points: Any, highest: int | None = None) -> "Harmonics":
         """Waves of heights that were measured around a part.
 
         Args:
@@ -180,7 +180,7 @@ class Harmonics(AbstractShape):
         # Orders last, as far as the angles have axes.
         shape = (1,) * angle.ndim + (-1,)
         order = jnp.asarray(self.order, angle.dtype)
-        left, order = surface.bridged(order).reshape(shape), order.reshape(shape)
+        left, order = surface.bridged_share(order).reshape(shape), order.reshape(shape)
         amplitude, phase = self.amplitude.reshape(shape), self.phase.reshape(shape)
         waves = left * amplitude * jnp.cos(order * angle[..., None] + phase)
         return jnp.sum(waves, axis=-1)
@@ -236,7 +236,7 @@ class Table(AbstractShape):
     rows: Float[Array, "n 5"]
 
     @classmethod
-    def of(
+    def from_shapes(
         cls, shapes: tuple[AbstractShape, ...], surface: Surface, points: int
     ) -> tuple[AbstractShape, ...]:
         """Replace all shapes except spalls by one table of their sum, if there are any.
@@ -252,10 +252,10 @@ class Table(AbstractShape):
             return spalls
         angle = 2.0 * jnp.pi / points * jnp.arange(points, dtype=surface.radius.dtype)
 
-        def one(angle):
+        def sum_shapes(angle):
             return total(shapes, angle, surface)
 
-        of_each = jax.value_and_grad(one)
+        of_each = jax.value_and_grad(sum_shapes)
         height, slope = jax.lax.map(of_each, angle, batch_size=min(points, 512))
         slope = 2.0 * jnp.pi / points * slope
         rise, end = jnp.roll(height, -1) - height, jnp.roll(slope, -1)
@@ -317,15 +317,19 @@ class RacewayErrors(eqx.Module):
         """All shapes."""
         return (*self.axial, *self.outwards, *self.raised)
 
-    def at(self, angle: Float[Array, "..."], surface: Surface) -> Float[Array, "... 3"]:
+    def evaluate(
+        self, angle: Float[Array, "..."], surface: Surface
+    ) -> Float[Array, "... 3"]:
         """Axial, outwards and raised at angles around the ring (..., 3) [m]."""
         all_three = self.axial, self.outwards, self.raised
         return jnp.stack([total(s, angle, surface) for s in all_three], axis=-1)
 
-    def tabulated(self, surface: Surface, points: int) -> "RacewayErrors":
-        """Return the errors as tables; arguments as in `Table.of`."""
+    def as_tables(self, surface: Surface, points: int) -> "RacewayErrors":
+        """Return the errors as tables; arguments as in `Table.from_shapes`."""
         all_three = self.axial, self.outwards, self.raised
-        return RacewayErrors(*(Table.of(s, surface, points) for s in all_three))
+        return RacewayErrors(
+            *(Table.from_shapes(s, surface, points) for s in all_three)
+        )
 
 
 class FormErrors(eqx.Module):
@@ -368,7 +372,7 @@ class FormErrors(eqx.Module):
         """
         if not (self.outer.shapes or self.inner.shapes or self.elements):
             return
-        most, surfaces = largest_deviation(bearing), Surfaces.of(bearing)
+        most, surfaces = largest_deviation(bearing), Surfaces.from_bearing(bearing)
         parts = {
             "outer raceway": (self.outer.shapes, surfaces.outer),
             "inner raceway": (self.inner.shapes, surfaces.inner),
@@ -408,22 +412,22 @@ class FormErrors(eqx.Module):
         """
         found = jnp.stack(
             [
-                self.outer.at(azimuth - outer, surfaces.outer),
-                self.inner.at(azimuth - inner, surfaces.inner),
+                self.outer.evaluate(azimuth - outer, surfaces.outer),
+                self.inner.evaluate(azimuth - inner, surfaces.inner),
             ],
             axis=1,
         )
         if not self.elements:
             return found
 
-        def one(shapes, rolled):
+        def element_deviation(shapes, rolled):
             # It turns against the inner ring; the raceways stand opposite.
             angles = jnp.stack([-rolled, jnp.pi - rolled])
             return total(shapes, angles, surfaces.element)
 
-        return found.at[:, :, 2].add(jax.vmap(one)(self.elements, rolled))
+        return found.at[:, :, 2].add(jax.vmap(element_deviation)(self.elements, rolled))
 
-    def tabulated(self, surfaces: "Surfaces", points: int = 4096) -> "FormErrors":
+    def as_tables(self, surfaces: "Surfaces", points: int = 4096) -> "FormErrors":
         """Return the errors as tables, for many evaluations.
 
         Args:
@@ -431,12 +435,12 @@ class FormErrors(eqx.Module):
             points: Number of angles around each part, of elements an eighth. Static.
         """
 
-        def one(shapes):
-            return Table.of(shapes, surfaces.element, points // 8)
+        def tabulate_element(shapes):
+            return Table.from_shapes(shapes, surfaces.element, points // 8)
 
-        elements = jax.vmap(one)(self.elements) if self.elements else ()
-        outer = self.outer.tabulated(surfaces.outer, points)
-        inner = self.inner.tabulated(surfaces.inner, points)
+        elements = jax.vmap(tabulate_element)(self.elements) if self.elements else ()
+        outer = self.outer.as_tables(surfaces.outer, points)
+        inner = self.inner.as_tables(surfaces.inner, points)
         return FormErrors(outer, inner, elements)
 
 
@@ -455,7 +459,7 @@ class Surfaces(NamedTuple):
     element: Surface
 
     @classmethod
-    def of(cls, bearing: AbstractBearing) -> "Surfaces":
+    def from_bearing(cls, bearing: AbstractBearing) -> "Surfaces":
         """Return the surfaces of a single row, at the free contact angle."""
         radius, cosine = 0.5 * bearing.element_diameter, bearing.free_cosine
         pitch = 0.5 * bearing.pitch_diameter

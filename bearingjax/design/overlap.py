@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from .ball import AbstractBallBearing
-from .checks import concrete
+from .checks import floats
 
 
 def overlap(one: Any, other: Any) -> bool:
@@ -30,7 +30,7 @@ def overlap(one: Any, other: Any) -> bool:
 def _ball(row):
     """z and r of the middle of a ball, and its radius [m]."""
     bearing = row.bearing
-    numbers = concrete(
+    numbers = floats(
         row.position, bearing.axial_place, bearing.pitch_diameter, bearing.ball_diameter
     )
     if numbers is None:
@@ -43,7 +43,7 @@ def _corners(row):
     """(z, r) of the corners of a roller, round its section [m]."""
     bearing = row.bearing
     side = -1.0 if row.mirrored else 1.0
-    numbers = concrete(
+    numbers = floats(
         row.position,
         bearing.pitch_diameter,
         bearing.roller_diameter,
@@ -76,10 +76,10 @@ def _is_separated(mine, others):
         (z, r), (z2, r2) = mine[k - 1], mine[k]
         normal = r2 - r, z - z2
 
-        def reach(points, normal=normal):
+        def projections(points, normal=normal):
             return [normal[0] * p[0] + normal[1] * p[1] for p in points]
 
-        own, far = reach(mine), reach(others)
+        own, far = projections(mine), projections(others)
         size = 1e-9 * max(abs(x) for x in own + far)
         if min(far) >= max(own) - size or max(far) <= min(own) + size:
             return True

@@ -17,7 +17,7 @@ from ..numerics.units import unit
 from .checks import is_traced
 
 
-class Published(eqx.Module):
+class PublishedRatings(eqx.Module):
     """Printed ratings and factors of a bearing; 0 where one is not printed.
 
     Attributes:
@@ -37,10 +37,10 @@ class Published(eqx.Module):
         converter=as_real, metadata=unit(("1", "m", "rad"))
     )
 
-    def void(self) -> "Published":
+    def without_ratings(self) -> "PublishedRatings":
         """Return the same without ratings and factors, as if none were printed."""
         zeros = jnp.zeros_like(self.ratings), jnp.zeros_like(self.axial_factors)
-        return Published(*zeros, self.dimensions)
+        return PublishedRatings(*zeros, self.dimensions)
 
 
 def rated_dimensions(row: Any) -> Any:
@@ -90,7 +90,7 @@ def close(one: Any, other: Any) -> Any:
     return bool(np.all(np.abs(one - other) <= allowed * np.abs(other)))
 
 
-def with_published(bearing: Any, published: Published | None) -> Any:
+def with_published(bearing: Any, published: PublishedRatings | None) -> Any:
     """Return a bearing whose rows carry published ratings, or none.
 
     Args:
@@ -100,8 +100,8 @@ def with_published(bearing: Any, published: Published | None) -> Any:
     rows = getattr(bearing, "rows", None)
     several = rows is not None
 
-    def place(b):
+    def ratings_of(b):
         return [row.bearing.published for row in b.rows] if several else b.published
 
     new = [published] * len(rows) if rows is not None else published
-    return eqx.tree_at(place, bearing, new, is_leaf=lambda leaf: leaf is None)
+    return eqx.tree_at(ratings_of, bearing, new, is_leaf=lambda leaf: leaf is None)

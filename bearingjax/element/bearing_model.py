@@ -20,9 +20,9 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import AbstractMinimiser
-from ..numerics.result import Result, worst
+from ..numerics.result import Result, worst_code
 from ..numerics.types import Ring, RingStiffness, Scalar
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .constants import TETHER
 from .equilibrium import ElementStart, accept_small
 from .rolling_element import split_rings
@@ -118,7 +118,7 @@ class Evaluated(NamedTuple):
     """
 
     energy: Annotated[Scalar, unit("J")]
-    force: Annotated[Ring, mixed("N", "N m")]
+    force: Annotated[Ring, units("N", "N m")]
     stiffness: RingStiffness
     result: Int[Array, ""]
     steps: Int[Array, ""]
@@ -367,7 +367,7 @@ class BearingModel(eqx.Module):
             jnp.ravel(c) for s in solved.groups for c in jax.tree.leaves(s.balance)
         ]
         return (
-            worst(jnp.concatenate([*springs, *codes])),
+            worst_code(jnp.concatenate([*springs, *codes])),
             jnp.max(jnp.concatenate([s.steps.reshape(-1) for s in states])),
             jnp.max(jnp.concatenate([s.residual.reshape(-1) for s in states])),
         )

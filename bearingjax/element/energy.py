@@ -24,7 +24,7 @@ from ..numerics.expansion import Expansion
 from ..numerics.implicit import stop_gradient
 from ..numerics.linear import dot
 from ..numerics.types import Scalar
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .rolling_element import (
     AbstractRollingElement,
     RingMotion,
@@ -96,8 +96,8 @@ class Derivatives(NamedTuple):
     """
 
     energy: Annotated[Scalar, unit("J")]
-    gradient: Annotated[Float[Array, " m"], mixed("N", "N m")]
-    hessian: Annotated[Float[Array, "..."], mixed("N/m", "N", "N m")]
+    gradient: Annotated[Float[Array, " m"], units("N", "N m")]
+    hessian: Annotated[Float[Array, "..."], units("N/m", "N", "N m")]
 
 
 def derivatives(

@@ -24,7 +24,7 @@ from ..numerics.minimise import (
 )
 from ..numerics.result import Result
 from ..numerics.types import Scalar
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .energy import derivatives, response, ring_motions
 from .rolling_element import AbstractRollingElement, Unknowns
 
@@ -66,7 +66,7 @@ class ElementStart(NamedTuple):
 
     offset: Annotated[Unknowns, unit("m")]
     follow: Float[Array, "n r"]
-    rings: Annotated[Rings, mixed("m", "rad")]
+    rings: Annotated[Rings, units("m", "rad")]
 
 
 class SolvedElement(NamedTuple):

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion, expand
 from ..numerics.types import Scalar
-from ..numerics.units import mixed
+from ..numerics.units import units
 from .search_hints import SearchHints
 
 Unknowns = Float[Array, " n"]
@@ -31,8 +31,8 @@ class RingMotion(NamedTuple):
         inner: Motion of the inner ring (h,).
     """
 
-    outer: Annotated[Float[Array, " h"], mixed("m", "rad")]
-    inner: Annotated[Float[Array, " h"], mixed("m", "rad")]
+    outer: Annotated[Float[Array, " h"], units("m", "rad")]
+    inner: Annotated[Float[Array, " h"], units("m", "rad")]
 
     @property
     def mean(self) -> Float[Array, " h"]:

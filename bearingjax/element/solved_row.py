@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion
 from ..numerics.types import Scalar
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .azimuth import Azimuth
 from .energy import ring_motions
 from .equilibrium import ElementStart, LocalState, SolvedElement, element_start
@@ -74,9 +74,9 @@ class RowResults(NamedTuple):
     """
 
     row: Any
-    local: Annotated[RingMotion, mixed("m", "rad")]
+    local: Annotated[RingMotion, units("m", "rad")]
     azimuth: Annotated[Azimuth, unit("rad")]
-    rings: Annotated[Float[Array, "element r"], mixed("m", "rad")]
+    rings: Annotated[Float[Array, "element r"], units("m", "rad")]
     x: Annotated[Float[Array, "element n"], unit("m")]
     contact_load: Annotated[Float[Array, "element contact"], unit("N")]
     travel: Annotated[Scalar | None, unit("m")]

@@ -3,7 +3,7 @@
 Names
 -----
 
-- The mounted bearing: `mounted`, `Mounting`, `FitConditions`, `fit_state`, `FitState`,
+- The mounted bearing: `mount`, `Mounting`, `FitConditions`, `fit_state`, `FitState`,
   `radial_clearance`, `with_radial_clearance`, `with_bearing_dimensions`,
   `needed_drive_up`.
 - From the drawing to operation: `fit_states`, `FitStates`.
@@ -39,7 +39,7 @@ from .fit_range import (
 from .fits import FitConditions, FitState, Mounting, fit_state, needed_drive_up
 from .iso286 import LIMIT_CLASSES, Limits, limits, standard_tolerance
 from .mounted import (
-    mounted,
+    mount,
     radial_clearance,
     with_bearing_dimensions,
     with_radial_clearance,
@@ -47,7 +47,7 @@ from .mounted import (
 from .warm_material import WARM_MATERIALS, WarmMaterial
 
 __all__ = [
-    "mounted", "Mounting", "FitConditions", "fit_state", "FitState", "radial_clearance",
+    "mount", "Mounting", "FitConditions", "fit_state", "FitState", "radial_clearance",
     "with_radial_clearance", "with_bearing_dimensions", "needed_drive_up", "fit_states",
     "FitStates", "SizeLimits", "clearance_range", "ClearanceRange", "mounting_at",
     "PLACES", "limits", "Limits", "standard_tolerance", "LIMIT_CLASSES", "bore_limits",

@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
-from ..design.checks import concrete, in_range, one_of
+from ..design.checks import floats, in_range, one_of
 from ..numerics.units import unit
 from .fits import FitConditions, FitState, Mounting, fit_state, positive_part
 from .iso286 import Limits
@@ -79,7 +79,7 @@ def clearance_range(
     cases = _Cases(
         mounting, _check_given(clearance, shaft, bore, housing, outside_diameter)
     )
-    middle, half = cases.spread(conditions)[:2]
+    middle, half = cases.clearance_spread(conditions)[:2]
     least, most = (cases.clearance(side, conditions) for side in (-1.0, 1.0))
     return ClearanceRange(
         middle,
@@ -182,7 +182,7 @@ def mounting_at(
     cases, side = _Cases(mounting, given), PLACES[place]
     if not place.startswith("probable"):
         return cases.mounting(dict.fromkeys(given, side))
-    _, half, effects = cases.spread(conditions)
+    _, half, effects = cases.clearance_spread(conditions)
     whole = half + 1e-30  # 0 if all sizes are exact, and so are their effects
     return cases.mounting({name: side * e / whole for name, e in effects.items()})
 
@@ -203,7 +203,7 @@ def _check_given(clearance, shaft, bore, housing, outside_diameter):
             )
         for end in pair:
             in_range("clearance_range", name, -_WIDEST, _WIDEST, end, "m")
-        known = concrete(*pair)
+        known = floats(*pair)
         if known is not None and known[0] > known[1]:
             raise ValueError(
                 f"clearance_range: `{name}` is {known[0]:.6g} to {known[1]:.6g} m; its"
@@ -250,7 +250,7 @@ class _Cases(NamedTuple):
         places = {**dict.fromkeys(self.limits, place), **others}
         return fit_state(self.mounting(places), conditions).radial_clearance
 
-    def spread(self, conditions):
+    def clearance_spread(self, conditions):
         """Clearance in the middle, root sum of squares about it, and what each does."""
         effects = {
             name: 0.5

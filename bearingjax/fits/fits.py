@@ -15,7 +15,7 @@ import equinox as eqx
 
 from ..design.checks import (
     check,
-    concrete,
+    floats,
     in_range,
     instance,
     non_negative,
@@ -93,7 +93,7 @@ class Mounting(eqx.Module):
         smaller = "bore"
         for name in _DIAMETERS[1:]:
             if getattr(self, name) is not None:
-                _larger(self, name, smaller)
+                _check_larger(self, name, smaller)
                 smaller = name
         in_range(self, "shaft_bore", 0.0, self.bore, include_low=True)
         if self.radial_clearance is not None:
@@ -104,7 +104,7 @@ class Mounting(eqx.Module):
             in_range(self, "ring_width", 0.0, 2.0 * self.outside_diameter)
         in_range(self, "bore_taper", 0.0, _STEEPEST, include_low=True)
         in_range(self, "drive_up", 0.0, self.bore, include_low=True)
-        known = concrete(self.bore_taper, self.drive_up, self.bore)
+        known = floats(self.bore_taper, self.drive_up, self.bore)
         if known is not None:
             cylindrical = known[0] == 0.0
             allowed = "0 m: a cylindrical bore (`bore_taper` 0) has no drive-up"
@@ -114,13 +114,13 @@ class Mounting(eqx.Module):
             check(self, "drive_up", known[1] < most, allowed)
         own = self.inner_raceway
         ring = self.outside_diameter if own is None else own
-        known = concrete(mean_bore(self), ring)
+        known = floats(mean_bore(self), ring)
         if known is not None:
             allowed = f"such that the mean bore is below the raceway, {known[1]:.6g} m"
             check(self, "bore_taper", known[0] < known[1], allowed)
         for name, seat in _SEATS.items():
             number(self, name)
-            known = concrete(getattr(self, name), getattr(self, seat))
+            known = floats(getattr(self, name), getattr(self, seat))
             if known is not None:
                 most = _LARGEST * known[1]
                 allowed = f"below {most:.6g} m in size, 1 % of `{seat}` (metres meant?)"
@@ -147,10 +147,10 @@ _DIAMETERS = (
 )
 
 
-def _larger(owner, name, smaller):
+def _check_larger(owner, name, smaller):
     """Raise unless a diameter is above another one, which the message names."""
     positive(owner, name)
-    known = concrete(getattr(owner, name), getattr(owner, smaller))
+    known = floats(getattr(owner, name), getattr(owner, smaller))
     if known is not None:
         check(owner, name, known[0] > known[1], f"above `{smaller}`, {known[1]:.6g} m")
 
@@ -189,7 +189,7 @@ class FitConditions(eqx.Module):
         for name in (*PARTS, "reference", "speed", "outer_speed"):
             number(self, name)
         for name in PARTS:
-            known = concrete(getattr(self, name), self.reference)
+            known = floats(getattr(self, name), self.reference)
             if known is not None:
                 rise, base = known[0] - known[1], f"`reference`, {known[1]:.6g} K"
                 allowed = f"from {_COLDER:g} to {_HOTTER:g} K above {base}"
@@ -322,12 +322,12 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     inner = (
         m.inner_raceway * warm["inner_ring"]
         + _spin(m.inner_ring.material, m.inner_raceway, bore, c.speed)
-        + shaft_pressure * _across(m.inner_ring.material, bore, m.inner_raceway, bore)
+        + shaft_pressure * _effect(m.inner_ring.material, bore, m.inner_raceway, bore)
     )
     outer = (
         m.outer_raceway * warm["outer_ring"]
         + _spin(m.outer_ring.material, m.outer_raceway, out, c.outer_speed)
-        - housing_pressure * _across(m.outer_ring.material, m.outer_raceway, out, out)
+        - housing_pressure * _effect(m.outer_ring.material, m.outer_raceway, out, out)
     )
     strains = AxialStrains(
         warm["shaft"]
@@ -414,7 +414,7 @@ def needed_drive_up(mounting: Mounting, reduction: Any) -> Any:
     seats = _squeeze(m.shaft.material, m.shaft_bore, bore) + _stretch(
         m.inner_ring.material, bore, m.inner_raceway
     )
-    growth = _across(m.inner_ring.material, bore, m.inner_raceway, bore)
+    growth = _effect(m.inner_ring.material, bore, m.inner_raceway, bore)
     interference = reduction * seats / growth + m.shaft_smoothing
     return (interference - m.shaft_interference) / m.bore_taper
 
@@ -460,7 +460,7 @@ def _stretch(material, inside, outside):
     return inside / material.elastic_modulus * (ratio + material.poisson_ratio)
 
 
-def _across(material, inside, outside, pressed):
+def _effect(material, inside, outside, pressed):
     """Change of the other diameter of a ring over a pressure on one, `pressed` [m/Pa].
 
     The stress at the free surface is a hoop stress alone, 2 p pressed²/(b² - a²).

@@ -166,7 +166,7 @@ def _shaft(letter, grade, size, fine, width):
         return -width / 2
     if letter == "j":
         return _SHAFT_J[grade][size]
-    return _above(letter, size, fine)
+    return _deviation_above(letter, size, fine)
 
 
 def _housing(letter, grade, size, fine, width):
@@ -185,10 +185,10 @@ def _housing(letter, grade, size, fine, width):
     last = 8 if shaft in ("k", "m", "n") else 7
     gains = _SIZES[size] > 3 and grade <= last
     gain = width - _GRADES[grade - 2][size] if gains else 0
-    return -_above(shaft, size, fine) + gain
+    return -_deviation_above(shaft, size, fine) + gain
 
 
-def _above(letter, size, fine):
+def _deviation_above(letter, size, fine):
     if letter in _FINE_ABOVE:
         return _FINE_ABOVE[letter][fine]
     return _ABOVE[letter][size]

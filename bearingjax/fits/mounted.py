@@ -110,7 +110,7 @@ def with_bearing_dimensions(
     return replace(mounting, **missing)
 
 
-def mounted(
+def mount(
     bearing: AbstractBearing | BearingSet,
     mounting: Mounting,
     conditions: FitConditions | None = None,
@@ -200,7 +200,7 @@ def row_shifts(
 
     Args:
         bearing: A set.
-        mounting, conditions: As in `mounted`.
+        mounting, conditions: As in `mount`.
 
     Returns:
         Of each row, along +z of the set [m]; 0 of a bearing whose rows share both

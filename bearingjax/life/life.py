@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from ..design import rows_of
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
-from ..design.checks import check, concrete, in_range, of_class, positive
+from ..design.checks import check, floats, in_range, of_class, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
@@ -179,7 +179,7 @@ class LifeConditions(eqx.Module):
             if getattr(self, name) is not None:
                 positive(self, name)
         limits = self.fatigue_load_limit, self.static_capacity
-        known = None if None in limits else concrete(*limits)
+        known = None if None in limits else floats(*limits)
         if known is not None:
             allowed = f"below `static_capacity`, {known[1]:.6g} N"
             check(self, "fatigue_load_limit", known[0] < known[1], allowed)
@@ -352,7 +352,7 @@ def rating_life(
         )
     of_class("rating_life", "speed", speed, Speed | None, "a Speed")
     if speed is not None and (own := solution.speed) is not None:
-        known = concrete(speed.inner, speed.outer, own.inner, own.outer)
+        known = floats(speed.inner, speed.outer, own.inner, own.outer)
         if known is not None and not np.allclose(known[:2], known[2:], rtol=1e-6):
             raise ValueError(
                 f"rating_life: `speed` is {known[0]:.6g} and {known[1]:.6g} rad/s"

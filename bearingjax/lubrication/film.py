@@ -86,7 +86,7 @@ class Film(eqx.Module):
         piezoviscous = jnp.where(elastic, both > soft, thick > plain)
         return 2 * elastic.astype(int) + piezoviscous.astype(int)
 
-    def outside(self, speed: Scalar | float) -> Flag:
+    def outside_validity(self, speed: Scalar | float) -> Flag:
         """Whether the contact is not elastohydrodynamic, which the formulas are for."""
         return self.regime(speed) != Regime.PIEZOVISCOUS_ELASTIC
 
@@ -120,7 +120,7 @@ def point_film(
         coefficient: Pressure-viscosity coefficient α [1/Pa].
 
     Valid: fitted for 1 ≤ κ ≤ 8, U of 1.7e-12 to 5e-11, W of 1e-7 to 1.3e-6 and G of
-        2300 to 6800; used well beyond. See `Film.outside`.
+        2300 to 6800; used well beyond. See `Film.outside_validity`.
     Source: Hamrock & Dowson, J. Lubrication Technology 99 (1977) 264-276; films of the
         other regimes: Hamrock & Dowson (1979), piezoviscous and rigid: Jeng, Hamrock &
         Brewe (1987).

@@ -102,7 +102,7 @@ class Lubricant(eqx.Module):
     def kinematic_viscosity(self, temperature: Scalar | float) -> Scalar:
         """Kinematic viscosity at atmospheric pressure [m²/s], temperature in K."""
         kelvin = _kelvin(temperature)
-        return self._thin(kelvin) / self.density.at(kelvin)
+        return self._ambient_viscosity(kelvin) / self.density.at(kelvin)
 
     def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
         """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
@@ -134,7 +134,7 @@ class Lubricant(eqx.Module):
         grows = slope > 0
         scale = jnp.where(grows, slope, 1e-9)
         thicker = self.viscosity(far / scale, kelvin)
-        star = scale / jnp.dot(weight, self._thin(kelvin) / thicker)
+        star = scale / jnp.dot(weight, self._ambient_viscosity(kelvin) / thicker)
         return jnp.where(grows, star, slope)
 
     def thermal_loading(
@@ -149,10 +149,10 @@ class Lubricant(eqx.Module):
             speed: Entrainment speed u [m/s].
         """
         kelvin, speed = _kelvin(temperature), as_real(speed)
-        _, slope = jax.jvp(self._thin, (kelvin,), (jnp.ones_like(kelvin),))
+        _, slope = jax.jvp(self._ambient_viscosity, (kelvin,), (jnp.ones_like(kelvin),))
         return -slope * speed * speed / self.thermal_conductivity
 
-    def _thin(self, kelvin):
+    def _ambient_viscosity(self, kelvin):
         """Viscosity at atmospheric pressure [Pa s]."""
         return self.viscosity(jnp.zeros_like(kelvin), kelvin)
 

@@ -177,12 +177,12 @@ class EllipsePatch(AbstractPatch):
 
     @property
     def thinnest(self) -> Float[Array, "*n"]:
-        def of(oil, kelvin):
+        def ambient_viscosity(oil, kelvin):
             return oil.viscosity(jnp.zeros_like(kelvin), kelvin)
 
         for _ in range(self.temperature.ndim):
-            of = jax.vmap(of)
-        return of(self.lubricant, self.temperature)
+            ambient_viscosity = jax.vmap(ambient_viscosity)
+        return ambient_viscosity(self.lubricant, self.temperature)
 
     @property
     def peak(self) -> Float[Array, "*n"]:

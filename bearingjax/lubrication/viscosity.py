@@ -112,10 +112,10 @@ class Walther(AbstractAmbient):
         return cls(313.15, cold, 373.15, hot)
 
     def log_viscosity(self, temperature: Scalar, density: Scalar) -> Scalar:
-        def bent(viscosity):
+        def log_log(viscosity):
             return jnp.log(jnp.log(1e6 * viscosity + 0.7))
 
-        start, end = bent(self.cold_viscosity), bent(self.hot_viscosity)
+        start, end = log_log(self.cold_viscosity), log_log(self.hot_viscosity)
         along = jnp.log(temperature / self.cold) / jnp.log(self.hot / self.cold)
         kinematic = jnp.exp(jnp.exp(start + (end - start) * along)) - 0.7
         return jnp.log(1e-6 * kinematic * density)

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
-from ..design.checks import check, concrete, in_range, positive
+from ..design.checks import check, floats, in_range, positive
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.types import Scalar, array_namespace, as_real
 
@@ -76,7 +76,7 @@ def viscosity_at_100(viscosity: Scalar | float, index: Scalar | float) -> Scalar
     owner = "viscosity_at_100"
     positive(owner, "viscosity", viscosity, "m²/s")
     in_range(owner, "index", 0.0, 400.0, index, "", include_low=True)
-    known = concrete(viscosity, index)
+    known = floats(viscosity, index)
     if known is not None:
         least = 1e-6 * float(_at_40(np.float64(_FROM[0]), np.float64(known[1])))
         words = f"at least {least:.4g} m²/s with a viscosity index of {known[1]:.4g}"
@@ -105,12 +105,12 @@ def _solve(viscosity, index):
 
     frozen = stop_gradient((viscosity, index))
 
-    def halve(_, ends):
+    def halve_interval(_, ends):
         low, high = ends
         middle = jnp.sqrt(low * high)
         above = residual(middle, frozen) > 0
         return jnp.where(above, low, middle), jnp.where(above, middle, high)
 
     ends = jnp.full_like(viscosity, _FROM[0]), jnp.full_like(viscosity, _MOST)
-    low, high = lax.fori_loop(0, _HALVINGS, halve, stop_gradient(ends))
+    low, high = lax.fori_loop(0, _HALVINGS, halve_interval, stop_gradient(ends))
     return 1e-6 * attach_roots(residual, 0.5 * (low + high), (viscosity, index))

@@ -24,7 +24,7 @@ from ..design.checks import check, of_class, real_numbers
 from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar, as_real
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .model import NoiseModel
 from .natural import contact_stiffness
 from .static_start import static_start
@@ -45,10 +45,10 @@ class LinearModel(NamedTuple):
         result: `Result` code of the place at which it is.
     """
 
-    mass: Annotated[Float[Array, " n"], mixed("kg", "kg m²")]
-    stiffness: Annotated[Float[Array, "n n"], mixed("N/m", "N", "N m")]
-    damping: Annotated[Float[Array, "n n"], mixed("N s/m", "N s", "N m s")]
-    push: Annotated[Float[Array, "n element 2 3"], mixed("N/m", "N")]
+    mass: Annotated[Float[Array, " n"], units("kg", "kg m²")]
+    stiffness: Annotated[Float[Array, "n n"], units("N/m", "N", "N m")]
+    damping: Annotated[Float[Array, "n n"], units("N s/m", "N s", "N m s")]
+    push: Annotated[Float[Array, "n element 2 3"], units("N/m", "N")]
     retardation: Annotated[Scalar, unit("s")]
     result: Int[Array, ""]
 
@@ -66,8 +66,8 @@ class Transfer(NamedTuple):
     """
 
     frequency: Annotated[Float[Array, " line"], unit("Hz")]
-    by_force: Annotated[Complex[Array, "line k k"], mixed("m/N", "rad/N", "rad/(N m)")]
-    by_errors: Annotated[Complex[Array, "line k element 2 3"], mixed("1", "rad/m")]
+    by_force: Annotated[Complex[Array, "line k k"], units("m/N", "rad/N", "rad/(N m)")]
+    by_errors: Annotated[Complex[Array, "line k element 2 3"], units("1", "rad/m")]
     result: Int[Array, ""]
 
     @property

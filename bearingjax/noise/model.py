@@ -13,8 +13,8 @@ from ..design import AbstractBallBearing, rows_of
 from ..design.bearing_set import is_self_aligning
 from ..design.checks import (
     check,
-    concrete,
     finite,
+    floats,
     instance,
     is_real,
     is_traced,
@@ -200,7 +200,7 @@ class NoiseModel(eqx.Module):
     @property
     def orbits(self) -> bool:
         """Whether a ring turns; traced speeds count as turning."""
-        return concrete(self.speed.outer, self.speed.inner) != [0.0, 0.0]
+        return floats(self.speed.outer, self.speed.inner) != [0.0, 0.0]
 
     @property
     def shaft_speed(self) -> Scalar:
@@ -259,7 +259,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     part = as_real(mass) / len(rows)
     total = jnp.zeros_like(part)
     for row in rows:
-        radius = getattr(Surfaces.of(row.bearing), moving_ring).radius
+        radius = getattr(Surfaces.from_bearing(row.bearing), moving_ring).radius
         area = part / (2.0 * jnp.pi * radius * row.bearing.rings.density)
         total = total + part * (0.5 * radius**2 + 5.0 / 24.0 * area + row.position**2)
     return total
@@ -287,7 +287,7 @@ def _system(model, points) -> NoiseSystem:
     errors = None
     if some:
         both = zip(model.errors_of_rows, _surfaces(model, found), strict=True)
-        errors = tuple(one.tabulated(surfaces, points) for one, surfaces in both)
+        errors = tuple(one.as_tables(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
         row=found.row,
         placements=found.placements,

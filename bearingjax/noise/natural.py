@@ -23,7 +23,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.lapack import eigh
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
 from .static_start import static_start
@@ -48,8 +48,8 @@ class NaturalModes(NamedTuple):
     """
 
     frequency: Annotated[Float[Array, " mode"], unit("Hz")]
-    ring: Annotated[Float[Array, "mode k"], mixed("m", "rad")]
-    places: Annotated[Float[Array, "mode element m"], mixed("m", "rad")]
+    ring: Annotated[Float[Array, "mode k"], units("m", "rad")]
+    places: Annotated[Float[Array, "mode element m"], units("m", "rad")]
     ring_share: Annotated[Float[Array, " mode"], unit("1")]
     result: Int[Array, ""]
 

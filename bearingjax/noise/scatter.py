@@ -21,7 +21,7 @@ from ..design import (
     BearingSet,
     rows_of,
 )
-from ..design.checks import check, concrete, instance, non_negative, of_class
+from ..design.checks import check, floats, instance, non_negative, of_class
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
 from ..design.tolerance import RunningAccuracy, element_grade
 from ..numerics.types import Real, RealOrNone, as_real
@@ -282,7 +282,7 @@ class Tolerances(eqx.Module):
         zero = jnp.zeros(())
         diameter = zero if self.diameter is None else self.diameter
         spacing = zero if self.spacing is None else self.spacing
-        numbers = concrete(nominal, bearing.pitch_diameter, diameter, spacing)
+        numbers = floats(nominal, bearing.pitch_diameter, diameter, spacing)
         if numbers is None:
             return
         nominal, pitch, diameter, spacing = numbers

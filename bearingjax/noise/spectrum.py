@@ -21,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from ..design.checks import check, concrete, positive
+from ..design.checks import check, floats, positive
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, array_namespace, as_real
@@ -220,7 +220,7 @@ def spectrum(
         )
     positive("spectrum", "duration", duration, "s")
     positive("spectrum", "shaft_frequency", shaft_frequency, "Hz")
-    numbers = concrete(duration, shaft_frequency)
+    numbers = floats(duration, shaft_frequency)
     if numbers is not None and isinstance(window, Rectangular):
         turns = numbers[0] * numbers[1]
         whole = turns > 0.5 and abs(turns - round(turns)) <= WHOLE_TURNS

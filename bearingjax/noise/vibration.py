@@ -21,7 +21,7 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from ..statics.options import DEFAULT_TOLERANCE
 from .dynamics.cage import fastest_of_cage
 from .dynamics.stepping import HELD, step_motion
@@ -77,10 +77,10 @@ class Vibration(eqx.Module):
 
     time: Float[Array, " time"] = eqx.field(metadata=unit("s"))
     displacement: Float[Array, "time ring_motion"] = eqx.field(
-        metadata=mixed("m", "rad")
+        metadata=units("m", "rad")
     )
     acceleration: Float[Array, "time ring_motion"] = eqx.field(
-        metadata=mixed("m/s²", "rad/s²")
+        metadata=units("m/s²", "rad/s²")
     )
     contact_load: Float[Array, "time element contact"] = eqx.field(metadata=unit("N"))
     azimuth: Float[Array, "time element"] = eqx.field(metadata=unit("rad"))

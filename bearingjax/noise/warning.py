@@ -268,7 +268,7 @@ def _short_waves(model, load, tolerances) -> Iterator[Warning]:
     loads = of_rows(load, model.element.bearing, axis=1)
     for own, (where, bearing, errors) in zip(loads, _rows(model), strict=True):
         half = contact_half_width(bearing, own)
-        surfaces = Surfaces.of(bearing)
+        surfaces = Surfaces.from_bearing(bearing)
         around = {
             "outer raceway": surfaces.outer,
             "inner raceway": surfaces.inner,

@@ -43,16 +43,16 @@ class BFGS(AbstractMinimiser):
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         inverse, fraction = state.own
         first = state.steps < 0
-        now = problem.pulled(state.x, state.now)
+        now = problem.with_force(state.x, state.now)
         direction = -inverse @ now.gradient
         direction = direction * jnp.minimum(
             1.0, state.radius / jnp.maximum(norm(direction), tiny)
         )
         s = jnp.where(first, 0.0, fraction * direction)
-        there = problem.at(state.x + s, False, now.memory)
+        there = problem.evaluate(state.x + s, False, now.memory)
         # No Hessian is evaluated.
         there = there._replace(hessian=now.hessian)
-        new = problem.pulled(state.x + s, there)
+        new = problem.with_force(state.x + s, there)
         accept = (new.value - now.value <= 1e-4 * (now.gradient @ s)) | (
             norm(new.gradient) <= 0.5 * norm(now.gradient)
         )

@@ -77,11 +77,11 @@ def _orders(function, u, args, known):
     traced = [x if eqx.is_inexact_array(x) else None for x in leaves]
     others = [None if eqx.is_inexact_array(x) else x for x in leaves]
 
-    def bound(u, traced, others, order=2):
-        return _plain((function, structure, order), u, traced, others)
+    def expand(u, traced, others, order=2):
+        return _call_jitted((function, structure, order), u, traced, others)
 
     if known is None:
-        known = bound(stop_gradient(u), stop_gradient(traced), others)
+        known = expand(stop_gradient(u), stop_gradient(traced), others)
 
     @jax.custom_jvp
     def hessian(u, traced, others, known):
@@ -97,20 +97,20 @@ def _orders(function, u, args, known):
 
     def of_hessian(primals, tangents):
         u, traced, others, _ = primals
-        change = jax.tree.map(_fill, (u, traced), tangents[:2])
+        change = jax.tree.map(_instantiate, (u, traced), tangents[:2])
         _, third = jax.jvp(
-            lambda u, t: bound(u, t, others).hessian, (u, traced), change
+            lambda u, t: expand(u, t, others).hessian, (u, traced), change
         )
         return hessian(*primals), third
 
     def of_gradient(primals, tangents):
         moved = jax.tree.map(_times, hessian(*primals), tangents[0])
-        change = _and_of_args(bound, 1, primals, tangents, moved)
+        change = _and_of_args(expand, 1, primals, tangents, moved)
         return gradient(*primals), change
 
     def of_value(primals, tangents):
         moved = jax.tree.map(_inner, gradient(*primals), tangents[0])
-        return value(*primals), _and_of_args(bound, 0, primals, tangents, moved)
+        return value(*primals), _and_of_args(expand, 0, primals, tangents, moved)
 
     hessian.defjvp(of_hessian, symbolic_zeros=True)
     gradient.defjvp(of_gradient, symbolic_zeros=True)
@@ -119,7 +119,7 @@ def _orders(function, u, args, known):
 
 
 @partial(jax.jit, static_argnums=0)
-def _plain(static, u, traced, others) -> Expansion:
+def _call_jitted(static, u, traced, others) -> Expansion:
     """The function itself. Under `jit` its trace, and that of its derivative, is kept
     and used again."""
     function, structure, order = static
@@ -132,7 +132,7 @@ def _and_of_args(bound, order, primals, tangents, change):
     u, traced, others, _ = primals
     if all(_is_zero(leaf) for leaf in jax.tree.leaves(tangents[1])):
         return change
-    dtraced = jax.tree.map(_fill, traced, tangents[1])
+    dtraced = jax.tree.map(_instantiate, traced, tangents[1])
     _, more = jax.jvp(
         lambda t: bound(u, t, others, order)[order], (traced,), (dtraced,)
     )
@@ -161,7 +161,7 @@ def _inner(gradient, change):
     return sum(terms[1:], start=terms[0])
 
 
-def _fill(x, change):
+def _instantiate(x, change):
     return jnp.zeros_like(x) if _is_zero(change) else change
 
 
@@ -179,10 +179,10 @@ def compose(outer: Expansion, inner: Expansion) -> Expansion:
     """
 
     # Sums over an axis: what they are of, XLA does not work out anew for each use.
-    def first(slope, rate):
+    def first_order(slope, rate):
         return jnp.sum(slope[..., None] * rate, axis=-2)
 
-    def second(slope, bend, rate, curved):
+    def second_order(slope, bend, rate, curved):
         turned = jnp.sum(bend[..., None] * rate[..., None, :, :], axis=-2)
         terms = slope[..., None, None] * curved
         terms = terms + rate[..., :, None] * turned[..., None, :]
@@ -191,8 +191,8 @@ def compose(outer: Expansion, inner: Expansion) -> Expansion:
     rates = inner.gradient
     return Expansion(
         outer.value,
-        jax.tree.map(first, outer.gradient, rates),
-        jax.tree.map(second, outer.gradient, outer.hessian, rates, inner.hessian),
+        jax.tree.map(first_order, outer.gradient, rates),
+        jax.tree.map(second_order, outer.gradient, outer.hessian, rates, inner.hessian),
         outer.aux,
     )
 
@@ -212,7 +212,7 @@ def by_autodiff(function: Callable[..., Any], u: Any, *constants: Any) -> Expans
         Value (...), gradient (..., k) and Hessian (..., k, k).
     """
 
-    def one(u, *constants):
+    def expand_one(u, *constants):
         def slopes(u):
             value, gradient = jax.value_and_grad(function)(u, *constants)
             return gradient, (value, gradient)
@@ -222,8 +222,8 @@ def by_autodiff(function: Callable[..., Any], u: Any, *constants: Any) -> Expans
 
     axes = u.shape[:-1]
 
-    def listed(a):
+    def flatten_axes(a):
         return a.reshape(-1, *a.shape[len(axes) :])
 
-    flat = jax.vmap(one)(listed(u), *jax.tree.map(listed, constants))
+    flat = jax.vmap(expand_one)(flatten_axes(u), *jax.tree.map(flatten_axes, constants))
     return jax.tree.map(lambda a: a.reshape(*axes, *a.shape[1:]), flat)

@@ -89,22 +89,22 @@ def attach_by(
     """
     traced, others, joined = _partition(args)
 
-    def bound(y, traced, others):
+    def balance(y, traced, others):
         return residual(y, joined(traced, others))
 
     @jax.custom_jvp
-    def attached(y, traced, others):
+    def keep_solution(y, traced, others):
         return y
 
-    @attached.defjvp
+    @keep_solution.defjvp
     def _rule(primals, tangents):
         y0, traced, others = primals
-        y = attached(y0, traced, others)
-        _, change = jax.jvp(lambda t: bound(y, t, others), (traced,), (tangents[1],))
+        y = keep_solution(y0, traced, others)
+        _, change = jax.jvp(lambda t: balance(y, t, others), (traced,), (tangents[1],))
         now = joined(traced, others)
-        return y, correction(lambda v: bound(v, traced, others), y, change, now)
+        return y, correction(lambda v: balance(v, traced, others), y, change, now)
 
-    return attached(stop_gradient(solution), traced, others)
+    return keep_solution(stop_gradient(solution), traced, others)
 
 
 def _partition(args):
@@ -181,19 +181,19 @@ def _spoil_unsolved(causes, effects, solved):
     effect, apart = ravel_pytree(_parts(effects))
     n = cause.shape[0]
 
-    def bad(changes):
+    def nan_if_changed(changes):
         return jnp.where(~solved & jnp.any(changes != 0), jnp.nan, 0.0)
 
-    def forth(_, both):
-        effect = jnp.where(solved, both[n:], bad(both[:n]))
+    def spoil(_, both):
+        effect = jnp.where(solved, both[n:], nan_if_changed(both[:n]))
         return jnp.concatenate([jnp.zeros_like(both[:n]), effect])
 
-    def back(_, both):
-        cause = jnp.full_like(both[:n], bad(both[n:]))
+    def transpose(_, both):
+        cause = jnp.full_like(both[:n], nan_if_changed(both[n:]))
         return jnp.concatenate([cause, jnp.where(solved, both[n:], 0.0)])
 
     both = jnp.concatenate([cause, effect])
-    found = apart(lax.custom_linear_solve(lambda x: x, both, forth, back)[n:])
+    found = apart(lax.custom_linear_solve(lambda x: x, both, spoil, transpose)[n:])
     return [lax.complex(*x) if isinstance(x, tuple) else x for x in found]
 
 
@@ -219,18 +219,18 @@ def recall(function: Callable, values: Any, args: tuple) -> Any:
     traced, others, joined = _partition(args)
 
     @jax.custom_jvp
-    def recalled(values, traced, others):
+    def keep_values(values, traced, others):
         return values
 
-    @recalled.defjvp
+    @keep_values.defjvp
     def _rule(primals, tangents):
         values, traced, others = primals
         _, change = jax.jvp(
             lambda t: function(*joined(t, others)), (traced,), (tangents[1],)
         )
-        return recalled(*primals), change
+        return keep_values(*primals), change
 
-    return recalled(stop_gradient(values), traced, others)
+    return keep_values(stop_gradient(values), traced, others)
 
 
 @eqx.filter_custom_jvp
@@ -257,7 +257,7 @@ def _rule_through_jacobian(primals, tangents, *, function):
     given, *inputs = primals
     moved = {k: t for k, t in enumerate(tangents[1:]) if t is not None}
 
-    def of(*some):
+    def evaluate(*some):
         now = dict(enumerate(inputs)) | dict(zip(moved, some, strict=True))
         value = function(given, *now.values())
         return value, value
@@ -265,7 +265,7 @@ def _rule_through_jacobian(primals, tangents, *, function):
     some = [inputs[k] for k in moved]
     if moved:
         every = tuple(range(len(some)))
-        slopes, value = jax.jacfwd(of, every, has_aux=True)(*some)
+        slopes, value = jax.jacfwd(evaluate, every, has_aux=True)(*some)
     else:
         slopes, value = (), function(given, *inputs)
     change = jnp.zeros_like(value)

@@ -92,7 +92,7 @@ def integrate(
         atol=step_error * options.tolerance,
         dtmin=1e-14 * duration,
         force_dtmin=False,
-        norm=_largest,
+        norm=_largest_error,
     )
     if knots is not None:
         controller = diffrax.ClipStepSizeController(
@@ -133,7 +133,7 @@ def integrate(
     return Integrated(state, steps, rejected, result)
 
 
-def _largest(errors):
+def _largest_error(errors):
     """Largest of scaled errors; a NaN rejects the step."""
     largest = jnp.max(jnp.stack([jnp.max(jnp.abs(e)) for e in jax.tree.leaves(errors)]))
     return jnp.where(jnp.isnan(largest), jnp.inf, largest)

@@ -123,10 +123,10 @@ class Labelled:
             leading: Names of axes that lead those of the class.
         """
         values, stated = np.asarray(values), axes_of(owner, name)
-        axes = _named(name, stated, values.ndim, leading)
+        axes = _axis_names(name, stated, values.ndim, leading)
         sizes = zip(axes, values.shape, strict=True)
         if any(len(AXIS_LABELS.get(axis, "")) not in (0, n) for axis, n in sizes):
-            axes = _named(name, (), values.ndim, ())
+            axes = _axis_names(name, (), values.ndim, ())
         units = field_metadata(owner, name)
         return cls(values, axes, units.get("unit", "1"), units.get("units", ()))
 
@@ -178,7 +178,7 @@ def labelled_fields(result: Any, *parts: str) -> dict[str, Labelled]:
         axes = axes_of(result, name)
         if axes is not None and not any(map(_any_number, axes)):
             more.append(values.ndim - len(axes))
-    cases = _counted("case", max(0, min(more, default=0)))
+    cases = _numbered_labels("case", max(0, min(more, default=0)))
     found: dict[str, Labelled] = {}
     for part in ("", *parts):
         owner = getattr(result, part) if part else result
@@ -192,7 +192,7 @@ def _any_number(axis: str) -> bool:
     return axis.startswith(("*", "..."))
 
 
-def _named(
+def _axis_names(
     name: str, stated: Sequence[str] | None, ndim: int, leading: Sequence[str]
 ) -> tuple[str, ...]:
     """Return a name for each axis of a field; numbered if they are not as stated."""
@@ -203,13 +203,13 @@ def _named(
     axes = list(leading)
     for k, axis in enumerate(stated):
         if _any_number(axis):
-            axes += _counted(axis.strip("*.") or name, free)
+            axes += _numbered_labels(axis.strip("*.") or name, free)
         else:
             axes.append(f"{name}_{k}" if axis.isdigit() or axis == "_" else axis)
     return tuple(axes)
 
 
-def _counted(name: str, count: int) -> list[str]:
+def _numbered_labels(name: str, count: int) -> list[str]:
     return [name] if count == 1 else [f"{name}_{k}" for k in range(count)]
 
 

@@ -40,7 +40,7 @@ def one_by_one(function: Callable) -> Callable:
 
     @single.def_vmap
     def _rule(_, mapped, *arrays):
-        def one(members):
+        def call(members):
             member = iter(members)
             return single(
                 *(next(member) if m else a for a, m in zip(arrays, mapped, strict=True))
@@ -48,7 +48,7 @@ def one_by_one(function: Callable) -> Callable:
 
         members = [a for a, m in zip(arrays, mapped, strict=True) if m]
         # Unrolled: small matrices take as long as a turn of the loop.
-        _, found = lax.scan(lambda _, m: (None, one(m)), None, members, unroll=4)
+        _, found = lax.scan(lambda _, m: (None, call(m)), None, members, unroll=4)
         return found, jax.tree.map(lambda _: True, found)
 
     return single

@@ -85,12 +85,12 @@ class Problem(NamedTuple):
     tolerance: Float[Array, ""] | float | None = None
     max_steps: Int[Array, ""] | int | None = None
 
-    def at(self, x: Array, with_hessian: bool, memory: Any) -> Evaluation:
+    def evaluate(self, x: Array, with_hessian: bool, memory: Any) -> Evaluation:
         """Evaluate the function, without `force`."""
         remembered = (memory,) if jax.tree.leaves(memory) else ()
         return self.function(x, with_hessian, *remembered)
 
-    def pulled(self, x: Array, now: Evaluation) -> Evaluation:
+    def with_force(self, x: Array, now: Evaluation) -> Evaluation:
         """The evaluation of value - force·x, from the one of the function at x."""
         if self.force is None:
             return now
@@ -203,17 +203,17 @@ class AbstractMinimiser(eqx.Module):
 
     def terminate(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether to stop: at the goal, stalled, out of steps or beyond the limit."""
-        ended = self.converged(problem, state) | self.spent(problem, state)
+        ended = self.converged(problem, state) | self.at_limit(problem, state)
         return ended & (state.steps >= 0)
 
     def converged(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether further steps cannot improve the result."""
-        now = problem.pulled(state.x, state.now)
+        now = problem.with_force(state.x, state.now)
         goal = self.goal(problem) * now.scale + now.noise
         # NaN compares false: the loop ends at once and the code says why.
         return ~((norm(now.gradient) > goal) & ~state.stalled)
 
-    def spent(self, problem: Problem, state: State) -> Bool[Array, ""]:
+    def at_limit(self, problem: Problem, state: State) -> Bool[Array, ""]:
         """Whether further steps are not allowed."""
         own = problem.max_steps
         ended = ~(state.steps < (self.max_steps if own is None else own))
@@ -223,7 +223,7 @@ class AbstractMinimiser(eqx.Module):
 
     def finish(self, problem: Problem, state: State) -> Minimum:
         """Return the minimum of the last state, with its result code."""
-        now = problem.pulled(state.x, state.now)
+        now = problem.with_force(state.x, state.now)
         size = norm(now.gradient)
         # A stall at round-off is as good as it gets; anything above is a failure.
         slack = jnp.where(state.stalled, 1e3, 1.0)
@@ -314,7 +314,7 @@ class TrustRegionNewton(AbstractMinimiser):
     def step(self, problem: Problem, state: State) -> State | Either:
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         n, first = state.x.shape[0], state.steps < 0
-        now = problem.pulled(state.x, state.now)
+        now = problem.with_force(state.x, state.now)
         size = norm(now.gradient)
         shift = size / state.radius + eps * trace(now.hessian) / n
         shifted = now.hessian + shift * self._metric(now.hessian)
@@ -329,8 +329,8 @@ class TrustRegionNewton(AbstractMinimiser):
             p = problem.shape(state.x, p, size)
         p = jnp.where(first, 0.0, p)
         length, x = norm(p), state.x + p
-        there = problem.at(x, True, now.memory)
-        new = problem.pulled(x, there)
+        there = problem.evaluate(x, True, now.memory)
+        new = problem.with_force(x, there)
         slope = dot(now.gradient, p)
         predicted = slope + 0.5 * quadratic(now.hessian, p)
         actual = new.value - now.value
@@ -398,7 +398,7 @@ def continuation(
         The iteration, given -> `Minimum`.
     """
 
-    def larger(problem, factor):
+    def scale_force(problem, factor):
         goal = minimiser.goal(problem)
         early = jnp.where(factor > 1.0, jnp.maximum(goal, 1e-2), goal)
         return problem._replace(force=factor * problem.force, tolerance=early)
@@ -408,26 +408,28 @@ def continuation(
 
     def step(given, carry):
         (state, factor), problem = carry, problem_of(given)
-        near = (factor > 1.0) & minimiser.converged(larger(problem, factor), state)
+        near = (factor > 1.0) & minimiser.converged(scale_force(problem, factor), state)
         near = near & (state.steps >= 0)
         factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
         state = state._replace(
             radius=jnp.where(near, problem.radius, state.radius),
             stalled=state.stalled & ~near,
         )
-        return minimiser.step(larger(problem, factor), state), factor
+        return minimiser.step(scale_force(problem, factor), state), factor
 
     def terminate(given, carry):
         (state, factor), problem = carry, problem_of(given)
         converged = (factor <= 1.0) & minimiser.converged(
-            larger(problem, factor), state
+            scale_force(problem, factor), state
         )
-        return (converged | minimiser.spent(problem, state)) & (state.steps >= 0)
+        return (converged | minimiser.at_limit(problem, state)) & (state.steps >= 0)
 
     def finish(given, carry):
         (state, factor), problem = carry, problem_of(given)
         goal = minimiser.goal(problem)
-        return minimiser.finish(larger(problem, factor)._replace(tolerance=goal), state)
+        return minimiser.finish(
+            scale_force(problem, factor)._replace(tolerance=goal), state
+        )
 
     return Loop(
         init, step, terminate, finish, lambda given: trivial_result(problem_of(given))

@@ -252,7 +252,7 @@ def _loaded_arc(start, end, a, b, given):
     def slope_of(x):
         return jax.jvp(offset, (x,), (jnp.ones_like(x),))
 
-    def expanded(x):
+    def slope_expansion(x):
         (h, h1), (_, h2) = jax.jvp(slope_of, (x,), (jnp.ones_like(x),))
         return a + b * x - h, b - h1, -h2
 
@@ -261,23 +261,23 @@ def _loaded_arc(start, end, a, b, given):
     low, high = start + inset, end - inset
     top = 0.5 * (start + end)
     for _ in range(_TO_TOP):
-        _, first, second = expanded(top)
+        _, first, second = slope_expansion(top)
         bent = second < 0
         step = first / jnp.where(bent, -second, 1.0)
         # A straight line is highest at an end.
         top = jnp.where(bent, top + step, jnp.where(first > 0, end, start))
         top = jnp.clip(top, low, high)
     # Apart, or a compiler repeats all of this for each edge.
-    value, first, second = lax.optimization_barrier(expanded(top))
+    value, first, second = lax.optimization_barrier(slope_expansion(top))
     # Of the parabola at the top; of a straight line the end.
     highest = value - 0.5 * first * first / jnp.where(second < 0, second, -jnp.inf)
     left, right = (top + _to_edge(s, value, first, second) for s in (1.0, -1.0))
     for _ in range(_OF_ARCS):
         left, right = lax.optimization_barrier((left, right))
         left = jnp.clip(left, low, high)
-        left = left + _to_edge(1.0, *expanded(left))
+        left = left + _to_edge(1.0, *slope_expansion(left))
         right = jnp.clip(right, low, high)
-        right = right + _to_edge(-1.0, *expanded(right))
+        right = right + _to_edge(-1.0, *slope_expansion(right))
     inner = [a + b * x - offset(x) <= 0 for x in (start, end)]
     left = jnp.where(inner[0], jnp.clip(left, start, end), start)
     right = jnp.where(inner[1], jnp.clip(right, left, end), end)

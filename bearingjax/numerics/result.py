@@ -48,7 +48,7 @@ def code(result: Result) -> Int[Array, ""]:
     return jnp.asarray(int(result), dtype=jnp.int32)
 
 
-def worst(codes: Int[Array, "..."]) -> Int[Array, ""]:
+def worst_code(codes: Int[Array, "..."]) -> Int[Array, ""]:
     """The worst code of many."""
     return jnp.max(codes).astype(jnp.int32)
 

@@ -52,7 +52,7 @@ def meaning(about: str, **allowed: Any) -> dict[str, Any]:
     return {"about": about, **allowed}
 
 
-def mixed(*names: str) -> dict[str, Any]:
+def units(*names: str) -> dict[str, Any]:
     """Metadata of an array whose entries have several units.
 
     Args:

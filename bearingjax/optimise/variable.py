@@ -172,7 +172,7 @@ def with_numbers(design: Any, values: Mapping[str, Any]) -> Any:
     published = getattr(design, "published", None)
     if published is not None and set(parts) & set(design.rated_fields):
         # At its start too, or the first step would leap to the ratings of standards.
-        parts["published"] = published.void()
+        parts["published"] = published.without_ratings()
     if hasattr(design, "with_parts"):
         return design.with_parts(**parts)
     return dataclasses.replace(design, **parts)

@@ -172,7 +172,7 @@ def _whole(solution):
         * float(grid.half_x)
         * (np.arange(grid.n_across) - 0.5 * grid.n_across + 0.5)
     )
-    return x, 1e-6 * np.asarray(grid.whole(solution.pressure))
+    return x, 1e-6 * np.asarray(grid.unfold(solution.pressure))
 
 
 def _results(solution, slices):

@@ -23,7 +23,7 @@ from ..numerics.linear import solve
 from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
-from ..numerics.units import mixed, unit
+from ..numerics.units import unit, units
 from ..numerics.warning import Warning
 from .condensed import Condensed, Supported, condense
 from .loads import Motions, RotorLoads
@@ -78,7 +78,7 @@ class StaticEquilibrium(eqx.Module):
         eqx.field(metadata=unit(DAMPING_UNITS))
     )
     rotor: Rotor
-    motion: Float[Array, " motion"] = eqx.field(metadata=mixed("m", "rad"))
+    motion: Float[Array, " motion"] = eqx.field(metadata=units("m", "rad"))
     speed: Scalar = eqx.field(metadata=unit("rad/s"))
     residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
@@ -86,7 +86,7 @@ class StaticEquilibrium(eqx.Module):
     free: Float[Array, " motion"] = eqx.field(metadata=unit("1"))
     given: Rotor | None = None
     place: Float[Array, " motion"] | None = eqx.field(
-        metadata=mixed("m", "rad"), default=None
+        metadata=units("m", "rad"), default=None
     )
 
     to_xarray = to_xarray

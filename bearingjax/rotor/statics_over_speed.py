@@ -16,7 +16,7 @@ from jaxtyping import Array, Float, Int
 from ..design.checks import check, is_traced, positive
 from ..design.checks import count as whole
 from ..numerics.compiled.programs import program
-from ..numerics.result import Result, raise_unless_converged, worst
+from ..numerics.result import Result, raise_unless_converged, worst_code
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import rpm
 from ..numerics.warning import Warning
@@ -169,5 +169,5 @@ def _settled_over(rotor, top_speed, speeds, found) -> StaticEquilibriumOver:
         support_load=found.support_load,
         stiffness=found.stiffness,
         error=jnp.max(jnp.abs(stiffness[-2:])) / jnp.max(jnp.abs(stiffness)),
-        result=worst(found.result),
+        result=worst_code(found.result),
     )

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.bearing_set import pitch_radius
-from ..design.checks import check, concrete, instance, is_traced
+from ..design.checks import check, floats, instance, is_traced
 from ..numerics.types import as_real
 from ..numerics.units import unit
 from ..rotor import Shaft
@@ -311,7 +311,7 @@ class ShaftSystem(eqx.Module):
         """Raise unless the teeth of two gears fit each other."""
         pair = f"{one.name} and {other.name}"
         for name in ("normal_module", "pressure_angle", "helix_angle"):
-            known = concrete(getattr(one, name), getattr(other, name))
+            known = floats(getattr(one, name), getattr(other, name))
             if known and abs(known[0] - known[1]) > 1e-6 * max(map(abs, known)):
                 raise ValueError(
                     f"ShaftSystem: `{name}` is {known[0]:.9g} of {one.name} and"
@@ -328,7 +328,7 @@ class ShaftSystem(eqx.Module):
             return
         a, b = (np.asarray(outward(g, self.shaft(g.shaft))) for g in (one, other))
         between = np.arccos(np.clip(a @ b, -1.0, 1.0))
-        known = concrete(one.pitch_angle, other.pitch_angle)
+        known = floats(one.pitch_angle, other.pitch_angle)
         if known and abs(between - sum(known)) > 1e-3:
             raise ValueError(
                 f"ShaftSystem: the pitch angles of {pair} add up to"

@@ -18,7 +18,7 @@ from ..fits import (
     Mounting,
     SizeLimits,
     fit_states,
-    mounted,
+    mount,
     mounting_at,
     with_bearing_dimensions,
 )
@@ -135,13 +135,13 @@ class Installed(eqx.Module):
             differentiable with respect to every number.
 
         Raises:
-            TypeError, ValueError: As `mounted`; those of `ground`.
+            TypeError, ValueError: As `mount`; those of `ground`.
         """
         element = self.ground(throw=throw).drawing
         if self.mounting is None:
             return element
         turning = self if speed is None else self.with_speed(speed)
-        bearing = mounted(element.bearing, self.mounting, turning.conditions)
+        bearing = mount(element.bearing, self.mounting, turning.conditions)
         return eqx.tree_at(lambda e: e.bearing, element, bearing)
 
     def with_speed(self, speed: Speed) -> "Installed":

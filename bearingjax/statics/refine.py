@@ -183,7 +183,7 @@ def _slices(row, ring, a, b, y) -> Slices:
     constants = row.element.constants
     line: AbstractLineContact = constants.lines[ring]
     xi = y / constants.half_length
-    load: Scalar = line.along(constants.tables[ring], xi, a, b)
+    load: Scalar = line.load_along(constants.tables[ring], xi, a, b)
     radius = relative_radii(constants, y)[ring]
     pressure = peak_pressure(load, radius, constants.modulus)
     return Slices(as_real(a), load, pressure)

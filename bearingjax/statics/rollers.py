@@ -121,14 +121,14 @@ def distribution(row: RowResults, points: int) -> Distribution:
         weight = relative_radii(c, c.half_length * scan) ** -0.9
         loads, peaks, ends = [], [], []
         for k, (line, table) in enumerate(zip(c.lines, c.tables, strict=True)):
-            carried = line.carried(table, *approaches[k])
+            carried = line.contact_state(table, *approaches[k])
             places = line.summits(carried, scan, weight[k])
-            summits = line.at(carried, places)
+            summits = line.load(carried, places)
             radius = relative_radii(c, c.half_length * places)[k]
             pressures = peak_pressure(summits, radius, c.modulus)
             peaks.append(jnp.max(pressures))
             ends.append((summits[:2], pressures[:2]))
-            loads.append(line.at(carried, xi))
+            loads.append(line.load(carried, xi))
         load, radius = jnp.stack(loads), relative_radii(c, c.half_length * xi)
         edge_load, edge_pressure = (jnp.stack(v) for v in zip(*ends, strict=True))
         return Distribution(
@@ -172,7 +172,9 @@ def line_loads(
     def one(roller, approaches):
         c = roller.constants
         contacts = zip(c.lines, c.tables, approaches, strict=True)
-        return jnp.stack([line.along(table, xi, *at) for line, table, at in contacts])
+        return jnp.stack(
+            [line.load_along(table, xi, *at) for line, table, at in contacts]
+        )
 
     return row.row.each(one, approaches(row))
 

@@ -46,7 +46,7 @@ def at():
     def evaluate(line, a, b):
         made = line.table(RULE)
         xi = jnp.linspace(-0.6, 0.6, 7)
-        return response(line, made, RULE, a, b), line.along(made, xi, a, b)
+        return response(line, made, RULE, a, b), line.load_along(made, xi, a, b)
 
     def run(line, a, b=0.0):
         return evaluate(line, jnp.asarray(a), jnp.asarray(b))
@@ -95,7 +95,7 @@ def test_the_ends_of_a_straight_roller(at):
     line = coupled(bj.Straight())
     xi = jnp.asarray((2 * np.arange(24) + 1) / 24 - 1)
     zero = jnp.asarray(0.0)
-    got = line.along(line.table(RULE), xi, solved.approach, zero) * LENGTH / 24
+    got = line.load_along(line.table(RULE), xi, solved.approach, zero) * LENGTH / 24
     ratio = np.asarray(got) / np.diff(borne)
     assert np.abs(ratio[2:-2] - 1).max() < 0.005
     assert np.abs(ratio[[1, -2]] - 1).max() < 0.015

@@ -176,7 +176,7 @@ def test_a_soft_roller_with_free_ends():
     """Its mirrored pressure weighs more than its own; the matrix stays definite."""
     soft = bj.Material(3e9, 0.4)
     roller = RollerContact(0.015, 0.01, 0.012, material=soft, free_ends=FreeEnds())
-    assert float(FreeEnds(2.0).mirrored(soft, STEEL).share) > 0.98
+    assert float(FreeEnds(2.0).weight(soft, STEEL).share) > 0.98
     contact = roller.solve(300.0)
     assert contact.converged and not contact.truncated
     assert float(jnp.min(contact.distance)) > -1e-6 * float(contact.approach)
@@ -203,7 +203,7 @@ def test_free_ends_weight_by_compliance_of_roller():
 
     def weight(factor, roller):
         place = jnp.ones((1,))
-        return float(FreeEnds(factor).mirrored(roller, STEEL)(place, place, place))
+        return float(FreeEnds(factor).weight(roller, STEEL)(place, place, place))
 
     assert weight(1.2, STEEL) == pytest.approx(0.6, rel=ROUNDING)
     assert weight(1.2, rigid) < 1e-15

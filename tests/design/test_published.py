@@ -198,6 +198,6 @@ def test_mounted_bearings_keep_the_published_ratings():
             bore=40e-3, outside_diameter=80e-3, shaft_interference=20e-6,
             housing_interference=0.0, housing_diameter=120e-3,
         )  # fmt: skip
-        (found, *_) = rows(bj.fits.mounted(bearing, seat))
+        (found, *_) = rows(bj.fits.mount(bearing, seat))
         np.testing.assert_allclose(rated_dimensions(found), rated_dimensions(row))
         assert bool(is_as_published(found)), name

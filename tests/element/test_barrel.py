@@ -423,7 +423,9 @@ def test_coupled_slices_of_a_barrel_against_the_half_space(load):
     made = coupled.table(rule)
     got = response(coupled, made, rule, wanted.approach, jnp.zeros(()))
     assert float(got.load[0]) == pytest.approx(load, rel=4e-3)
-    middle = float(coupled.along(made, jnp.zeros(1), wanted.approach, jnp.zeros(()))[0])
+    middle = float(
+        coupled.load_along(made, jnp.zeros(1), wanted.approach, jnp.zeros(()))[0]
+    )
     assert middle == pytest.approx(
         float(jnp.interp(0.0, wanted.grid.y, wanted.line_load)), rel=6e-3
     )

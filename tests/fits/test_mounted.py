@@ -85,7 +85,7 @@ def test_raceways(bearing, inner, outer):
 @pytest.mark.parametrize("bearing", [DEEP, FOUR, CYLINDER, TAPER])
 def test_mounted_clearance_matches_fit_state(bearing):
     state = fit_state(with_bearing_dimensions(SEATS, bearing), WARM)
-    found = bj.fits.mounted(bearing, SEATS, WARM)
+    found = bj.fits.mount(bearing, SEATS, WARM)
     assert type(found) is type(bearing)
     assert float(radial_clearance(found)) == near(float(state.radial_clearance))
     assert float(state.radial_clearance) < 0.3 * float(radial_clearance(bearing))
@@ -97,8 +97,8 @@ def test_mounted_clearance_matches_fit_state(bearing):
 def test_mounted_deep_groove_bearing_given_by_contact_angle():
     angle = np.arccos(1 - 12.5 * MICRON / (2 * A))
     by_angle = bj.DeepGrooveBallBearing(**BALLS, contact_angle=angle)
-    found = bj.fits.mounted(by_angle, SEATS).radial_internal_clearance
-    wanted = bj.fits.mounted(DEEP, SEATS).radial_internal_clearance
+    found = bj.fits.mount(by_angle, SEATS).radial_internal_clearance
+    wanted = bj.fits.mount(DEEP, SEATS).radial_internal_clearance
     assert float(found) == pytest.approx(float(wanted), rel=1e-7)
 
 
@@ -112,14 +112,14 @@ def groove_centres(loss):
 def test_angular_contact_meets_at_a_smaller_angle():
     free = float(radial_clearance(ANGULAR))
     assert free == near(2 * A * (1 - np.cos(0.4)))
-    found = bj.fits.mounted(ANGULAR, SEATS, WARM)
+    found = bj.fits.mount(ANGULAR, SEATS, WARM)
     left = float(
         fit_state(with_bearing_dimensions(SEATS, ANGULAR), WARM).radial_clearance
     )
     angle, axial = groove_centres(free - left)
     assert float(found.contact_angle) == near(angle)
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.02, 4 * MICRON)
-    rows = bj.fits.mounted(pair, SEATS, WARM).rows
+    rows = bj.fits.mount(pair, SEATS, WARM).rows
     assert [float(r.bearing.contact_angle) for r in rows] == near(2 * [angle])
     # What the groove centres come nearer along the axis presses both rows, and how much
     # longer warm balls are; what grows between them moves the row at +z along +z.
@@ -205,8 +205,8 @@ def test_ratings_keep_the_angle_of_the_drawing():
     """A fit is no other bearing: it has the published C, and X and Y of its angle."""
     for bearing in (ANGULAR, FOUR):
         drawn = float(bearing.free_contact_angle)
-        once = bj.fits.mounted(bearing, SEATS, WARM)
-        again = bj.fits.mounted(once, replace(SEATS, shaft_interference=2 * MICRON))
+        once = bj.fits.mount(bearing, SEATS, WARM)
+        again = bj.fits.mount(once, replace(SEATS, shaft_interference=2 * MICRON))
         for found in (once, again):
             assert float(found.free_contact_angle) < drawn - 0.01
             assert float(found.nominal_contact_angle) == near(drawn)
@@ -262,7 +262,7 @@ def test_warm_balls_press_along_the_contacts():
     nearer = A * np.sin(0.4) - apart * np.sin(angle)
     flat = replace(ANGULAR, raceway_deviation=np.zeros((7, 2, 3)))
     element = bj.BearingElement(flat)
-    row = bj.fits.mounted(bj.BearingSet.back_to_back(flat, 0.02), loose, warm).rows[0]
+    row = bj.fits.mount(bj.BearingSet.back_to_back(flat, 0.02), loose, warm).rows[0]
     cold = axial_force(element, flat, pushed(z))
     grown = replace(grown, raceway_deviation=np.zeros((7, 2, 3)))
     wanted = axial_force(element, grown, pushed(z + nearer))
@@ -307,7 +307,7 @@ def test_slopes_by_interference_and_temperature():
     def angle(x):
         seats = replace(SEATS, shaft_interference=x[0])
         conditions = replace(WARM, inner_ring=x[1], elements=x[2], speed=x[3])
-        return bj.fits.mounted(ANGULAR, seats, conditions).contact_angle
+        return bj.fits.mount(ANGULAR, seats, conditions).contact_angle
 
     check_slopes(angle, sign=-1)  # all of them take clearance
 
@@ -394,20 +394,20 @@ def test_fit_state_growth_of_rotating_outer_ring():
 def test_mounted_rejects_invalid_arguments():
     thrust = bj.ThrustBallBearing(**BALLS)
     with pytest.raises(TypeError, match="`bearing` is a ThrustBallBearing"):
-        bj.fits.mounted(thrust, SEATS)
+        bj.fits.mount(thrust, SEATS)
     tight = replace(SEATS, shaft_interference=100 * MICRON)
     with pytest.raises(ValueError, match="`clearance` is -.*above 0.*contact angle"):
-        bj.fits.mounted(ANGULAR, tight)
-    assert float(bj.fits.mounted(DEEP, tight).radial_internal_clearance) < -50 * MICRON
+        bj.fits.mount(ANGULAR, tight)
+    assert float(bj.fits.mount(DEEP, tight).radial_internal_clearance) < -50 * MICRON
     with pytest.raises(ValueError, match="`inner_raceway` is None; give it, or"):
         fit_state(SEATS)
     with pytest.raises(ValueError, match="`inner_raceway` is 0.03056 m.*above `bore`"):
-        bj.fits.mounted(DEEP, replace(SEATS, bore=0.031))
+        bj.fits.mount(DEEP, replace(SEATS, bore=0.031))
     with pytest.raises(ValueError, match="`shaft_interference`.*1 % of `bore`"):
         replace(SEATS, shaft_interference=0.01)
     pair = bj.BearingSet.back_to_back(ANGULAR, 0.02)
     with pytest.raises(ValueError, match="`ring_width` is None; a set needs it"):
-        bj.fits.mounted(pair, replace(SEATS, ring_width=None))
+        bj.fits.mount(pair, replace(SEATS, ring_width=None))
     with pytest.raises(ValueError, match="`ring_width` is 15 m; it must be above 0"):
         replace(SEATS, ring_width=15.0)
     with pytest.raises(ValueError, match="`place` is 'middel'; it must be one of mid"):

@@ -91,9 +91,11 @@ def test_regimes():
     }
     for regime, film in cases.items():
         assert int(film.regime(SPEED)) == regime
-        assert bool(film.outside(SPEED)) == (regime != Regime.PIEZOVISCOUS_ELASTIC)
+        assert bool(film.outside_validity(SPEED)) == (
+            regime != Regime.PIEZOVISCOUS_ELASTIC
+        )
     assert int(line_film(*LINE).regime(SPEED)) == Regime.PIEZOVISCOUS_ELASTIC
-    assert bool(line_film(1e-3, *LINE[1:]).outside(SPEED))
+    assert bool(line_film(1e-3, *LINE[1:]).outside_validity(SPEED))
 
 
 def measures(numbers):

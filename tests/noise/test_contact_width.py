@@ -56,10 +56,10 @@ def test_contacts_leave_the_mean_of_waves(pressure, radius):
     if pressure == 0.5:
         wanted = 2.0 * scipy.special.j1(x) / x
     surface = Surface(*map(jnp.asarray, (radius, 0.004, 1e-4, pressure)))
-    left = np.asarray(surface.bridged(jnp.asarray(order)))
+    left = np.asarray(surface.bridged_share(jnp.asarray(order)))
     np.testing.assert_allclose(left, wanted, atol=1e-7)
     assert left[0] > 0.99 and abs(left[-1]) < 0.35
-    assert np.all(Surface(*surface[:2]).bridged(jnp.asarray(order)) == 1.0)
+    assert np.all(Surface(*surface[:2]).bridged_share(jnp.asarray(order)) == 1.0)
 
 
 @pytest.mark.slow
@@ -82,7 +82,7 @@ def test_bridged_model_attenuates_short_waves():
     start, _ = static_start(given, system)
     loads = np.asarray(system.contact_loads(start, jnp.zeros(())))
     assert half == pytest.approx(contact_half_width(row, loads), rel=1e-9)
-    x = order * float(half) / float(Surfaces.of(row).outer.radius)
+    x = order * float(half) / float(Surfaces.from_bearing(row).outer.radius)
     left = 3.0 * (np.sin(x) - x * np.cos(x)) / x**3
     assert left[1] < 0.9
     time = jnp.asarray(1.3e-3)

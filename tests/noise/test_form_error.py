@@ -17,17 +17,17 @@ ANGLES = jnp.linspace(-7.0, 9.0, 301)
 def test_measured_harmonics_pass_through_points():
     points = np.random.default_rng(0).normal(size=33) * 1e-6
     points -= points.mean()
-    shape = Harmonics.measured(points)
+    shape = Harmonics.from_heights(points)
     at = 2 * np.pi / 33 * jnp.arange(33.0)
     np.testing.assert_allclose(shape.height(at, SURFACE), points, atol=1e-18)
-    wave = Harmonics.measured(3e-6 * np.cos(5 * at + 0.4), highest=8)
+    wave = Harmonics.from_heights(3e-6 * np.cos(5 * at + 0.4), highest=8)
     assert wave.amplitude[4] == pytest.approx(3e-6, rel=ROUNDING)
     assert wave.phase[4] == pytest.approx(0.4, rel=ROUNDING)
     assert np.all(np.delete(np.asarray(wave.amplitude), 4) < 1e-20)
 
 
 def test_a_flat_profile_has_finite_derivatives():
-    slope = jax.jacfwd(lambda p: Harmonics.measured(p).amplitude)(jnp.zeros(8))
+    slope = jax.jacfwd(lambda p: Harmonics.from_heights(p).amplitude)(jnp.zeros(8))
     assert np.all(np.isfinite(slope))
 
 
@@ -48,19 +48,19 @@ def test_spall_height_follows_element_arc():
 def test_tables():
     """To (2πk/n)⁴/384 of a wave of order k."""
     shapes = (Harmonics((2, 40), (3e-6, 1e-6), (0.3, 1.0)),)
-    (table,) = Table.of(shapes, SURFACE, 2048)
+    (table,) = Table.from_shapes(shapes, SURFACE, 2048)
     exact = total(shapes, ANGLES, SURFACE)
     bound = 1e-6 * (2 * np.pi * 40 / 2048) ** 4 / 384
     error = np.abs(table.height(ANGLES, SURFACE) - exact)
     assert np.max(error) < 1.1 * bound
-    assert Table.of((), SURFACE, 16) == ()
+    assert Table.from_shapes((), SURFACE, 16) == ()
 
 
 def test_errors_turn_with_their_parts():
     bearing = bj.DeepGrooveBallBearing(
         7, 0.05, 0.01, outer_osculation=0.52, inner_osculation=0.52
     )
-    surfaces = Surfaces.of(bearing)
+    surfaces = Surfaces.from_bearing(bearing)
     errors = FormErrors(
         outer=RacewayErrors(axial=Harmonics(3, 1e-6)),
         inner=RacewayErrors(outwards=Harmonics(2, 1e-6), raised=Harmonics(5, 1e-7)),
@@ -77,7 +77,7 @@ def test_errors_turn_with_their_parts():
     own = 1e-7 * np.cos(5 * (azimuth - 1.5))
     np.testing.assert_allclose(found[:, 0, 2], even + odd, atol=1e-20)
     np.testing.assert_allclose(found[:, 1, 2], own + even - odd, atol=1e-20)
-    tables = errors.tabulated(surfaces, 2048)
+    tables = errors.as_tables(surfaces, 2048)
     np.testing.assert_allclose(tables.deviations(*given), found, atol=1e-13)
 
 
@@ -88,8 +88,8 @@ def test_errors_turn_with_their_parts():
         (lambda: Harmonics((2, 3), 1e-6), "2 orders"),
         (lambda: Harmonics(2, np.nan), "finite"),
         (lambda: Harmonics(2, "1 um"), "must be numbers"),
-        (lambda: Harmonics.measured([1.0, 2.0]), "at least 4 heights"),
-        (lambda: Harmonics.measured(np.ones(9), 5), "from 1 to 4"),
+        (lambda: Harmonics.from_heights([1.0, 2.0]), "at least 4 heights"),
+        (lambda: Harmonics.from_heights(np.ones(9), 5), "from 1 to 4"),
         (lambda: Spall(0.0, -1e-3, 1e-6), "`length`"),
         (lambda: RacewayErrors(axial=(1e-6,)), "Harmonics or Spall"),
     ],

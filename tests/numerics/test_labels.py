@@ -19,7 +19,7 @@ from bearingjax.numerics.labels import (
     to_xarray,
 )
 from bearingjax.numerics.result import Result
-from bearingjax.numerics.units import mixed, unit
+from bearingjax.numerics.units import unit, units
 
 
 @pytest.fixture(autouse=True)
@@ -31,7 +31,7 @@ def names(monkeypatch):
 
 class Part(NamedTuple):
     speed: Annotated[Float[Array, "*item"], unit("rad/s")]
-    turn: Annotated[Float[Array, "*item way=3"], mixed("m", "rad")]
+    turn: Annotated[Float[Array, "*item way=3"], units("m", "rad")]
 
 
 class Example(eqx.Module):

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import pytest
 
 from bearingjax.numerics import Result, SolveError, as_real
-from bearingjax.numerics.result import code, raise_unless_converged, worst
+from bearingjax.numerics.result import code, raise_unless_converged, worst_code
 
 
 def test_codes_are_ordered_by_gravity():
@@ -20,8 +20,8 @@ def test_codes_are_ordered_by_gravity():
         "grid_misfit",
     ]
     codes = jnp.stack([code(r) for r in (Result.SADDLE, Result.CONVERGED)])
-    assert worst(codes) == Result.SADDLE
-    assert codes.dtype == jnp.int32 and worst(codes).dtype == jnp.int32
+    assert worst_code(codes) == Result.SADDLE
+    assert codes.dtype == jnp.int32 and worst_code(codes).dtype == jnp.int32
 
 
 def test_converged_passes_through():

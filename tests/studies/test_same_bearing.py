@@ -2,7 +2,7 @@
 
 A pair on its seats, ground to a preload, warm and turning; and a single bearing on its
 seats for skidding, which is of single rows. What every entry point solves is compared
-with `preload` and `mounted` called one after the other.
+with `preload` and `mount` called one after the other.
 """
 
 import re
@@ -122,7 +122,7 @@ def by_hand(pair=True):
         **({"ring_width": 0.015} if pair else {}),
     )
     warm = FitConditions(inner_ring=25.0, shaft=25.0, speed=SPEED)
-    return bj.fits.mounted(element.bearing, mounting, warm)
+    return bj.fits.mount(element.bearing, mounting, warm)
 
 
 def facts(bearing):

@@ -71,7 +71,7 @@ class FreeEnds(eqx.Module):
         if self.factor is not None:
             positive(self, "factor")
 
-    def mirrored(self, roller: Material, raceway: Material) -> "Mirrored":
+    def weight(self, roller: Material, raceway: Material) -> "MirroredWeight":
         """Weight of the mirrored pressure in the displacement of both bodies together.
 
         Args:
@@ -79,12 +79,12 @@ class FreeEnds(eqx.Module):
         """
         poisson = roller.poisson_ratio
         own = (1.0 - poisson**2) / roller.elastic_modulus
-        return Mirrored(
+        return MirroredWeight(
             own * contact_modulus(roller, raceway), poisson, factor=self.factor
         )
 
 
-class Mirrored(eqx.Module):
+class MirroredWeight(eqx.Module):
     """Weight of pressure mirrored at an end face, see `FreeEnds`.
 
     Attributes:

@@ -131,7 +131,7 @@ class ConjugateGradients(AbstractPressureSolver):
         leaves = touching & (whole > state.pressure)
         clipped = jnp.any(leaves)
 
-        def to(share):
+        def move_by(share):
             pressure = jnp.maximum(state.pressure - share * whole, 0.0)
             return pressure, state.displacement - share * length * pushed
 
@@ -148,12 +148,12 @@ class ConjugateGradients(AbstractPressureSolver):
             # As far as the first that leaves.
             ratio = state.pressure / jnp.where(leaves, whole, 1.0)
             share = jnp.min(jnp.where(leaves, ratio, 1.0))
-            first = (*to(share), leaves & (ratio <= share), share > 0)
+            first = (*move_by(share), leaves & (ratio <= share), share > 0)
             every = (pressure, displacement, touching & (pressure <= 0), lower)
             return jax.tree.map(lambda a, b: jnp.where(lower, a, b), every, first)
 
         def none_leaves():
-            return (*to(1.0), leaves, jnp.asarray(True))
+            return (*move_by(1.0), leaves, jnp.asarray(True))
 
         pressure, displacement, leaves, moved = lax.cond(
             clipped, all_leave, none_leaves
@@ -223,14 +223,14 @@ def projected_pressure(
     inside = touching[None]
     estimates = problem.influence.estimate(jnp.where(inside, fields, 0.0))
     estimates = jnp.where(inside, estimates, 0.0)
-    sums = jnp.einsum("kmn,lmn->kl", problem.weighted, estimates)
+    sums = jnp.einsum("kmn,lmn->kl", problem.weighted_modes, estimates)
     part = solve_symmetric(sums[:, 1:], sums[:, 0])
     return estimates[0] - jnp.einsum("k,kmn->mn", part, estimates[1:])
 
 
 def _judge(problem, pressure, displacement, touching):
     """Distance of the surfaces, rigid motion, residual."""
-    distance = displacement + problem.given
+    distance = displacement + problem.given_gap
     rigid = rigid_fit(problem, touching, distance)
     distance = distance - jnp.einsum("k,kmn->mn", rigid, problem.modes)
     overlap = jnp.maximum(-distance, 0.0)
@@ -247,13 +247,13 @@ def _judge(problem, pressure, displacement, touching):
 
 def _energy(problem, pressure, displacement):
     """Energy that the pressure minimises, under its load and moment [J]."""
-    density = pressure * (0.5 * displacement + problem.given)
+    density = pressure * (0.5 * displacement + problem.given_gap)
     return jnp.sum(problem.grid.area * density)
 
 
 def _missing(problem, pressure):
     """Load, and moment over the lever, that the pressure lacks (k,) [N]."""
-    sums = jnp.einsum("kmn,mn->k", problem.weighted, pressure)
+    sums = jnp.einsum("kmn,mn->k", problem.weighted_modes, pressure)
     return problem.goal.astype(pressure.dtype) - sums
 
 
@@ -277,21 +277,21 @@ def _balance(problem, pressure, weight):
     if not modes.shape[0]:
         return jnp.maximum(pressure, 0.0)
 
-    def at(part):
+    def shift_pressure(part):
         more = jnp.einsum("k,kmn->mn", part, modes)
         return jnp.maximum(pressure + weight * more, 0.0)
 
-    def unfinished(carry):
+    def continues(carry):
         _, missing, _, count = carry
         worst = jnp.max(jnp.abs(missing)) > _rounding(pressure.dtype) * problem.load
         return worst & (count < 60)
 
     def newton(carry):
         part, missing, damping, count = carry
-        moving = jnp.where(at(part) > 0, area * weight, 0.0)[None] * modes
+        moving = jnp.where(shift_pressure(part) > 0, area * weight, 0.0)[None] * modes
         matrix = jnp.einsum("kmn,lmn->kl", moving, modes)
         there = part + damping * solve_symmetric(matrix, missing)
-        left = _missing(problem, at(there))
+        left = _missing(problem, shift_pressure(there))
         better = dot(left, left) < dot(missing, missing)
         return (
             jnp.where(better, there, part),
@@ -302,13 +302,13 @@ def _balance(problem, pressure, weight):
 
     none = jnp.zeros(modes.shape[:1], pressure.dtype)
     one = jnp.ones((), pressure.dtype)
-    begin = (none, _missing(problem, at(none)), one, jnp.asarray(0))
-    return at(lax.while_loop(unfinished, newton, begin)[0])
+    begin = (none, _missing(problem, shift_pressure(none)), one, jnp.asarray(0))
+    return shift_pressure(lax.while_loop(continues, newton, begin)[0])
 
 
 def _start(problem):
     """First pressure, and the cells that count as touching."""
-    given = problem.given
+    given = problem.given_gap
     if problem.load is None:
         return jnp.zeros_like(given), given < 0
     pressure = jnp.ones_like(given) * (problem.load / jnp.sum(problem.grid.area))

@@ -74,7 +74,7 @@ class Grid(eqx.Module):
             return 0.5 * twice
         return twice.at[0].set(1.0) if self.n_across % 2 else twice
 
-    def whole(self, field: Float[Array, "m n"]) -> Float[Array, "across n"]:
+    def unfold(self, field: Float[Array, "m n"]) -> Float[Array, "across n"]:
         """Expand a symmetric field from the cells kept to all cells [any unit]."""
         if not self.symmetric:
             return field

@@ -67,26 +67,26 @@ class AbstractInfluence(eqx.Module):
     def _apply(self, kernel, field):
         across = _Cosines if self.grid.symmetric else _Waves
         transform = across(self.grid, field.dtype)
-        return transform.back(self._along(kernel, transform.to(field)))
+        return transform.from_waves(self._multiply(kernel, transform.to_waves(field)))
 
     @abc.abstractmethod
-    def _along(self, kernel, waves) -> Any:
+    def _multiply(self, kernel, waves) -> Any:
         """Products along the roller, frequency by frequency (..., f, n)."""
 
 
 class EvenInfluence(AbstractInfluence):
     """Influence of cells of one size: values at their centres, by two transforms."""
 
-    def _along(self, kernel, waves):
+    def _multiply(self, kernel, waves):
         n = self.grid.shape[1]
         padded = padded_size(n)
         if jnp.iscomplexobj(waves):
             spectrum = jnp.fft.fft(waves, padded, axis=-1)
             both = jnp.concatenate([kernel, kernel[:, -2:0:-1]], axis=1)
             both = both.astype(spectrum.dtype)
-            return jnp.fft.ifft(spectrum * _like(both, spectrum), axis=-1)[..., :n]
+            return jnp.fft.ifft(spectrum * _expand(both, spectrum), axis=-1)[..., :n]
         spectrum = jnp.fft.rfft(waves, padded, axis=-1)
-        product = spectrum * _like(kernel.astype(spectrum.dtype), spectrum)
+        product = spectrum * _expand(kernel.astype(spectrum.dtype), spectrum)
         return jnp.fft.irfft(product, padded, axis=-1)[..., :n]
 
 
@@ -97,7 +97,7 @@ class GradedInfluence(AbstractInfluence):
     mutual), which point values of unlike cells are not.
     """
 
-    def _along(self, kernel, waves):
+    def _multiply(self, kernel, waves):
         kernel = kernel.astype(waves.dtype)
         return jnp.einsum("fjk,...fk->...fj", kernel, waves)
 
@@ -142,7 +142,7 @@ def influence(
     return kind(grid, jnp.asarray(kernel, dtype), jnp.asarray(inverse, dtype))
 
 
-def _like(kernel, spectrum):
+def _expand(kernel, spectrum):
     """The kernel with as many axes as a stack of spectra."""
     return kernel.reshape((1,) * (spectrum.ndim - 2) + kernel.shape)
 
@@ -151,8 +151,8 @@ def _even_table(xp, lags, half_x, edges):
     """∫∫ dA/r at middles of cells, for distances of cells across and along."""
     n = len(edges) - 1
     half_y = 0.5 * (edges[-1] - edges[0]) / n
-    u = half_x * _odd(xp, lags, half_x.dtype)
-    v = half_y * _odd(xp, padded_size(n) // 2 + 1, half_x.dtype)
+    u = half_x * _cell_ends(xp, lags, half_x.dtype)
+    v = half_y * _cell_ends(xp, padded_size(n) // 2 + 1, half_x.dtype)
     table = corner(u[:, None], v[None], xp)
     table = table[1:] - table[:-1]
     return table[:, 1:] - table[:, :-1]
@@ -160,7 +160,7 @@ def _even_table(xp, lags, half_x, edges):
 
 def _graded_table(xp, lags, half_x, edges, mirrored=None):
     """Means of ∫∫ dA/r over cells, for distances across and pairs of cells along."""
-    total = _strips(xp, half_x * _odd(xp, lags, half_x.dtype), edges, edges)
+    total = _strips(xp, half_x * _cell_ends(xp, lags, half_x.dtype), edges, edges)
     if mirrored is None:
         return total
     # The weight goes by distance across over that from the end, which may be much less
@@ -190,7 +190,7 @@ def _strips(xp, u, edges, sources):
     return (table[..., :-1] - table[..., 1:]) / xp.diff(edges)[None, :, None]
 
 
-def _odd(xp, count, dtype):
+def _cell_ends(xp, count, dtype):
     """Ends of cells at distances 0 to count - 1, in half cells: -1, 1, 3, ..."""
     return xp.asarray(2.0 * np.arange(count + 1) - 1.0, dtype)
 
@@ -234,10 +234,10 @@ class _Cosines:
         back = wave * np.where(ends, 1.0, 2.0)[:, None] / size
         self.backward = jnp.asarray(back.T, dtype)
 
-    def to(self, field):
+    def to_waves(self, field):
         return self.forward @ field
 
-    def back(self, waves):
+    def from_waves(self, waves):
         return self.backward @ waves
 
 
@@ -247,8 +247,8 @@ class _Waves:
     def __init__(self, grid, dtype):
         self.size, self.count = padded_size(grid.n_across), grid.n_across
 
-    def to(self, field):
+    def to_waves(self, field):
         return jnp.fft.rfft(field, self.size, axis=-2)
 
-    def back(self, waves):
+    def from_waves(self, waves):
         return jnp.fft.irfft(waves, self.size, axis=-2)[..., : self.count, :]

@@ -227,7 +227,7 @@ def _solve(problem, solver):
     pressed = batched_loop.run(solver.loop(), stop_gradient(problem))
     result = pressed.result
     solved = result == int(Result.CONVERGED)
-    misfit = solved & ~_fits(problem.grid, pressed)
+    misfit = solved & ~_grid_fits(problem.grid, pressed)
     result = jnp.where(misfit, int(Result.GRID_MISFIT), result).astype(result.dtype)
     # What failed has no derivative: NaN.
     good = solved & ~misfit
@@ -261,7 +261,7 @@ def _cells(grid, touching):
     return jnp.max(jnp.sum(times * count, axis=0)), jnp.max(jnp.sum(count, axis=1))
 
 
-def _fits(grid, pressed):
+def _grid_fits(grid, pressed):
     """Whether the grid holds the contact, and its cells are small enough for it."""
     across, along = _cells(grid, pressed.touching)
     resolved = across >= LEAST_CELLS
@@ -287,7 +287,7 @@ def _describe_failure(solution: ContactSolution) -> str:
             " grid that is wider than the roller, or not of its length."
         )
     if result is Result.GRID_MISFIT:
-        return _misfit(solution)
+        return _misfit_message(solution)
     return (
         f"The contact did not converge in {int(solution.steps)} steps (residual"
         f" {float(solution.residual):.1e}): allow more `max_steps`, or a larger"
@@ -295,7 +295,7 @@ def _describe_failure(solution: ContactSolution) -> str:
     )
 
 
-def _misfit(solution):
+def _misfit_message(solution):
     across, along = (int(count) for count in solution.cells)
     if min(across, along) < min(LEAST_CELLS, solution.grid.shape[1]):
         return (
@@ -315,9 +315,9 @@ def _balance(unknowns, args):
     pressure, rigid = unknowns
     problem, inside = args
     carried = inside * pressure
-    distance = problem.influence(carried) + problem.given
+    distance = problem.influence(carried) + problem.given_gap
     distance = distance - jnp.einsum("k,kmn->mn", rigid, problem.modes)
-    sums = jnp.einsum("kmn,mn->k", problem.weighted, carried)
+    sums = jnp.einsum("kmn,mn->k", problem.weighted_modes, carried)
     # With these weights the derivative is symmetric.
     parts = problem.grid.area * (inside * distance + (1.0 - inside) * pressure)
     return parts, problem.goal.astype(sums.dtype) - sums
@@ -363,20 +363,20 @@ def _linear(problem, touching, wanted, carried):
     if modes.shape[0]:
         fields = problem.influence.estimate(jnp.where(touching[None], modes, 0.0))
         fields = jnp.where(touching[None], fields, 0.0)
-        matrix = jnp.einsum("kmn,lmn->kl", problem.weighted, fields)
+        matrix = jnp.einsum("kmn,lmn->kl", problem.weighted_modes, fields)
         share = solve_symmetric(matrix, carried)
         start = jnp.einsum("k,kmn->mn", share, fields)
 
-    def fitted(rest):
+    def subtract_rigid(rest):
         # What is rigid in it cancels in the projection, but for its round-off.
         rigid = rigid_fit(problem, touching, rest)
         rest = rest - jnp.einsum("k,kmn->mn", rigid, modes)
         return jnp.where(touching, rest, 0.0), rigid
 
     def rest_of(pressure):
-        return fitted(problem.influence(pressure) - wanted)
+        return subtract_rigid(problem.influence(pressure) - wanted)
 
-    def unfinished(carry):
+    def continues(carry):
         *_, fall, first, steps = carry
         # Round-off may turn it negative, which ends it as well.
         return (fall > _ENOUGH**2 * first) & (steps < _STEPS)
@@ -387,7 +387,7 @@ def _linear(problem, touching, wanted, carried):
         stiff = jnp.sum(area * direction * pushed)
         length = fall / jnp.where(stiff > 0, stiff, 1.0)
         pressure = pressure - length * direction
-        rest, _ = fitted(rest - length * pushed)
+        rest, _ = subtract_rigid(rest - length * pushed)
         steepest = projected_pressure(problem, touching, rest)
         new = jnp.sum(area * rest * steepest)
         direction = steepest + new / jnp.where(fall > 0, fall, 1.0) * direction
@@ -399,7 +399,7 @@ def _linear(problem, touching, wanted, carried):
     # Round-off of what `start` displaces bounds what can be had.
     scale = jnp.sum(area * jnp.abs(start * problem.influence(start)))
     begin = (start, rest, steepest, fall, fall + scale, jnp.asarray(0))
-    pressure, *_, fall, first, _ = lax.while_loop(unfinished, step, begin)
+    pressure, *_, fall, first, _ = lax.while_loop(continues, step, begin)
     # A part that is NaN ends the loop at once, as if there were nothing to do.
     settled = fall <= jnp.finfo(fall.dtype).eps * first
     pressure = jnp.where(settled, pressure, jnp.nan)

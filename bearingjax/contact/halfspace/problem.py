@@ -44,7 +44,7 @@ class Problem(eqx.Module):
         return self.influence.grid
 
     @property
-    def given(self) -> Float[Array, "m n"]:
+    def given_gap(self) -> Float[Array, "m n"]:
         """Gap less the given part of the rigid motion [m]."""
         rest = self.gap
         if self.approach is not None:
@@ -74,7 +74,7 @@ class Problem(eqx.Module):
         return jnp.stack(fields)
 
     @property
-    def weighted(self) -> Float[Array, "k m n"]:
+    def weighted_modes(self) -> Float[Array, "k m n"]:
         """`modes` times the area of the cells [m²]."""
         return self.grid.area[None] * self.modes
 

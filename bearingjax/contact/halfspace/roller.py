@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ...design.checks import check, concrete, in_range, is_traced, positive
+from ...design.checks import check, floats, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight, between_arcs, sagitta
 from ...numerics.types import Real, RealOrNone, Scalar, as_real
@@ -86,11 +86,11 @@ class RollerContact(eqx.Module):
         if self.half_angle is not None:
             in_range(self, "half_angle", -0.7, 0.7)
         in_range(self, "raceway_half_angle", -0.5 * np.pi, 0.5 * np.pi)
-        numbers = concrete(
+        numbers = floats(
             self.roller_length, self.small_diameter, self.large_diameter, self.angle
         )
         if numbers is not None:
-            self._check_against(numbers, concrete(radius))
+            self._check_against(numbers, floats(radius))
         length, diameter = self.roller_length, self.diameter
         self.roller_profile.check(length, diameter)
         self.raceway_profile.check(length, diameter)
@@ -114,7 +114,7 @@ class RollerContact(eqx.Module):
     @property
     def warnings(self) -> tuple[Warning, ...]:
         """A warning if the half angle is not that of the diameters; none if traced."""
-        numbers = concrete(
+        numbers = floats(
             self.roller_length, self.small_diameter, self.large_diameter, self.angle
         )
         if numbers is None:
@@ -157,7 +157,7 @@ class RollerContact(eqx.Module):
         """
         mirrored = None
         if self.free_ends is not None:
-            mirrored = self.free_ends.mirrored(self.material, self.raceway_material)
+            mirrored = self.free_ends.weight(self.material, self.raceway_material)
         return influence(grid, self.modulus, mirrored)
 
     def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -211,7 +211,7 @@ class RollerContact(eqx.Module):
             ValueError: If `grid` is not as long as the roller.
         """
         x, y = grid.x, grid.y
-        fits = self._fits(grid)
+        fits = self._covers_roller(grid)
         drop = self.drop(y)
         if not grid.even:
             nodes = jnp.asarray(_NODES, y.dtype)[:, None]
@@ -222,7 +222,7 @@ class RollerContact(eqx.Module):
         gap = roller + raceway + drop[None]
         return jnp.where(fits, gap, jnp.nan) if is_traced(fits) else gap
 
-    def _fits(self, grid):
+    def _covers_roller(self, grid):
         """Whether cells reach from end to end of the roller."""
         edges, length = grid.edges, self.roller_length
         traced = is_traced(edges) or is_traced(length)

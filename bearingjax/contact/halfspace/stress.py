@@ -125,12 +125,12 @@ def _stress(grid, pressure, places, poisson, shape):
     xs, ys, steps = _corners(grid, pressure)
     points = jnp.stack([place.ravel() for place in places], axis=-1)
 
-    def at(point):
+    def point_stress(point):
         u, v = point[0] - xs[:, None], point[1] - ys[None, :]
         parts = corner_stress(u, v, point[2], poisson)
         return jnp.stack([jnp.sum(part * steps) for part in parts])
 
-    found = lax.map(jax.checkpoint(at), points, batch_size=64)
+    found = lax.map(jax.checkpoint(point_stress), points, batch_size=64)
     return Stress(*(found[:, k].reshape(shape) for k in range(6)))
 
 
@@ -157,8 +157,8 @@ def corner_stress(
     r = jnp.sqrt(u * u + v * v + z * z)
     r = jnp.where(r > 0, r, 1.0)
     # Second derivatives of V: xx, yy, zx, yz.
-    across, across_z = _over(u, z, v, r)
-    along, along_z = _over(v, z, u, r)
+    across, across_z = _ratios(u, z, v, r)
+    along, along_z = _ratios(v, z, u, r)
     sunk = -jnp.arctan2(u * v, z * r)
     # And of the logarithmic potential.
     spread = _angle(v, u) - _angle(z * v, u * r)
@@ -176,7 +176,7 @@ def corner_stress(
     )
 
 
-def _over(u, z, v, r):
+def _ratios(u, z, v, r):
     """u and z over r (r + v), of which the second factor may cancel."""
     near = u * u + z * z
     some = near > 0
@@ -195,7 +195,7 @@ def _angle(rise, run):
 
 def _corners(grid: Grid, pressure):
     """Positions of all corners of cells, and their weights (m+1, n+1) [Pa]."""
-    pressure, m = grid.whole(pressure), grid.n_across
+    pressure, m = grid.unfold(pressure), grid.n_across
     xs = 2.0 * grid.half_x * (jnp.arange(m + 1, dtype=pressure.dtype) - 0.5 * m)
     padded = jnp.pad(pressure, 1)
     steps = jnp.diff(jnp.diff(padded, axis=0), axis=1)

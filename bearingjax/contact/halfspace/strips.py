@@ -69,13 +69,13 @@ class Strips(AbstractPressureSolver):
         if problem.load is not None:
             # That of the mean pressure on all cells.
             pressure = pressure + problem.load / jnp.sum(grid.area)
-            approach = jnp.mean(problem.influence(pressure) + problem.given)
+            approach = jnp.mean(problem.influence(pressure) + problem.given_gap)
         one = jnp.ones((), pressure.dtype)
         return _State(pressure, approach, one, jnp.asarray(0, jnp.int32))
 
     def step(self, problem: Problem, state: Any) -> Any:
         table = _table(problem)
-        given, pressure = problem.given, state.pressure
+        given, pressure = problem.given_gap, state.pressure
         if problem.load is not None:
             given = given - state.approach
         if not self.along:
@@ -85,9 +85,9 @@ class Strips(AbstractPressureSolver):
         apart = np.abs(place[:, None] - place[None])
         own = table[0][apart]
         near = own if self.band is None else jnp.where(apart <= self.band, own, 0.0)
-        solve = self._clipped(near) if self.clip else self._complementary(near)
+        solve = self._clipped_solver(near) if self.clip else self._complementary(near)
 
-        def one(j, pressure):
+        def update_strip(j, pressure):
             blocks = table[jnp.abs(jnp.arange(strips) - j)]
             # What all strips but this one, and its own far cells, displace.
             others = jnp.einsum("skl,sl->k", blocks[:, apart], pressure)
@@ -96,7 +96,7 @@ class Strips(AbstractPressureSolver):
             new = solve(right)
             return pressure.at[j].set(old + self.relaxation * (new - old))
 
-        new = lax.fori_loop(0, strips, one, pressure)
+        new = lax.fori_loop(0, strips, update_strip, pressure)
         change = jnp.max(jnp.abs(new - pressure))
         change = change / jnp.maximum(jnp.max(new), jnp.finfo(new.dtype).tiny)
         new = new if self.along else new.T
@@ -110,27 +110,27 @@ class Strips(AbstractPressureSolver):
             change = jnp.maximum(change, jnp.abs(load / problem.load - 1.0))
         return _State(new, approach, change, state.steps + 1)
 
-    def _clipped(self, matrix):
+    def _clipped_solver(self, matrix):
         inverse = solve_any(matrix, jnp.eye(matrix.shape[0], dtype=matrix.dtype))
         return lambda right: jnp.maximum(inverse @ right, 0.0)
 
     def _complementary(self, matrix):
         identity = jnp.eye(matrix.shape[0], dtype=matrix.dtype) * matrix[0, 0]
 
-        def again(carry):
+        def update(carry):
             inside, _, _, count, right = carry
             system = jnp.where(inside[:, None], matrix, identity)
             pressure = solve_any(system, jnp.where(inside, right, 0.0))
             new = jnp.where(inside, pressure > 0, matrix @ pressure < right)
             return new, pressure, jnp.any(new != inside), count + 1, right
 
-        def unfinished(carry):
+        def continues(carry):
             _, _, changed, count, _ = carry
             return changed & (count < _INNER)
 
         def solve(right):
             begin = (right > 0, jnp.zeros_like(right), jnp.asarray(True), 0, right)
-            return jnp.maximum(lax.while_loop(unfinished, again, begin)[1], 0.0)
+            return jnp.maximum(lax.while_loop(continues, update, begin)[1], 0.0)
 
         return solve
 
@@ -145,7 +145,7 @@ class Strips(AbstractPressureSolver):
         finite = jnp.isfinite(state.change)
         result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
         result = jnp.where(finite, result, int(Result.NON_FINITE))
-        distance = problem.influence(state.pressure) + problem.given
+        distance = problem.influence(state.pressure) + problem.given_gap
         rigid = jnp.zeros((0,), state.pressure.dtype)
         if problem.load is not None:
             distance, rigid = distance - state.approach, state.approach[None]
@@ -165,7 +165,7 @@ class Strips(AbstractPressureSolver):
 
 def _far_too_large(problem):
     """A pressure that no contact of this problem comes near [Pa]."""
-    return 1e3 * jnp.max(jnp.abs(problem.given)) / _table(problem)[0, 0]
+    return 1e3 * jnp.max(jnp.abs(problem.given_gap)) / _table(problem)[0, 0]
 
 
 def _table(problem):

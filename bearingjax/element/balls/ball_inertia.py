@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from ...design.ball import AbstractBallBearing
 from ...numerics.types import Scalar
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 from ..frame import orbit, roll_ratio
 from ..inertia import Speed
 from .ball_speed import (
@@ -64,7 +64,7 @@ class Carried(NamedTuple):
     centrifugal: Annotated[Scalar, unit("N")]
     traction: Annotated[Float[Array, "2"], unit("N")]
     on_ball: Annotated[Float[Array, "2"], unit("N")]
-    on_rings: Annotated[Float[Array, "2 3"], mixed("N", "N m")]
+    on_rings: Annotated[Float[Array, "2 3"], units("N", "N m")]
 
 
 def ball_inertia(

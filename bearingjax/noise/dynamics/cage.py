@@ -21,7 +21,7 @@ from ...design.checks import finite, instance, non_negative, of_shape, one_of, p
 from ...element.frame import RINGS
 from ...numerics.linear import lengths
 from ...numerics.types import Real, Scalar, as_real
-from ...numerics.units import mixed, real, unit
+from ...numerics.units import real, unit, units
 from .cage_contact import CageContact
 
 
@@ -80,7 +80,7 @@ class CageForces(NamedTuple):
     """
 
     arcs: Annotated[Float[Array, " element"], unit("N")]
-    cage: Annotated[Float[Array, "3"], mixed("N", "N m")]
+    cage: Annotated[Float[Array, "3"], units("N", "N m")]
     ring: Annotated[Float[Array, "2"], unit("N")]
 
 

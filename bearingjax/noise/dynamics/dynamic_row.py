@@ -133,7 +133,7 @@ def of_rows(values: Any, bearing: Any, axis: int = 0) -> list[Any]:
 
 def _dynamic_row(row: Row, bearing: Any, speed: Speed) -> DynamicRow:
     """Return one row of elements with inertia."""
-    surfaces = Surfaces.of(bearing)
+    surfaces = Surfaces.from_bearing(bearing)
     rings = speed.outer, speed.inner
     carried = orbit(row.ratio, *rings)
     diameters = 2.0 * surfaces.element.radius, 2.0 * row.pitch_radius

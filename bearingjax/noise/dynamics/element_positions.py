@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...element.row import RowPlacement
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 
 
 class Section(NamedTuple):
@@ -18,9 +18,9 @@ class Section(NamedTuple):
         tilt: From the axis outwards (element,) [rad, N m]; `None`: none.
     """
 
-    axial: Annotated[Float[Array, " element"], mixed("m", "N")]
-    outwards: Annotated[Float[Array, " element"], mixed("m", "N")]
-    tilt: Annotated[Float[Array, " element"] | None, mixed("rad", "N m")]
+    axial: Annotated[Float[Array, " element"], units("m", "N")]
+    outwards: Annotated[Float[Array, " element"], units("m", "N")]
+    tilt: Annotated[Float[Array, " element"] | None, units("rad", "N m")]
 
     @property
     def stacked(self) -> Float[Array, "element 3"]:

@@ -22,7 +22,7 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from ...numerics.types import Scalar
-from ...numerics.units import mixed
+from ...numerics.units import units
 
 Vector = Float[Array, " n"]
 
@@ -59,7 +59,7 @@ class Stepped(NamedTuple):
         end: Motion and velocity some samples later.
     """
 
-    motion: Annotated[Float[Array, "sample n"], mixed("m", "rad")]
+    motion: Annotated[Float[Array, "sample n"], units("m", "rad")]
     acceleration: Any
     end: tuple[Vector, Vector]
 

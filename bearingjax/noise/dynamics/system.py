@@ -34,7 +34,7 @@ from ...design.form_error import FormErrors, Surfaces
 from ...element.frame import RINGS, orbit, roll_ratio
 from ...element.row import Row, RowPlacement
 from ...numerics.types import Scalar
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 from ..sensor import Sensor
 from .cage import GuidedCage, cage_forces, cage_loads
 from .dynamic_balls import ball_forces, is_written_out
@@ -394,8 +394,8 @@ class _Pressed(NamedTuple):
         pockets, land: As `cage_loads` [N]; `None` without a cage.
     """
 
-    on_ring: Annotated[Section, mixed("N", "N m")]
-    on_places: Annotated[Float[Array, "element m"], mixed("N", "N m")]
+    on_ring: Annotated[Section, units("N", "N m")]
+    on_places: Annotated[Float[Array, "element m"], units("N", "N m")]
     pockets: Annotated[Float[Array, " element"] | None, unit("N")]
     land: Annotated[Scalar | None, unit("N")]
 

@@ -71,12 +71,12 @@ class Loop(NamedTuple):
         pack, unpack = packing(begin)
         resting = None if self.is_trivial is None else self.is_trivial(given)
 
-        def ended(packed):
+        def is_done(packed):
             done = self.terminate(given, unpack(packed))
             return done if resting is None else done | resting
 
         last = lax.while_loop(
-            lambda packed: ~ended(packed),
+            lambda packed: ~is_done(packed),
             lambda packed: pack(self.step(given, unpack(packed))),
             pack(begin),
         )
@@ -136,7 +136,7 @@ def packing(example: Any) -> tuple[Callable[[Any], list[Array]], Callable[[Any],
         choices = jax.tree.leaves(state, is_leaf=_is_either)
         flags = [one.flag for one in choices if _is_either(one)]
         if not flags:
-            return joined(state)
+            return join_leaves(state)
 
         def side(k):
             either = jax.tree.map(
@@ -144,13 +144,13 @@ def packing(example: Any) -> tuple[Callable[[Any], list[Array]], Callable[[Any],
                 state,
                 is_leaf=_is_either,
             )
-            return joined(either)
+            return join_leaves(either)
 
         (flag,) = flags
         yes, no = side(1), side(2)
         return [jnp.where(flag, a, b) for a, b in zip(yes, no, strict=True)]
 
-    def joined(state):
+    def join_leaves(state):
         found = jax.tree.leaves(state)
         others = [found[k] for k in large]
         if not small:
@@ -199,13 +199,13 @@ def run(loop: Loop, given: Any, slots: int = SLOTS, idle: int = IDLE) -> Any:
     arrays, static = eqx.partition(given, eqx.is_array)
     leaves, tree = jax.tree.flatten(arrays)
 
-    def whole(leaves):
+    def rebuild_problem(leaves):
         return eqx.combine(jax.tree.unflatten(tree, leaves), static)
 
     shapes, returned = jax.tree.flatten(loop.shapes(given))
     # With more than all of them it would wait for ever.
     pair = slots, min(idle, slots)
-    task = _Task(loop, whole, pair, [(a.shape, a.dtype) for a in shapes])
+    task = _Task(loop, rebuild_problem, pair, [(a.shape, a.dtype) for a in shapes])
     out = _batched_loop.bind(
         *leaves, task=task, flags=(False,) * len(leaves), count=None
     )
@@ -218,13 +218,13 @@ class _Task:
 
     Attributes:
         loop: The iteration.
-        whole: Leaves of one problem -> argument of its functions.
+        rebuild_problem: Leaves of one problem -> argument of its functions.
         slots: Number of slots, and how many of them may be idle.
         out: Shape and type of every leaf of the result.
     """
 
     loop: Loop
-    whole: Callable[[Sequence[Array]], Any]
+    rebuild_problem: Callable[[Sequence[Array]], Any]
     slots: tuple[int, int]
     out: list[tuple[tuple[int, ...], Any]]
 
@@ -240,7 +240,7 @@ class _Task:
             Leaves of the result, each with the axis of lanes.
         """
         if count is None:
-            found = self.loop.run(self.whole(leaves))
+            found = self.loop.run(self.rebuild_problem(leaves))
         else:
             found = _in_lanes(self, flags, leaves, count)
         found = jax.tree.leaves(found)
@@ -302,7 +302,7 @@ def _batch(leaves, axes, *, task, flags, count):
     size = next(leaf.shape[0] for leaf, new in zip(leaves, more, strict=True) if new)
     both = tuple(a or b for a, b in zip(flags, more, strict=True))
 
-    def joined(leaf, old, new):
+    def join_axes(leaf, old, new):
         if count is None or not (old or new):
             return leaf
         if not new:
@@ -312,7 +312,7 @@ def _batch(leaves, axes, *, task, flags, count):
             leaf = jnp.broadcast_to(leaf[:, None], shape)
         return leaf.reshape(size * count, *leaf.shape[2:])
 
-    joint = [joined(*x) for x in zip(leaves, flags, more, strict=True)]
+    joint = [join_axes(*x) for x in zip(leaves, flags, more, strict=True)]
     lanes = size if count is None else size * count
     out = _batched_loop.bind(*joint, task=task, flags=both, count=lanes)
     if count is not None:
@@ -327,13 +327,13 @@ def _in_lanes(task, flags, leaves, count):
     common = [leaf for leaf, flag in zip(leaves, flags, strict=True) if not flag]
     own = [leaf for leaf, flag in zip(leaves, flags, strict=True) if flag]
 
-    def given(mine):
+    def problem_of(mine):
         rest, mine = iter(common), iter(mine)
-        return task.whole([next(mine if flag else rest) for flag in flags])
+        return task.rebuild_problem([next(mine if flag else rest) for flag in flags])
 
     if count < 2 * task.slots[0]:
-        return jax.vmap(lambda mine: task.loop.run(given(mine)))(own)
-    return _run_queue(task, given, own, count)
+        return jax.vmap(lambda mine: task.loop.run(problem_of(mine)))(own)
+    return _run_queue(task, problem_of, own, count)
 
 
 def _run_queue(task, given, own, count):
@@ -358,11 +358,11 @@ def _run_queue(task, given, own, count):
         new = [jnp.where(going, a, b) for a, b in zip(new, state, strict=True)]
         return new, going & ~loop.terminate(problem, unpack(new))
 
-    def leave(mine, state):
+    def finish(mine, state):
         found = loop.finish(given(unpack_own(mine)), unpack(state))
         return pack_end(jax.tree.leaves(found))
 
-    def resting(mine):
+    def find_trivial(mine):
         problem = given(mine)
         return loop.is_trivial(problem), pack_end(
             jax.tree.leaves(loop.trivial_result(problem))
@@ -370,14 +370,14 @@ def _run_queue(task, given, own, count):
 
     if loop.is_trivial is None:
         idle = jnp.zeros((count,), bool)
-        out = _blank(pack_end, end, count)
+        out = _empty_slots(pack_end, end, count)
     else:
-        idle, out = jax.vmap(resting)(own)
+        idle, out = jax.vmap(find_trivial)(own)
     own = jax.vmap(pack_own)(own)
     (queue,) = jnp.nonzero(~idle, size=count, fill_value=count)
     waiting = jnp.sum(~idle)
 
-    def refilled(taken, place, state, going):
+    def refill(taken, place, state, going):
         """The next of the queue in slots that do not go on."""
         following = taken + jnp.cumsum(~going) - 1
         fresh = queue.at[following].get(mode="fill", fill_value=count)
@@ -400,20 +400,20 @@ def _run_queue(task, given, own, count):
             lambda now: jax.vmap(step)(mine, *now),
             (state, going),
         )
-        found = jax.vmap(leave)(mine, state)
+        found = jax.vmap(finish)(mine, state)
         # What is out of range is dropped.
         to = jnp.where(going, count, place)
         out = [a.at[to].set(b, mode="drop") for a, b in zip(out, found, strict=True)]
-        return out, *refilled(taken, place, state, going)
+        return out, *refill(taken, place, state, going)
 
     at_work = jnp.zeros((width,), bool)
     none = jnp.zeros_like(waiting), jnp.zeros((width,), queue.dtype)
-    begin = refilled(*none, _blank(pack, begin, width), at_work)
+    begin = refill(*none, _empty_slots(pack, begin, width), at_work)
     carry = lax.while_loop(lambda c: jnp.any(c[2] < count), turn, (out, *begin))
     return jax.vmap(unpack_end)(carry[0])
 
 
-def _blank(pack, example, count):
+def _empty_slots(pack, example, count):
     """Zeros in the shape of `count` packed examples."""
     shapes = jax.eval_shape(pack, example)
     return [jnp.zeros((count, *a.shape), a.dtype) for a in shapes]

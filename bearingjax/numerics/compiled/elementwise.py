@@ -41,11 +41,11 @@ def elementwise(function: Callable, rows: tuple[Array, ...], args: Any) -> Any:
     def apply(rows, leaves):
         shape = rows[0].shape
 
-        def long(x):
+        def flatten_axes(x):
             return x.reshape(-1, *x.shape[len(shape) :])
 
         # Written out: broadcast within a loop, they would keep it from vectorising.
-        given = lax.optimization_barrier(jax.tree.map(long, (rows, leaves)))
+        given = lax.optimization_barrier(jax.tree.map(flatten_axes, (rows, leaves)))
         return jax.tree.map(lambda y: y.reshape(shape), jax.vmap(one)(*given))
 
     @apply.def_vmap

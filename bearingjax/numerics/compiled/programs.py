@@ -395,7 +395,7 @@ def _load(place: int | None, name: str):
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.n_outputs)
         devices = jax.devices()[: program.devices]
-        with _quiet():
+        with _silence_xla():
             run = deserialize_and_load(
                 program.executable, inputs, outputs, execution_devices=devices
             )
@@ -405,7 +405,7 @@ def _load(place: int | None, name: str):
 
 
 @contextlib.contextmanager
-def _quiet():
+def _silence_xla():
     """Silence XLA, which takes preferences of its own for features that the CPU lacks.
 
     The name of a kept program has the CPU in it: its features are the same.

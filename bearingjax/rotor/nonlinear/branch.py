@@ -12,7 +12,7 @@ from ...design.checks import positive
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import Scalar, as_real
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 from ...numerics.warning import Warning
 from .continuation import (
     Arclength,
@@ -50,8 +50,8 @@ class Event(NamedTuple):
 
     kind: str
     frequency: Annotated[float, unit("rad/s")]
-    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
-    displacement: Annotated[np.ndarray, mixed("m", "rad")]
+    amplitude: Annotated[np.ndarray, units("m", "rad")]
+    displacement: Annotated[np.ndarray, units("m", "rad")]
     multipliers: Annotated[np.ndarray, unit("1")]
     after: int
     located: bool
@@ -75,8 +75,8 @@ class Branch(NamedTuple):
     """
 
     frequency: Annotated[np.ndarray, unit("rad/s")]
-    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
-    displacement: Annotated[np.ndarray, mixed("m", "rad")]
+    amplitude: Annotated[np.ndarray, units("m", "rad")]
+    displacement: Annotated[np.ndarray, units("m", "rad")]
     multipliers: Annotated[np.ndarray, unit("1")]
     stable: np.ndarray
     unknowns: Annotated[np.ndarray, unit("1")]

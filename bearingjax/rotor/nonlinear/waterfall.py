@@ -13,7 +13,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.in_time import IntegrationOptions
 from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.types import as_real
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 from .run_up import as_frequency_table
 from .system import AbstractVibratingSystem
 from .transient import Start, beginning, simulate_traced
@@ -117,7 +117,7 @@ class Spectra(NamedTuple):
 
     speed: Annotated[np.ndarray, unit("rad/s")]
     frequency: Annotated[np.ndarray, unit("Hz")]
-    amplitude: Annotated[np.ndarray, mixed("m", "rad")]
+    amplitude: Annotated[np.ndarray, units("m", "rad")]
 
 
 def spectra_over_time(time: Any, speed: Any, motion: Any, count: int = 24) -> Spectra:

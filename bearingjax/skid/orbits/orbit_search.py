@@ -23,7 +23,7 @@ from ...numerics.lapack import solve_any
 from ...numerics.linear import solve
 from ...numerics.result import Result
 from ...numerics.types import Scalar
-from ...numerics.units import mixed, unit
+from ...numerics.units import unit, units
 from ...statics.balance import Balance
 from ..loaded import orbiting, ring_forces
 from ..model import SkidModel
@@ -291,7 +291,7 @@ class Evaluated(NamedTuple):
 
     out: Annotated[Float[Array, " unknown"], unit("N")]
     sizes: Annotated[Float[Array, " unknown"], unit("N")]
-    jacobian: Annotated[Float[Array, "unknown unknown"], mixed("N s/rad", "N/m")]
+    jacobian: Annotated[Float[Array, "unknown unknown"], units("N s/rad", "N/m")]
     solved: SolvedRow
 
 
@@ -307,7 +307,7 @@ class OrbitSolution(NamedTuple):
         solved: The row in equilibrium there.
     """
 
-    y: Annotated[Float[Array, " unknown"], mixed("rad/s", "m")]
+    y: Annotated[Float[Array, " unknown"], units("rad/s", "m")]
     residual: Annotated[Scalar, unit("1")]
     steps: Int[Array, ""]
     result: Int[Array, ""]

@@ -35,7 +35,7 @@ from ...fits import (
     WarmMaterial,
     bore_limits,
     limits,
-    mounted,
+    mount,
     mounting_at,
     needed_drive_up,
     outside_limits,
@@ -359,7 +359,7 @@ def read_fits(
         if scatters:
             bearing = _with_clearance(bearing, there.radial_clearance)
         mounting = Mounting(**seats)
-        mounted(bearing, mounting, conditions)
+        mount(bearing, mounting, conditions)
     notes = FitNotes(place, (keys.shaft or "", keys.housing or ""), unknown)
     parts = {"mounting": mounting, "conditions": conditions, "limits": limits}
     return bearing, parts, notes

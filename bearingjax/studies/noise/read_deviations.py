@@ -223,7 +223,7 @@ class ProfileKeys(DirectedKeys):
             table.fill("points", [format_number(height, "m") for height in heights])
         highest = self.highest or min(self.most, max(1, (len(heights) - 1) // 2))
         table.fill("highest", highest)
-        waves = Harmonics.measured(heights, highest)
+        waves = Harmonics.from_heights(heights, highest)
         sizes = self._each(waves.amplitude, context)
         return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
 
