@@ -108,7 +108,8 @@ def kind_of(unit: str) -> str:
 
 
 class SceneError(ValueError):
-    """A scene that cannot be read; the message names file, key, fault and remedy."""
+    """A scene that cannot be read; the message names file, line, key, fault and
+    remedy."""
 
 
 _UNITS = {

@@ -3,15 +3,15 @@
 import contextlib
 import dataclasses
 import difflib
-import re
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from ..numerics.units import unit_of
+from .key_lines import error_at, join_key, place_of
 from .quantity import KINDS, SceneError, kind_of, to_si
 
 _MISSING: Any = object()
-_BARE = re.compile(r"[A-Za-z0-9_.\[\]-]+")
 LARGEST = 1e9
 """Largest bare number allowed in a scene."""
 
@@ -64,7 +64,7 @@ class Table:
 
     Args:
         data: The table as parsed.
-        file: File name, for messages.
+        file: Path of the file, for messages; the name alone of what is no file.
         path: Dotted path of the table in the file; empty at the top.
         places: Dotted paths of keys that stand elsewhere in the file, by their name
             here: the `bearing` of a machine is its `bearings.NAME`.
@@ -73,7 +73,7 @@ class Table:
     def __init__(
         self,
         data: Mapping[str, Any],
-        file: str,
+        file: str | Path,
         path: str = "",
         places: Mapping[str, str] | None = None,
     ):
@@ -106,16 +106,16 @@ class Table:
         """Return the dotted path of a key in the file, for messages."""
         if key in self._places:
             return self._places[key]
-        shown = key if _BARE.fullmatch(key) else repr(key)
-        return f"{self._path}.{shown}" if self._path else shown
+        return join_key(self._path, key)
 
     def error(self, key: str, problem: object) -> SceneError:
-        """Return an error that names file and key."""
-        return SceneError(f"{self._file}: `{self.path_of(key)}`: {problem}")
+        """Return an error that names file, line and key."""
+        value = {"value": self._data[key]} if key in self._data else {}
+        return error_at(self._file, self.path_of(key), problem, **value)
 
     def own_error(self, problem: object) -> SceneError:
-        """Return an error that names file and table."""
-        return SceneError(f"{self._file}: `{self._path}`: {problem}")
+        """Return an error that names file, line and table."""
+        return error_at(self._file, self._path, problem)
 
     def quantity(self, key: str, kind: str, default: Any = _MISSING) -> Any:
         """Read a quantity with a unit as a number in SI.
@@ -337,14 +337,15 @@ class Table:
 
     @contextlib.contextmanager
     def building(self) -> Iterator[None]:
-        """Context that adds file and table to the error of a constructor."""
+        """Context that adds file, line and table to the error of a constructor."""
         try:
             yield
         except SceneError:
             raise
         except (ValueError, TypeError) as error:
             where = f"[{self._path}]" if self._path else "top level"
-            raise SceneError(f"{self._file}: {where}: {error}") from error
+            place = place_of(self._file, self._path)
+            raise SceneError(f"{place}: {where}: {error}") from error
 
     def finish(self) -> None:
         """Raise SceneError for unread keys, here and below."""

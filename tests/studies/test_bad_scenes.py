@@ -10,6 +10,7 @@ import pytest
 
 from bearingjax import SceneError, read_scene
 from bearingjax.files import shipped_scenes
+from bearingjax.files.scene_file import find_scene
 from bearingjax.studies.bearing.read_design import BALLS, ROLLERS
 from bearingjax.studies.study import STUDIES, study_of
 
@@ -37,6 +38,24 @@ def one_line(run):
     assert run.err.startswith("bearingjax: ") and run.err.count("\n") == 1
     assert "Traceback" not in run.err
     return run.err.removeprefix("bearingjax: ").rstrip("\n")
+
+
+def without_line(message):
+    """A message without the lines after names of scenes, and the first file's line."""
+    found = re.match(r"[^ ]+\.toml:(\d+):", message)
+    return re.sub(r"\.toml:\d+:", ".toml:", message), found and int(found[1])
+
+
+def assert_names(path, line, message):
+    """The line of a message has the key, or is that of a table in which it is missing
+    or unknown."""
+    if line is None:
+        return
+    text = path.read_text(encoding="utf-8").splitlines()[line - 1]
+    key = re.sub(r"\[\d+\]", "", re.findall(r"[`\[]([\w.\[\]]+?)[`\]]:", message)[0])
+    words = re.findall(r"[\w.]+", text.partition("#")[0])
+    named = [part for word in words for part in (word, *word.split("."))]
+    assert named and any(part in named for part in (key, *key.split("."))), text
 
 
 def a_file(folder, text):
@@ -81,7 +100,9 @@ def test_wrong_setting(run, tmp_path, monkeypatch, command, scene, settings, mes
     source = REFUSED / scene if scene.endswith(".toml") else scene
     out = tmp_path / "out.json"
     told = one_line(run(command, source, *changes, "--json", out))
-    assert told.startswith(f"{scene.removesuffix('.toml')}.toml: {message}")
+    start, line = without_line(told)
+    assert start.startswith(f"{scene.removesuffix('.toml')}.toml: {message}")
+    assert_names(find_scene(source), line, told)
     assert not out.exists()
     with pytest.raises(SceneError) as caught:
         STUDIES[command].read(source, settings)
@@ -108,33 +129,40 @@ TEXTS = {
         without("type"),
         "`bearing.designation`: is missing; give it, or a `type` with all sizes, one of"
         f" {KNOWN_BEARINGS}",
+        2,
     ),
     "no count": (
         without("n_rollers"),
         "`bearing.n_rollers`: is missing; it must be a whole number",
+        2,
     ),
     "no pitch diameter": (
         without("pitch_diameter"),
         "`bearing.pitch_diameter`: is missing; it must be a length, a text with its"
         " unit",
+        2,
     ),
     "misspelt pitch diameter": (
         TAPER.replace("pitch_diameter", "pitch_diametre"),
         "`bearing.pitch_diameter`: is missing (`pitch_diametre` is there instead); it"
         " must be a length",
+        2,
     ),
     "no axis angle": (
         without("roller_axis_angle"),
         "`bearing.roller_axis_angle`: is missing",
+        2,
     ),
     "arrangement of a taper": (
         TAPER + f'arrangement = "NJ"\nrib = {RIB}',
         "`bearing.arrangement`: is for cylindrical and needle rollers; others name"
         " their `ribs`",
+        10,
     ),
     "rib without height": (
         TAPER + '[bearing.ribs.inner_minus]\nend_radius = "90 mm"',
         "`bearing.ribs.inner_minus.contact_height`: is missing; it must be a length",
+        10,
     ),
     "broken TOML": (
         TAPER + "[operating",
@@ -154,9 +182,9 @@ TEXTS = {
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_wrong_file(run, tmp_path, name):
-    text, expected = TEXTS[name]
-    message = one_line(run("solve", a_file(tmp_path, text)))
-    assert message.startswith(f"bad.toml: {expected}")
+    text, expected, *line = TEXTS[name]
+    message, found = without_line(one_line(run("solve", a_file(tmp_path, text))))
+    assert message.startswith(f"bad.toml: {expected}") and [found] == (line or [None])
 
 
 def test_scene_file_not_utf8(run, tmp_path):

@@ -346,7 +346,7 @@ def test_wrong_cases(scene, what):
     text, message = WRONG[what]
     with pytest.raises(SceneError) as caught:
         read_cases(scene(text, files=FILES))
-    assert message in str(caught.value) and str(caught.value).startswith("many.toml: ")
+    assert message in str(caught.value) and str(caught.value).startswith("many.toml:")
     assert "\n" not in str(caught.value)
 
 

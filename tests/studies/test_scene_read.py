@@ -273,7 +273,7 @@ def test_rows_of_a_set_have_their_own_bearings(tmp_path):
 def test_wrong_rows(tmp_path, setting, message):
     with pytest.raises(bj.files.SceneError) as caught:
         with_rows(tmp_path, settings=[setting])
-    assert str(caught.value).startswith("mine.toml: ") and message in str(caught.value)
+    assert str(caught.value).startswith("mine.toml:") and message in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["needle", "tapered"])

@@ -167,7 +167,7 @@ def read_scene(source: str | Path, settings: Iterable[str] = ()) -> Scene:
         The scene, validated.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     return with_speed_warnings(scene_of(parse_bearing(path, settings), path))
@@ -207,7 +207,7 @@ def scene_of(
     Raises:
         SceneError: As `read_scene`.
     """
-    top = Table(data, path.name, places=places)
+    top = Table(data, path, places=places)
     # Tables of other commands.
     top.skip("cases", "optimise", "cage", "dynamics")
     top.skip("deviations", "vibration")

@@ -23,6 +23,7 @@ from ...design import rows_of
 from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ...element.frame import LOAD_UNITS, MOTION_UNITS
 from ...files.column_list import LARGEST, read_list
+from ...files.key_lines import error_at
 from ...files.quantity import KINDS, SceneError, kind_of, to_si
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
@@ -188,7 +189,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
@@ -197,7 +198,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
             f"{path.name}: `cases` is missing; it must be a table with one of `grid`,"
             " `file` or `spectrum`"
         )
-    keys = read_keys(CasesKeys, Table(data, path.name).table("cases"))
+    keys = read_keys(CasesKeys, Table(data, path).table("cases"))
     table, outputs = keys.table, keys.outputs
     columns = keys.columns(path)
     data = _fill_first_values(data, columns, path.name)
@@ -458,7 +459,7 @@ def _designs(data, path, columns):
     )
     if len(first) > MOST_DESIGNS:
         problem = f"make {len(first)} designs; at most {MOST_DESIGNS}"
-        raise SceneError(f"{path.name}: `cases`: {problem}")
+        raise error_at(path, "cases", problem)
     made, elements, scenes, warned = [], [], [], []
     for case in first:
         settings = {c.key: c.values[c.index[case]] for c in varied}

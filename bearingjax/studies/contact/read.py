@@ -276,11 +276,11 @@ def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactSce
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
-    top = Table(data, path.name)
+    top = Table(data, path)
     if "bearing" in data:
         problem = "a contact is one [roller] on one [raceway], or a roller of a bearing"
         raise top.error("bearing", problem)

@@ -143,11 +143,11 @@ def read_noise(
         bearings: Number of additional random bearings.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
-    top = Table(data, path.name)
+    top = Table(data, path)
     scene = with_speed_warnings(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))
     operating, deviations = top.table("operating"), top.table("deviations")

@@ -217,7 +217,7 @@ def read_bearing_optimisation(
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     settings = tuple(settings)
     path = find_scene(source)
@@ -227,7 +227,7 @@ def read_bearing_optimisation(
     if begun:
         settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
         data = parse_bearing(path, settings)
-    top = Table(data, path.name)
+    top = Table(data, path)
     scene = scene_of(data, path)
     cases, inputs = _operating(scene), scene.inputs
     if "cases" in data:

@@ -99,7 +99,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
         `Optimisation`, or `ShaftOptimisation`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     settings = tuple(settings)
     path = find_scene(source)
@@ -108,7 +108,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
         return read_bearing_optimisation(source, settings)
     check_present(data, path)
     scene = read_shafts(source, settings)
-    top = Table({"optimise": data["optimise"]}, path.name)
+    top = Table({"optimise": data["optimise"]}, path)
     if scene.heat is not None:
         problem = "does not go with [heat]; give the temperatures that it finds"
         raise top.error("optimise", problem)

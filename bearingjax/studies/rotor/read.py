@@ -260,11 +260,11 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
-    top = Table(data, path.name)
+    top = Table(data, path)
     if not is_rotor(data):
         key = "bearing" if "bearing" in data else "rotor"
         problem = "the scene of a rotor has a [rotor], and its bearings as [bearings.…]"

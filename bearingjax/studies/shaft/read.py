@@ -10,6 +10,7 @@ import numpy as np
 
 from ...cases.cases import check_hours
 from ...element.frame import LOADS
+from ...files.key_lines import error_at
 from ...files.output_files import read_matrix
 from ...files.quantity import SceneError, to_si
 from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
@@ -277,7 +278,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         source, settings: As in `read_scene`.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
@@ -285,16 +286,14 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         name = _NAMES.get(key)
         if name is not None and ("shaft" in data or name == "shaft"):
             problem = f"in a system of shafts write [{name}.NAME] for [{key}.NAME]"
-            raise SceneError(f"{path.name}: `{key}`: {problem}")
+            raise error_at(path, key, problem)
     if not is_shafts(data):
         problem = "the scene of a system of shafts has [shaft.NAME] and [bearings.NAME]"
-        raise SceneError(f"{path.name}: `shaft`: {problem}")
+        raise error_at(path, "shaft", problem)
     known: dict[str, Any] = {}
     columns: list[Varied] = []
     if "cases" in data:
-        columns = read_keys(CasesKeys, Table(data, path.name).table("cases")).columns(
-            path
-        )
+        columns = read_keys(CasesKeys, Table(data, path).table("cases")).columns(path)
     elsewhere = ("cases", "optimise")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
@@ -302,7 +301,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     count = columns[0].index.size
     if count > _MOST_CASES:
         problem = f"{count} cases are too many; at most {_MOST_CASES}"
-        raise SceneError(f"{path.name}: `cases`: {problem}")
+        raise error_at(path, "cases", problem)
     cases, every = [], []
     for case in range(count):
         changed = copy.deepcopy(alone)
@@ -312,7 +311,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
             if key.partition(".")[0] not in _VARYING:
                 problem = "cannot vary; what can: `hours`, and whole keys such as"
                 problem = f'{problem} "drive.power", in quotes, of {_ALLOWED}'
-                raise SceneError(f"{path.name}: `cases.{key}`: {problem}")
+                raise error_at(path, f"cases.{key}", problem)
             assign(changed, key, value, path.name)
         try:
             one = _read(changed, path, known)
@@ -355,7 +354,7 @@ def _with_lives(scene: ShaftScene, path: Path) -> ShaftScene:
     turning = scene.system.inertia is not None
     if scene.heat is not None and not turning:
         problem = "needs a `speed` of the drive; at rest nothing warms"
-        raise SceneError(f"{path.name}: `heat`: {problem}")
+        raise error_at(path, "heat", problem)
     lives = (
         None if one is None else life_conditions(one, turning) for one in scene.bearings
     )
@@ -370,7 +369,7 @@ def _hours(value: Any) -> float | None:
 
 
 def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene:
-    top = Table(data, path.name)
+    top = Table(data, path)
     scene = _scene(top, path, known)
     top.finish()
     return dataclasses.replace(scene, inputs=top.echo())

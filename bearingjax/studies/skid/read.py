@@ -74,11 +74,11 @@ def read_skid(
             then optional, but checked.
 
     Raises:
-        SceneError: One line with file, key, fault and the allowed values.
+        SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)
-    top = Table(data, path.name)
+    top = Table(data, path)
     scene = scene_of(data, path)
     _check_bearing(top, scene)
     lubricant = read_keys(LubricantKeys, top.table("lubricant", required=True))
