@@ -147,7 +147,7 @@ class Peer:
     @staticmethod
     def _box(seat):
         support = bj.rotor.BearingSupport(
-            1, seat.installed.at(), jnp.zeros(5), inertia=True
+            1, seat.installed.element_at(), jnp.zeros(5), inertia=True
         )
         call = jax.jit(lambda moved, speed: support.pushed(moved, speed)[:2])
         return lambda moved, speed: [np.asarray(part) for part in call(moved, speed)]

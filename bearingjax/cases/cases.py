@@ -120,7 +120,7 @@ class Cases(eqx.Module):
             raise ValueError("Cases: there are none; one at least.")
         arrays.setdefault("load", np.zeros(6))
 
-        def full(name) -> Any:
+        def fill_cases(name) -> Any:
             if name not in arrays:
                 return None
             tail = (6,) if name in vectors else ()
@@ -132,10 +132,10 @@ class Cases(eqx.Module):
             return backend.broadcast_to(array, whole)
 
         for name in ("load", "fixed_displacement"):
-            setattr(self, name, full(name))
+            setattr(self, name, fill_cases(name))
         for name in ("inner_speed", "outer_speed", "hours", "design"):
-            setattr(self, name, full(name))
-        self.prescribed = {name: full(name) for name in prescribed}
+            setattr(self, name, fill_cases(name))
+        self.prescribed = {name: fill_cases(name) for name in prescribed}
         check_hours(self.hours)
 
     @property

@@ -226,12 +226,12 @@ def add_solved(
     )
     at = jnp.minimum(known.n_solved[0], KEPT)
 
-    def put(old, new):
+    def write(old, new):
         new = jnp.where(jnp.isfinite(new), new, jnp.zeros_like(new)).astype(old.dtype)
         return lax.dynamic_update_slice_in_dim(old, new, at, 0)
 
     new = (_rotate_about_z(load, back), other, there, k, sound)
-    rows: Any = [put(*pair) for pair in zip(known[:5], new, strict=True)]
+    rows: Any = [write(*pair) for pair in zip(known[:5], new, strict=True)]
     return SolvedCases._make([*rows, known.n_solved + len(load)]), ~sound
 
 

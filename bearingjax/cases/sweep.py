@@ -35,12 +35,12 @@ from .output_labels import LARGEST, label_cases, label_output
 from .sweep_program import WARNED, Program, Task
 
 
-def _largest(field: str, solution: Solution) -> Array:
+def _largest_value(field: str, solution: Solution) -> Array:
     return jnp.max(getattr(solution, field))
 
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
-    name: functools.partial(_largest, field) for name, field in LARGEST.items()
+    name: functools.partial(_largest_value, field) for name, field in LARGEST.items()
 } | {
     "n_loaded": lambda s: jnp.sum(s.load_zone),
     "iterations": lambda s: s.stats.iterations,
@@ -92,7 +92,7 @@ class Sweep(eqx.Module):
         return {Result(int(code)).label: int(count) for code, count in pairs}
 
     @property
-    def warned(self) -> dict[str, np.ndarray]:
+    def warning_sizes(self) -> dict[str, np.ndarray]:
         """Size of every kind of warning, by its name (case,)."""
         return {
             name.removeprefix(WARNED): values
@@ -103,13 +103,13 @@ class Sweep(eqx.Module):
     @property
     def warnings(self) -> list[Warning]:
         """A warning of each kind: in how many cases, and the worst."""
-        return warnings_of_cases(self.warned, ALL)
+        return warnings_of_cases(self.warning_sizes, ALL)
 
     def warning_counts(self) -> dict[str, int]:
         """Number of cases with each kind of warning; kinds without cases left out."""
         return {
             name: int(cases.sum())
-            for name, cases in exceeded_kinds(self.warned, ALL).items()
+            for name, cases in exceeded_kinds(self.warning_sizes, ALL).items()
         }
 
     def to_xarray(self) -> Any:

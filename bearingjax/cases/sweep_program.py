@@ -214,9 +214,9 @@ class Program:
                 if pending is not None:
                     values, first, last = pending
                     if stop is not None:
-                        _wait(values)
+                        _wait_for(values)
                     for name, value in values.items():
-                        found[name][first:last] = _whole(value)[: last - first]
+                        found[name][first:last] = _copy_to_host(value)[: last - first]
                     advance(last - first)
                 pending = submitted
                 if begin is None:
@@ -247,10 +247,10 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
             lost = unsound & jnp.isfinite(start[:, 0])
             return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
 
-        def cut(a):
+        def cut_lanes(a):
             return a[order].reshape(n // lanes, lanes, *a.shape[1:])
 
-        known, out = lax.scan(chunk, known, jax.tree.map(cut, given))
+        known, out = lax.scan(chunk, known, jax.tree.map(cut_lanes, given))
         back = np.argsort(order)
         return jax.tree.map(lambda a: a.reshape(n, *a.shape[2:])[back], out), known
 
@@ -278,14 +278,14 @@ def _spread_over_devices(array, sharding):
     return jax.make_array_from_callback(array.shape, sharding, lambda i: array[i])
 
 
-def _whole(array):
+def _copy_to_host(array):
     """Copy a global array to this host."""
     if array.is_fully_addressable:
         return np.asarray(array)
     return np.asarray(multihost_utils.process_allgather(array, tiled=True))
 
 
-def _wait(values):
+def _wait_for(values):
     """Wait until arrays are computed; unlike NumPy, handle signals meanwhile."""
     while not all(value.is_ready() for value in values.values()):
         time.sleep(_PAUSE)

@@ -61,7 +61,7 @@ def columns(
         **(extra or {}),
         **case_columns(sweep.cases),
         "result": labels[np.asarray(sweep.result)],
-        **({WARNINGS: _warning_texts(sweep)} if sweep.warned else {}),
+        **({WARNINGS: _warning_texts(sweep)} if sweep.warning_sizes else {}),
         **found,
     }
 
@@ -115,8 +115,8 @@ def left_out(sweep: Sweep) -> tuple[tuple[str, tuple[str, ...]], ...]:
 def _warning_texts(sweep):
     """Warnings of each case, "kind=size" joined by "; ", sizes in SI."""
     texts = np.full(sweep.cases.count, "", dtype=object)
-    for name, cases in exceeded_kinds(sweep.warned, ALL).items():
-        new = [f"{name}={size:.6g}" for size in sweep.warned[name][cases]]
+    for name, cases in exceeded_kinds(sweep.warning_sizes, ALL).items():
+        new = [f"{name}={size:.6g}" for size in sweep.warning_sizes[name][cases]]
         old = texts[cases]
         texts[cases] = [f"{a}; {b}" if a else b for a, b in zip(old, new, strict=True)]
     return texts.astype(str)

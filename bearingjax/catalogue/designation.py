@@ -104,12 +104,12 @@ def split_designation(
     while not (found := _matching_names(words, names)):
         prefix = _prefix(words)
         if prefix is None or prefix in before:
-            raise ValueError(_unknown(text, plain, names))
+            raise ValueError(_unknown_message(text, plain, names))
         before.append(prefix)
         words = words[len(prefix[0]) :].lstrip("-")
     kind = names[found[0][0]][0]
     if any(letters.types and kind not in letters.types for _, letters in before):
-        raise ValueError(_unknown(text, plain, names))
+        raise ValueError(_unknown_message(text, plain, names))
     for name, rest in found:
         if names[name][:3] != names[found[0][0]][:3]:
             break  # letters of another bearing, such as an angle of A, AC
@@ -217,7 +217,7 @@ def _meaning(parts: tuple[tuple[str, _Letters | None], ...], text: str) -> Suffi
     return Suffixes(clearance, tuple(idle), roles)
 
 
-def _unknown(text: str, plain: str, names: Mapping[str, Any]) -> str:
+def _unknown_message(text: str, plain: str, names: Mapping[str, Any]) -> str:
     squeezed = re.sub(r"[^A-Z0-9]+", "", plain)
     words = f"{text!r} is not a bearing of the catalogue"
     bore = re.search(r"(?<!\d)\d\d\d?/(\d\d)(?!\d)", plain)

@@ -260,9 +260,9 @@ class CatalogueEntry:
         It carries the published ratings and axial factors.
         """
         bearing = bearing_of(self.design)
-        return with_published(bearing, self.published(rows_of(bearing)[0].bearing))
+        return with_published(bearing, self.ratings_for(rows_of(bearing)[0].bearing))
 
-    def published(self, row: Any) -> PublishedRatings | None:
+    def ratings_for(self, row: Any) -> PublishedRatings | None:
         """Return its ratings and axial factors for a row; `None`: not published.
 
         Of the axial factors of a self-aligning ball bearing Y2 is printed; the others

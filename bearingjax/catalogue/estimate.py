@@ -191,7 +191,7 @@ class GeometryEstimate(eqx.Module):
             + f" a row, pitch diameter {1e3 * float(row.pitch_diameter):.5g} mm,"
             f" contact angle {angle:.4g}°."
             f" C {100 * self.dynamic_error:+.1f} %, C0 {100 * self.static_error:+.1f} %"
-            f" off those given{self._reading()}; misfit {self.misfit:.1f}"
+            f" off those given{self._capacity_note()}; misfit {self.misfit:.1f}"
         )
         if self.misfit > _UNUSUAL:
             text += " (unusual: check the ratings)"
@@ -208,7 +208,7 @@ class GeometryEstimate(eqx.Module):
             else "."
         )
 
-    def _reading(self):
+    def _capacity_note(self):
         if self.raised == 1.0:
             return ""
         return f", C taken as raised by its maker to {self.raised:g} times ISO 281"
@@ -301,7 +301,7 @@ def estimate_geometry(
     for raised in dict.fromkeys((1.0, _KINDS[kind].raised)):
         taken = numbers | {"dynamic_capacity": dynamic_capacity / raised}
         try:
-            readings.append((raised, *_fits(kind, typical, taken)))
+            readings.append((raised, *_best_fits(kind, typical, taken)))
         except ValueError as problem:
             problems.append(problem)
     if not readings:
@@ -322,7 +322,7 @@ def estimate_geometry(
     )
 
 
-def _fits(kind, typical, numbers) -> tuple[_Envelope, list["_Fit"]]:
+def _best_fits(kind, typical, numbers) -> tuple[_Envelope, list["_Fit"]]:
     """The envelope, and the best sizes with each number of elements, the best first."""
     rated, known = _KINDS[kind], _envelope(numbers, kind, typical)
     _check_reach(rated, known, numbers)
@@ -463,7 +463,7 @@ def _fit_sizes(rated, known, count) -> _Fit:
 def _counts(rated, known) -> range:
     """Numbers of rolling elements worth a trial: the usual ones and more."""
     least, most = (
-        float(np.pi / np.arcsin(min(0.99, _across(rated, known) * share / known.mean)))
+        float(np.pi / np.arcsin(min(0.99, _extent(rated, known) * share / known.mean)))
         for share in np.exp(_start(known)[0]) * np.array([1.3, 0.7])
     )
     least, most = least / rated.on_circle, most / rated.on_circle
@@ -475,7 +475,7 @@ def _by_height(rated):
     return rated.flat and rated.balls is not None
 
 
-def _across(rated, known):
+def _extent(rated, known):
     """Reference length of the diameter of the rolling elements [m]."""
     return float(known.width if _by_height(rated) else known.section)
 
@@ -509,7 +509,7 @@ def _reach(rated: _Rated, known, shares, length):
         length: Roller length over the width [1].
     """
 
-    def one(share):
+    def reach_at(share):
         sizes = jnp.asarray(known.typical)[jnp.array([0, 1, 3, 4])]
         sizes = sizes.at[0].set(jnp.log(share)).at[2].set(jnp.log(length))
         diameter, pitch, _, _ = _sizes(rated, known, sizes)
@@ -517,7 +517,7 @@ def _reach(rated: _Rated, known, shares, length):
         most = jnp.floor(most / rated.on_circle)
         return _ratings(rated, known, sizes, jnp.ones(())), most
 
-    return jax.vmap(one)(shares)
+    return jax.vmap(reach_at)(shares)
 
 
 def _grid(rated, known):
@@ -525,7 +525,7 @@ def _grid(rated, known):
     limit = (1.0 - 2.0 * _WALL) * float(known.section)
     if rated.balls is not None:
         limit = min(limit, _BROADEST * float(known.width))
-    shares = np.linspace(0.15, 1.0, 60) * limit / _across(rated, known)
+    shares = np.linspace(0.15, 1.0, 60) * limit / _extent(rated, known)
     lengths = (0.3, 0.5, 0.7, _BROADEST) if rated.balls is None else (0.5,)
     parts = [_reach(rated, known, shares, np.asarray(length)) for length in lengths]
     ratings, most = (np.concatenate(part) for part in zip(*parts, strict=True))

@@ -162,7 +162,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         for name in kind.names:
             if given.get(name) is None:
                 given[name] = getattr(choices, name, None)
-        choices = kind.of(rows, **{name: given[name] for name in kind.names})
+        choices = kind.from_rows(rows, **{name: given[name] for name in kind.names})
         # A jnp.float32 among float64 would stop the solvers, which keep one dtype.
         self.bearing, self.choices = in_one_dtype((bearing, choices))
         self.equilibrium = equilibrium or TrustRegionNewton()
@@ -232,7 +232,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
     def _model(self, speed) -> BearingModel:
         alone = not isinstance(self.bearing, BearingSet)
         rows = tuple(self._row(part, speed, alone) for part in rows_of(self.bearing))
-        return BearingModel(RowGroup.of(rows), self.equilibrium, self.cage_torque)
+        return BearingModel(RowGroup.group(rows), self.equilibrium, self.cage_torque)
 
     @property
     def line_law(self) -> AbstractLineLaw | None:
@@ -283,7 +283,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 found with `speed` where there is none now, or the other way.
             TypeError: If `speed` is not a `Speed`.
         """
-        return self._at("energy", q, speed, near)
+        return self._call_model("energy", q, speed, near)
 
     def force(
         self,
@@ -301,7 +301,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Raises: as `energy`.
         """
-        return self._at("force", q, speed, near, with_near)
+        return self._call_model("force", q, speed, near, with_near)
 
     def stiffness(
         self,
@@ -315,7 +315,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Args, raises: as `force`.
         """
-        return self._at("stiffness", q, speed, near, with_near)
+        return self._call_model("stiffness", q, speed, near, with_near)
 
     def evaluate(
         self, q: Ring, speed: Speed | None = None, *, near: State | None = None
@@ -324,7 +324,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Args, raises: as `energy`.
         """
-        return self._at("evaluate", q, speed, near)
+        return self._call_model("evaluate", q, speed, near)
 
     def rows(
         self, q: Ring, speed: Speed | None = None, *, near: State | None = None
@@ -333,7 +333,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
         Args, raises: as `energy`.
         """
-        return self._at("results", q, speed, near)
+        return self._call_model("results", q, speed, near)
 
     def nothing_near(self, speed: Speed | None = None) -> State:
         """Return the initial `near`, before the first call: no element is solved yet.
@@ -342,7 +342,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             speed: Ring speeds or `None`, as in the calls.
         """
         model = self.model(speed)
-        return model.near(model.unsolved())
+        return model.starts(model.unsolved_state())
 
     def as_function(
         self,
@@ -399,33 +399,33 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
         """
         return as_function(self, speed, damping, orbit)
 
-    def _at(self, name: str, q, speed, near, with_near=False) -> Any:
+    def _call_model(self, name: str, q, speed, near, with_near=False) -> Any:
         """Call a function of the model, as one program if nothing is traced yet."""
         if is_traced(q):
-            return self._evaluated(name, q, speed, near, with_near)
-        return self._jitted(name, q, speed, near, with_near)
+            return self._call_traced(name, q, speed, near, with_near)
+        return self._call_jitted(name, q, speed, near, with_near)
 
     @eqx.filter_jit
-    def _jitted(self, *given):
-        return self._evaluated(*given)
+    def _call_jitted(self, *given):
+        return self._call_traced(*given)
 
-    def _evaluated(self, name, q, speed, near, with_near):
+    def _call_traced(self, name, q, speed, near, with_near):
         model = self.model(speed)
         model.check_near(near)
         solved = model.solve(q, near)
         value = getattr(model, name)(q, solved)
-        return (value, model.near(solved)) if with_near else value
+        return (value, model.starts(solved)) if with_near else value
 
     def _row(self, part: SetRow, speed, alone) -> Row:
         bearing, deviation = part.bearing, deviation_of(part.bearing)
 
-        def one(deviation):
+        def build(deviation):
             found = self.choices.rolling_element(part, speed, deviation.diameter)
             raceway = deviation.raceway
             return found if raceway is None else found.with_heights(raceway[:, 2])
 
         per_element = deviation.makes_unlike
-        element = jax.vmap(one)(deviation) if per_element else one(deviation)
+        element = jax.vmap(build)(deviation) if per_element else build(deviation)
         raceway = deviation.raceway
         shift = None if raceway is None else raceway[:, :, :2]
         place = None

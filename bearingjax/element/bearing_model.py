@@ -45,11 +45,11 @@ class RowGroup(eqx.Module):
     members: tuple[int, ...] = eqx.field(static=True)
 
     @classmethod
-    def of(cls, rows: tuple[Row, ...]) -> "tuple[RowGroup, ...]":
+    def group(cls, rows: tuple[Row, ...]) -> "tuple[RowGroup, ...]":
         """Like rows together, in the order of the first of each kind."""
         kinds: list[list[int]] = []
         for k, row in enumerate(rows):
-            same = (kind for kind in kinds if _alike(rows[kind[0]], row))
+            same = (kind for kind in kinds if _are_alike(rows[kind[0]], row))
             kind = next(same, None)
             if kind is None:
                 kinds.append([k])
@@ -57,7 +57,7 @@ class RowGroup(eqx.Module):
                 kind.append(k)
         return tuple(cls(_stack([rows[k] for k in kind]), (*kind,)) for kind in kinds)
 
-    def each(self, function: Callable, *arrays: Any) -> Any:
+    def map(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(row, *arrays) to every row of the group.
 
         Args:
@@ -69,14 +69,14 @@ class RowGroup(eqx.Module):
         return jax.vmap(function)(self.rows, *arrays)
 
     def parts(self, stacked: Any) -> list[Any]:
-        """Split the result of `each` into one part per row."""
+        """Split the result of `map` into one part per row."""
         if len(self.members) == 1:
             return [stacked]
         count = len(self.members)
         return [jax.tree.map(lambda a, k=k: a[k], stacked) for k in range(count)]
 
 
-def _alike(one, other):
+def _are_alike(one, other):
     leaves = [jax.tree.leaves(row) for row in (one, other)]
     return jax.tree.structure(one) == jax.tree.structure(other) and all(
         a.shape == b.shape for a, b in zip(*leaves, strict=True)
@@ -182,7 +182,7 @@ class BearingModel(eqx.Module):
         if q is None:
             return tuple(group.rows.azimuth for group in self.groups)
         return tuple(
-            group.each(lambda row: row.azimuth + row.turn(q)) for group in self.groups
+            group.map(lambda row: row.azimuth + row.turn(q)) for group in self.groups
         )
 
     @eqx.filter_jit
@@ -206,36 +206,36 @@ class BearingModel(eqx.Module):
         Raises:
             ValueError: If `q` is not of shape (12,).
         """
-        q = self._checked(q)
+        q = self._check_freedoms(q)
         if azimuths is None:
             # Only the turn is held: the azimuths are numbers of the design too.
             azimuths = self.azimuths(q if self.cage_torque else stop_gradient(q))
         starts = [None] * len(self.groups) if near is None else near
 
-        def one(row, azimuth, *near):
+        def solve_row(row, azimuth, *near):
             before = near[0] if near else None
             return row.solve(q, azimuth, self.equilibrium, before)
 
         solved = (
-            group.each(one, at, *(() if before is None else (before,)))
+            group.map(solve_row, at, *(() if before is None else (before,)))
             for group, at, before in zip(self.groups, azimuths, starts, strict=True)
         )
         solved = tuple(solved)
         if self.cage_torque:
-            azimuths = self._turned(azimuths, q, -1.0)
+            azimuths = self._turn(azimuths, q, -1.0)
         return Solved(azimuths, solved)
 
-    def _turned(self, azimuths, q, sign=1.0):
+    def _turn(self, azimuths, q, sign=1.0):
         return tuple(
-            group.each(lambda row, at: at + sign * row.turn(q), at)
+            group.map(lambda row, at: at + sign * row.turn(q), at)
             for group, at in zip(self.groups, azimuths, strict=True)
         )
 
     def _places(self, q, solved):
         """Azimuths of solved elements; with `cage_torque` as functions of q."""
-        return self._turned(solved.azimuths, q) if self.cage_torque else solved.azimuths
+        return self._turn(solved.azimuths, q) if self.cage_torque else solved.azimuths
 
-    def _checked(self, q):
+    def _check_freedoms(self, q):
         q = jnp.asarray(q, dtype=self.dtype)
         if q.shape != (12,):
             raise ValueError(
@@ -252,12 +252,12 @@ class BearingModel(eqx.Module):
             q: Ring freedoms [m, rad].
             solved: `solve` at q, if available.
         """
-        return self._energy(*self._at(q, solved))
+        return self._energy(*self._solved_at(q, solved))
 
     def _energy(self, q, solved):
         azimuths = self._places(q, solved)
         parts = [
-            jnp.sum(group.each(lambda row, *of_row: row.energy(q, *of_row), *given))
+            jnp.sum(group.map(lambda row, *of_row: row.energy(q, *of_row), *given))
             for group, *given in zip(self.groups, azimuths, solved.groups, strict=True)
         ]
         return sum(parts[1:], start=parts[0])
@@ -268,12 +268,12 @@ class BearingModel(eqx.Module):
 
         Args: as in `energy`.
         """
-        return jax.grad(self._energy)(*self._at(q, solved))
+        return jax.grad(self._energy)(*self._solved_at(q, solved))
 
     @eqx.filter_jit
     def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
         """Return `force`, or NaN if a rolling element did not converge [N, N m]."""
-        q, solved = self._at(q, solved)
+        q, solved = self._solved_at(q, solved)
         converged = self.convergence(solved)[0] == Result.CONVERGED
         # A product: the derivative of a failed case is then NaN too.
         return self.force(q, solved) * jnp.where(converged, 1.0, jnp.nan)
@@ -284,7 +284,7 @@ class BearingModel(eqx.Module):
 
         Args: as in `energy`.
         """
-        return self._second(*self._at(q, solved))[0]
+        return self._derivatives(*self._solved_at(q, solved))[0]
 
     @eqx.filter_jit
     def evaluate(
@@ -294,8 +294,8 @@ class BearingModel(eqx.Module):
 
         Args: as in `energy` and `convergence`.
         """
-        q, solved = self._at(q, solved)
-        stiffness, energy, force = self._second(q, solved)
+        q, solved = self._solved_at(q, solved)
+        stiffness, energy, force = self._derivatives(q, solved)
         result, steps, residual = self.convergence(solved, least)
         return Evaluated(
             energy=energy,
@@ -305,11 +305,11 @@ class BearingModel(eqx.Module):
             steps=steps,
             residual=residual,
             magnitude=self.magnitude(solved),
-            near=self.near(solved),
+            near=self.starts(solved),
         )
 
-    def _second(self, q, solved):
-        """Stiffness, energy and force; half the work if only `between` counts."""
+    def _derivatives(self, q, solved):
+        """Stiffness, energy and force; half the work if only `difference` counts."""
         outer, inner = split_rings(q)
 
         def energy(inner):
@@ -326,8 +326,8 @@ class BearingModel(eqx.Module):
         k, (value, f) = jax.jacfwd(partial(forces, energy), has_aux=True)(inner)
         return jnp.block([[k, -k], [-k, k]]), value, jnp.concatenate([-f, f])
 
-    def _at(self, q, solved):
-        q = self._checked(q)
+    def _solved_at(self, q, solved):
+        q = self._check_freedoms(q)
         return q, self.solve(q) if solved is None else solved
 
     def results(self, q: Ring, solved: Solved) -> tuple[RowResults, ...]:
@@ -339,7 +339,7 @@ class BearingModel(eqx.Module):
         """
         azimuths = self._places(q, solved)
         found = [
-            group.each(lambda row, *of_row: row.at(q, *of_row), *given)
+            group.map(lambda row, *of_row: row.results(q, *of_row), *given)
             for group, *given in zip(self.groups, azimuths, solved.groups, strict=True)
         ]
         return self.in_order(found)
@@ -358,7 +358,7 @@ class BearingModel(eqx.Module):
         largest = jnp.max(jnp.stack([jnp.max(load) for load in loads]))
         largest = jnp.maximum(largest, least)
         states = [
-            accept_small(s.state, largest, group.rows.element.hints.passed(load))
+            accept_small(s.state, largest, group.rows.element.hints.passed_load(load))
             for group, s, load in zip(self.groups, solved.groups, loads, strict=True)
         ]
         codes = [s.result.reshape(-1) for s in states]
@@ -372,10 +372,10 @@ class BearingModel(eqx.Module):
             jnp.max(jnp.concatenate([s.residual.reshape(-1) for s in states])),
         )
 
-    def near(self, solved: Solved) -> tuple[ElementStart, ...]:
+    def starts(self, solved: Solved) -> tuple[ElementStart, ...]:
         """Return the state from which a solve near by may start."""
         return tuple(
-            group.each(lambda row, s: s.near(row), state)
+            group.map(lambda row, s: s.starts(row), state)
             for group, state in zip(self.groups, solved.groups, strict=True)
         )
 
@@ -391,7 +391,7 @@ class BearingModel(eqx.Module):
         """
         if near is None:
             return
-        wanted = jax.eval_shape(lambda: self.near(self.unsolved()))
+        wanted = jax.eval_shape(lambda: self.starts(self.unsolved_state()))
         shapes = [[jnp.shape(x) for x in jax.tree.leaves(n)] for n in (near, wanted)]
         if shapes[0] != shapes[1]:
             raise ValueError(
@@ -433,14 +433,14 @@ class BearingModel(eqx.Module):
 
         Like elements count once.
         """
-        return [group.each(lambda row: row.each(function)) for group in self.groups]
+        return [group.map(lambda row: row.map(function)) for group in self.groups]
 
-    def unsolved(self) -> Solved:
+    def unsolved_state(self) -> Solved:
         """Return the unsolved bearing; its `near` holds no information."""
-        groups = (group.each(lambda row: row.unsolved()) for group in self.groups)
+        groups = (group.map(lambda row: row.unsolved_state()) for group in self.groups)
         return Solved(self.azimuths(), tuple(groups))
 
-    def following(self, q: Ring, solved: Solved) -> Solved:
+    def follow_azimuths(self, q: Ring, solved: Solved) -> Solved:
         """Solved elements whose azimuths follow both gz and the design in derivatives.
 
         Args:

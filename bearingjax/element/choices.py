@@ -74,7 +74,7 @@ class AbstractChoices(eqx.Module):
 
     @classmethod
     @abc.abstractmethod
-    def of(cls, rows: tuple[SetRow, ...], **given: Any) -> "AbstractChoices":
+    def from_rows(cls, rows: tuple[SetRow, ...], **given: Any) -> "AbstractChoices":
         """Return the given choices, with defaults for the rest.
 
         Args:
@@ -154,7 +154,7 @@ class RollerChoices(AbstractChoices):
     names = ("line_law", "quadrature", "kinematics")
 
     @classmethod
-    def of(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
+    def from_rows(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
         cls,
         rows: tuple[SetRow, ...],
         line_law: Any = None,
@@ -231,7 +231,7 @@ class BallChoices(AbstractChoices):
     names = ("point_law", "raceway_control", "kinematics")
 
     @classmethod
-    def of(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
+    def from_rows(  # pyright: ignore[reportIncompatibleMethodOverride] its own `names`
         cls,
         rows: tuple[SetRow, ...],
         point_law: Any = None,
@@ -321,11 +321,11 @@ def in_one_dtype(tree: Any) -> Any:
     """All real numbers in JAX's floating type: float64, or float32 if that is off."""
     dtype = jax.dtypes.canonicalize_dtype(float)
 
-    def cast(leaf):
+    def cast_leaf(leaf):
         other = eqx.is_inexact_array(leaf) and leaf.dtype != dtype
         return leaf.astype(dtype) if other else leaf
 
-    return jax.tree.map(cast, tree)
+    return jax.tree.map(cast_leaf, tree)
 
 
 def check_kinds(choices: dict) -> None:

@@ -310,11 +310,11 @@ def _problem(given: _Inputs, shapes) -> Problem:
         kept = contacts if hints.keeps_response else ()
         return Evaluation(value, d.gradient, hessian, scale, noise, kept)
 
-    def corrected(x, step, size):
-        return hints.corrected(ring_motions(element, rings), x, step, size)
+    def correct_step(x, step, size):
+        return hints.correct_step(ring_motions(element, rings), x, step, size)
 
     memory = _zeros(shapes)
-    correction = corrected if hints.corrects_steps else None
+    correction = correct_step if hints.corrects_steps else None
     return Problem(function, given.start, given.radius, correction, memory)
 
 

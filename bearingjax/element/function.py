@@ -115,7 +115,7 @@ def _force(motion, velocity, time, parameters, near):
         if damping.ndim == 0:
             damping = damping * jnp.asarray(_BETWEEN_RINGS, damping.dtype)
         force = force + damping @ jnp.asarray(velocity)
-    return force if near is None else (force, model.near(solved))
+    return force if near is None else (force, model.starts(solved))
 
 
 def as_function(

@@ -76,7 +76,7 @@ class Linearised(AbstractKinematics):
     """
 
     def roller(self, constants: ContactConstants) -> AbstractRollerGeometry:
-        return LinearisedRoller.of(constants)
+        return LinearisedRoller.from_constants(constants)
 
     def ball(self, part: SetRow) -> AbstractBallGeometry:
         bearing: Any = part.bearing
@@ -132,7 +132,7 @@ class Finite(AbstractKinematics):
         return True
 
     def roller(self, constants: ContactConstants) -> AbstractRollerGeometry:
-        return FiniteRoller.of(constants)
+        return FiniteRoller.from_constants(constants)
 
     def ball(self, part: SetRow) -> AbstractBallGeometry:
         bearing: Any = part.bearing

@@ -130,7 +130,7 @@ class RollerSearchHints(SearchHints):
         return jnp.max(jnp.abs(self.element.constants.gap))
 
     def reach(self, rings: Any) -> Scalar:
-        t, m, tilt = jnp.abs(rings.between)
+        t, m, tilt = jnp.abs(rings.difference)
         return t + m + tilt * self.element.constants.half_length
 
     @property
@@ -146,10 +146,10 @@ class RollerSearchHints(SearchHints):
             lever = lever + jnp.where(jnp.isfinite(arc), arc, 0.0)
         return 1.0 + lever / c.half_length
 
-    def pressed(self, approach: Scalar) -> Scalar:
-        return self.element.constants.lines[0].pressed(approach)
+    def approximate_load(self, approach: Scalar) -> Scalar:
+        return self.element.constants.lines[0].approximate_load(approach)
 
-    def passed(self, load: Float[Array, "*element contact"]) -> Any:
+    def passed_load(self, load: Float[Array, "*element contact"]) -> Any:
         return jnp.min(load[..., :2], axis=-1)
 
     @property
@@ -177,7 +177,7 @@ class RollerSearchHints(SearchHints):
         return open_ if at.rib is None else open_ & jnp.all(at.rib <= 0)
 
     def start(self, rings: Any) -> Float[Array, " n"]:
-        element, midway = self.element, self._aligned(rings)
+        element, midway = self.element, self._aligned_start(rings)
         if element.body_force is None:
             return midway
         # A loose roller is thrown on the outer raceway: from anywhere but flat on it,
@@ -205,7 +205,7 @@ class RollerSearchHints(SearchHints):
         thrown = norm(self._on_unknowns()) > 10.0 * element.tether * size
         return midway + jnp.where(thrown & (before < 0), share, 0.0) * seat
 
-    def _aligned(self, rings):
+    def _aligned_start(self, rings):
         """The midpoint; of a barrel where it lies even on both raceways (3,) [m].
 
         That is its equilibrium between equal raceways without ribs.
@@ -214,11 +214,11 @@ class RollerSearchHints(SearchHints):
         if element.constants.arc_radii is None or element.constants.ribs is not None:
             return midway
 
-        def uneven(both):
+        def unevenness(both):
             return jnp.stack([both[0, 1], both[1, 1], both[0, 0] - both[1, 0]])
 
         def step(_, x):
-            off, rates = map(uneven, element.geometry.on_raceways(rings, x))
+            off, rates = map(unevenness, element.geometry.on_raceways(rings, x))
             # Least squares: straight raceways say nothing of a shift along them.
             normal = rates.T @ rates + 1e-12 * jnp.eye(3, dtype=x.dtype)
             return x - solve(normal, rates.T @ off, symmetric=True)
@@ -238,7 +238,7 @@ class RollerSearchHints(SearchHints):
 def _raceways(constants: ContactConstants, quadrature, at) -> Expansion:
     """Both raceway contacts: in one batch if their profiles are of one structure."""
 
-    def one(line, table, ab) -> Expansion:
+    def expand(line, table, ab) -> Expansion:
         return expansion(ab, (line, table, quadrature))
 
     pairs = list(zip(constants.lines, constants.tables, strict=True))
@@ -248,8 +248,8 @@ def _raceways(constants: ContactConstants, quadrature, at) -> Expansion:
     )
     if same:
         stacked: Any = jax.tree.map(lambda a, b: jnp.stack([a, b]), *pairs)
-        return jax.vmap(one)(stacked[0], stacked[1], at)
-    results = [one(line, table, at[k]) for k, (line, table) in enumerate(pairs)]
+        return jax.vmap(expand)(stacked[0], stacked[1], at)
+    results = [expand(line, table, at[k]) for k, (line, table) in enumerate(pairs)]
     return jax.tree.map(lambda a, b: jnp.stack([a, b]), *results)
 
 

@@ -94,7 +94,7 @@ class LinearisedRoller(AbstractRollerGeometry):
     of_own: Float[Array, "contact 3"]
 
     @classmethod
-    def of(cls, constants: ContactConstants) -> "LinearisedRoller":
+    def from_constants(cls, constants: ContactConstants) -> "LinearisedRoller":
         """Terms that do not depend on the motion, computed once per design."""
         rows = _rows(constants)
         ribs = constants.ribs
@@ -117,7 +117,7 @@ class LinearisedRoller(AbstractRollerGeometry):
         return dataclasses.replace(self, start=self.start.at[:4].add(more))
 
     def coordinates(self, rings: RingMotion, x: Unknowns) -> Approaches:
-        moved = self.of_rings * rings.between[None] + self.of_own * x[None]
+        moved = self.of_rings * rings.difference[None] + self.of_own * x[None]
         return _by_name(self.start + jnp.sum(moved, axis=1))
 
     def on_raceways(
@@ -150,7 +150,7 @@ class FiniteRoller(AbstractRollerGeometry):
     of_own: Float[Array, "contact 4 3"]
 
     @classmethod
-    def of(cls, constants: ContactConstants) -> "FiniteRoller":
+    def from_constants(cls, constants: ContactConstants) -> "FiniteRoller":
         """Terms that do not depend on the motion, computed once per design."""
         c, ribs = constants, constants.ribs
         one, half = jnp.ones_like(c.half_length), 0.5 * c.diameter
@@ -274,10 +274,10 @@ class _Arc(eqx.Module):
         stands by (k f - n)/k with the normal n of the moved ring, along the unit vector
         e. All is finite where k is zero.
         """
-        k, swing, roll = self.curvature, _turning(u[2]), _turning(u[3])
-        n, g = _turned(swing, self.normal), _turned(roll, self.along)
-        c = _turned(swing, self.middle) + self.gap * n
-        m = _turned(roll, self.middle)
+        k, swing, roll = self.curvature, _tangent(u[2]), _tangent(u[3])
+        n, g = _rotate(swing, self.normal), _rotate(roll, self.along)
+        c = _rotate(swing, self.middle) + self.gap * n
+        m = _rotate(roll, self.middle)
         f = u[:2] + self.gap * n + _turn(swing, self.middle) - _turn(roll, self.middle)
         far = k * dot(f, f) - 2.0 * dot(n, f)
         distance = jnp.sqrt(1.0 + k * far)
@@ -313,9 +313,9 @@ class _Arc(eqx.Module):
 def _moved_points(u, at):
     """One approach of `_Point`."""
     normal, point, own = at.normal, at.point, at.own
-    swing, roll = _turning(u[2]), _turning(u[3])
+    swing, roll = _tangent(u[2]), _tangent(u[3])
     moved = at.share * u[:2] + _turn(swing, point) - _turn(roll, own)
-    point, own = _turned(swing, point), _turned(roll, own)
+    point, own = _rotate(swing, point), _rotate(roll, own)
     first = jnp.stack(
         [*(-at.share * normal), _cross(normal, point), _cross(own, normal)]
     )
@@ -329,7 +329,7 @@ def _cross(a, b):
     return a[0] * b[1] - a[1] * b[0]
 
 
-def _turning(angle):
+def _tangent(angle):
     """tan(angle/2) and twice its squared cosine. Both end in a division, as above."""
     half = 0.5 * angle
     tangent = jnp.sin(half) / jnp.cos(half)
@@ -348,7 +348,7 @@ def _turn(turning, vector):
     )
 
 
-def _turned(turning, vector):
+def _rotate(turning, vector):
     return vector + _turn(turning, vector)
 
 

@@ -40,7 +40,7 @@ class RingMotion(NamedTuple):
         return 0.5 * (self.outer + self.inner)
 
     @property
-    def between(self) -> Float[Array, " h"]:
+    def difference(self) -> Float[Array, " h"]:
         """Motion of the inner ring against the outer one (h,)."""
         return self.inner - self.outer
 

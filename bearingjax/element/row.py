@@ -71,7 +71,7 @@ class Row(eqx.Module):
     spring: PreloadSpring | None
     per_element: bool = eqx.field(static=True)
 
-    def each(self, function: Callable, *arrays: Any) -> Any:
+    def map(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(element, *arrays) to every rolling element.
 
         Args:
@@ -114,31 +114,31 @@ class Row(eqx.Module):
         row, q, azimuth = stop_gradient((self, q, azimuth))
         local = row.local(q)
         if row.spring is None:
-            return row._solved(local, azimuth, minimiser, near)
-        return row._pressed(row.spring, local, azimuth, minimiser, near)
+            return row._solve_elements(local, azimuth, minimiser, near)
+        return row._solve_with_spring(row.spring, local, azimuth, minimiser, near)
 
-    def _solved(self, local, azimuth, minimiser, near) -> SolvedRow:
+    def _solve_elements(self, local, azimuth, minimiser, near) -> SolvedRow:
         shift = jnp.concatenate([r[_TRANSLATIONS] for r in local])
         tilt = jnp.concatenate([r[_TILTS] for r in local])
         magnitude = jnp.max(jnp.abs(shift))
         magnitude = magnitude + self.pitch_radius * jnp.max(jnp.abs(tilt))
         rings = self.in_element_axes(local, azimuth)
 
-        def one(element, rings, *near):
+        def solve_one(element, rings, *near):
             found = solve_element(element, rings, magnitude, minimiser, *near)
             return *found, magnitude
 
         starts = () if near is None else (near,)
-        state, energies, magnitudes = self.each(one, rings, *starts)
+        state, energies, magnitudes = self.map(solve_one, rings, *starts)
         return SolvedRow(rings, magnitudes, state, energies)
 
-    def _pressed(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
+    def _solve_with_spring(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
         """Solve as `_solve`, with the travel at which the spring balances the row."""
 
         def function(travel, _, memory):
             moved = _close_axially(local, travel[0])
-            solved = self._solved(moved, azimuth, minimiser, near)
-            energy, force, stiff = self._summed(moved, azimuth, solved)
+            solved = self._solve_elements(moved, azimuth, minimiser, near)
+            energy, force, stiff = self._sum_derivatives(moved, azimuth, solved)
             stored, push, rate = spring.push(travel[0])
             pull, own = force[_CLOSING] - push, stiff[_CLOSING, _CLOSING]
             value = energy + stored
@@ -152,7 +152,7 @@ class Row(eqx.Module):
             return Evaluation(value, pull[None], hessian, push, noise, solved)
 
         one = jnp.ones((1,), local.inner.dtype)
-        unknown = self.unsolved()._replace(travel=(), balance=())
+        unknown = self.unsolved_state()._replace(travel=(), balance=())
         minimum = TrustRegionNewton().minimise(
             function,
             0.0 * one,
@@ -171,7 +171,7 @@ class Row(eqx.Module):
 
         return jax.value_and_grad(energy)(jnp.concatenate(local))
 
-    def _summed(self, local, azimuth, solved):
+    def _sum_derivatives(self, local, azimuth, solved):
         """Energy and gradient as in `_forces`, and the Hessian."""
 
         def forces(q):
@@ -185,10 +185,10 @@ class Row(eqx.Module):
     def _sum(self, local, azimuth, solved):
         """Energy of all elements at freedoms in the row's own axes."""
 
-        def one(solved_element, rings, energies):
+        def energy(solved_element, rings, energies):
             return expand(condense, rings, solved_element, energies)
 
-        return jnp.sum(solved.each(self, one, self.in_element_axes(local, azimuth)))
+        return jnp.sum(solved.map(self, energy, self.in_element_axes(local, azimuth)))
 
     def energy(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].
@@ -207,7 +207,7 @@ class Row(eqx.Module):
         args = self, azimuth, solved
         return expand(_with_spring, jnp.concatenate(local), args)
 
-    def at(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
+    def results(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
         """Results of the elements of a solved row, with derivatives.
 
         Args:
@@ -219,7 +219,7 @@ class Row(eqx.Module):
             local = _close_axially(local, travel)
         rings = self.in_element_axes(local, azimuth)
 
-        def one(solved_element, rings, energies):
+        def element_results(solved_element, rings, energies):
             x = own_unknowns(solved_element, rings)
 
             def loads(element, rings, x):
@@ -231,7 +231,7 @@ class Row(eqx.Module):
             nothing = energies.aux.contact_load == 0.0
             return x, jnp.where(nothing, 0.0, load)
 
-        x, load = solved.each(self, one, rings)
+        x, load = solved.map(self, element_results, rings)
         return RowResults(self, local, azimuth, rings, x, load, travel)
 
     def local(self, q: Ring) -> RingMotion:
@@ -257,27 +257,29 @@ class Row(eqx.Module):
             azimuth: Azimuths of its elements [rad].
         """
 
-        def one(element, azimuth, *shift):
+        def in_axes(element, azimuth, *shift):
             axes = element.axes(azimuth)
             rings = shift_motions(local, azimuth, shift[0]) if shift else local
             if element.sees_difference:
-                return axes @ rings.between
+                return axes @ rings.difference
             return jnp.concatenate([axes @ rings.outer, axes @ rings.inner])
 
-        return self.each(one, azimuth, *(() if self.shift is None else (self.shift,)))
+        return self.map(
+            in_axes, azimuth, *(() if self.shift is None else (self.shift,))
+        )
 
-    def unsolved(self) -> SolvedRow:
+    def unsolved_state(self) -> SolvedRow:
         """Return an unsolved row in the shape of a solved one."""
         local = self.local(jnp.zeros((12,), self.ratio.dtype))
         rings = jnp.zeros_like(self.in_element_axes(local, self.azimuth))
         n, zero = self.element.n_unknowns, jnp.zeros((), rings.dtype)
 
-        def one(element, rings):
+        def unsolved_element(element, rings):
             x = jnp.zeros((n,), rings.dtype)
             contacts = jax.eval_shape(lambda: response(element, rings, x))
             return *unloaded_result(rings, x, contacts), zero
 
-        state, energies, magnitude = self.each(one, rings)
+        state, energies, magnitude = self.map(unsolved_element, rings)
         travel = () if self.spring is None else zero
         balance = () if self.spring is None else jnp.zeros((), jnp.int32)
         return SolvedRow(rings, magnitude, state, energies, travel, balance)
@@ -334,7 +336,7 @@ def _with_spring(q, args, order) -> Expansion:
     if order < 2:
         energy, force = row._forces(local, azimuth, solved)
         return Expansion(energy + stored, force, ())
-    energy, force, stiffness = row._summed(local, azimuth, solved)
+    energy, force, stiffness = row._sum_derivatives(local, azimuth, solved)
     own = stiffness[_CLOSING, _CLOSING] + rate
     held = own > 0
     share = jnp.where(held, 1.0 / jnp.where(held, own, 1.0), 0.0)

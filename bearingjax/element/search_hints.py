@@ -34,7 +34,7 @@ class SearchHints(eqx.Module):
 
     def reach(self, rings: Any) -> Scalar:
         """Relative displacement of the rings in the element's section [m]."""
-        return jnp.sum(jnp.abs(rings.between[: self.element.n_displacements]))
+        return jnp.sum(jnp.abs(rings.difference[: self.element.n_displacements]))
 
     @property
     def spread(self) -> Scalar | float:
@@ -42,7 +42,7 @@ class SearchHints(eqx.Module):
         the element [1]: contact coordinates round by as much more."""
         return 1.0
 
-    def pressed(self, approach: Scalar) -> Scalar:
+    def approximate_load(self, approach: Scalar) -> Scalar:
         """Approximate load of one raceway contact pressed by `approach` [N].
 
         From this size on, contacts are pressed by more than the play between the rings.
@@ -103,10 +103,10 @@ class SearchHints(eqx.Module):
 
     @property
     def corrects_steps(self) -> bool:
-        """Whether `corrected` saves time. Static."""
+        """Whether `correct_step` saves time. Static."""
         return False
 
-    def corrected(
+    def correct_step(
         self,
         rings: Any,
         x: Float[Array, " n"],
@@ -122,7 +122,7 @@ class SearchHints(eqx.Module):
         """
         return step
 
-    def passed(self, load: Float[Array, "*element contact"]) -> Any:
+    def passed_load(self, load: Float[Array, "*element contact"]) -> Any:
         """Load that elements pass from ring to ring (…,) [N]; `None`: not known.
 
         Args:

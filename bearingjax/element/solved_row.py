@@ -36,7 +36,7 @@ class SolvedRow(NamedTuple):
     travel: Annotated[Any, unit("m")] = ()
     balance: Any = ()
 
-    def each(self, row: Any, function: Callable, rings: Array) -> Any:
+    def map(self, row: Any, function: Callable, rings: Array) -> Any:
         """Apply function(placed, rings, energies) to every rolling element.
 
         Args:
@@ -46,18 +46,18 @@ class SolvedRow(NamedTuple):
             rings: `rings`, or the same with derivatives.
         """
 
-        def one(element, rings, state, magnitude, energies):
+        def call(element, rings, state, magnitude, energies):
             return function(SolvedElement(element, state, magnitude), rings, energies)
 
-        return row.each(one, rings, self.state, self.magnitude, self.energies)
+        return row.map(call, rings, self.state, self.magnitude, self.energies)
 
-    def near(self, row: Any) -> ElementStart:
+    def starts(self, row: Any) -> ElementStart:
         """Starting points for solves at ring freedoms near by, leading axis element."""
 
-        def one(solved_element, rings, energies):
+        def start(solved_element, rings, energies):
             return element_start(solved_element, rings, energies.aux)
 
-        return self.each(row, one, self.rings)
+        return self.map(row, start, self.rings)
 
 
 class RowResults(NamedTuple):
@@ -86,7 +86,7 @@ class RowResults(NamedTuple):
         """One rolling element; of unlike elements, with a leading axis."""
         return self.row.element
 
-    def each(self, function: Callable, *arrays: Any) -> Any:
+    def map(self, function: Callable, *arrays: Any) -> Any:
         """Apply function(element, rings, x, *arrays) to every rolling element.
 
         Args:
@@ -94,12 +94,12 @@ class RowResults(NamedTuple):
             *arrays: More arguments, with leading axis element.
         """
 
-        def one(element, rings, x, *arrays):
+        def call(element, rings, x, *arrays):
             return function(element, ring_motions(element, rings), x, *arrays)
 
-        return self.row.each(one, self.rings, self.x, *arrays)
+        return self.row.map(call, self.rings, self.x, *arrays)
 
-    def rolling(self, row: Any) -> "RowResults":
+    def as_rolling(self, row: Any) -> "RowResults":
         """Return these results with elements that roll at a speed they do not feel.
 
         Args:
@@ -115,7 +115,7 @@ class RowResults(NamedTuple):
         """Section motion (u, v, θ) of every element at the node [m, rad]."""
         place = self.row.place
 
-        def one(element, x, azimuth):
+        def element_motion(element, x, azimuth):
             axes = element.axes(azimuth)
             rings = RingMotion(axes @ self.local.outer, axes @ self.local.inner)
             u, v, theta = element.motion(rings, x)
@@ -124,11 +124,11 @@ class RowResults(NamedTuple):
                 v = v - place.position * theta
             return jnp.stack([u, v, theta])
 
-        return self.row.each(one, self.x, self.azimuth)
+        return self.row.map(element_motion, self.x, self.azimuth)
 
     def inertia(self) -> Float[Array, "6"] | None:
         """Inertia load of its elements, at the node [N, N m], or `None`."""
-        parts = self.each(lambda element, rings, x: element.inertia(rings, x))
+        parts = self.map(lambda element, rings, x: element.inertia(rings, x))
         if parts is None:
             return None
         section = jax.vmap(section_matrix)(self.azimuth)

@@ -138,11 +138,11 @@ def _of_rollers(solution, bearing, mine, state):
 def _thickness(formula, entrainment, load, sizes, modulus):
     """Entrainment, central and least film of contacts (element, contact)."""
 
-    def one(speed, load, *sizes):
+    def film_thickness(speed, load, *sizes):
         film = formula(load, *sizes, modulus)
         return film.central(speed), film.minimum(speed)
 
-    found = jax.vmap(jax.vmap(one))(entrainment, load, *sizes)
+    found = jax.vmap(jax.vmap(film_thickness))(entrainment, load, *sizes)
     carried = load > 0
     return entrainment, *(jnp.where(carried, film, jnp.inf) for film in found)
 

@@ -258,7 +258,7 @@ def _of_self_aligning(row, angle, double, sharing, axial):
 def _of_radial_contact(row, angle, double, sharing, axial):
     one, zero = jnp.ones_like(angle), jnp.zeros_like(angle)
     # All rows share the axial load.
-    y = _along(_RELATIVE, _DEEP_GROOVE, _pressure(row, axial) / sharing[0])
+    y = _interpolate(_RELATIVE, _DEEP_GROOVE, _pressure(row, axial) / sharing[0])
     dynamic = _pairs((one, zero), (0.56 * one, y))
     return dynamic, _pairs((0.6 * one, 0.5 * one), (one, zero))
 
@@ -268,21 +268,21 @@ def _of_angular_contact(row, angle, double, sharing, axial):
     pressure = _pressure(row, axial)
     degrees = jnp.degrees(angle)
 
-    def of(values):
-        return _along(_ANGLES, values, degrees)
+    def factor_at(values):
+        return _interpolate(_ANGLES, values, degrees)
 
     def y_of(name):
         alone = pressure / sharing[1]
-        flat = [_along(_RELATIVE, values, alone) for values in _FLAT[name]]
+        flat = [_interpolate(_RELATIVE, values, alone) for values in _FLAT[name]]
         steep = jnp.asarray(_STEEP[name], degrees.dtype)
-        return of(jnp.concatenate([jnp.stack(flat), steep]))
+        return factor_at(jnp.concatenate([jnp.stack(flat), steep]))
 
     # A four-point bearing holds both ways, as two rows do.
     if double or row.rated_rows == 2:
-        dynamic = _pairs((one, y_of("y1")), (of(_X2), y_of("y2")))
-        return dynamic, _pairs((one, of(_Y0_DOUBLE)), (one, zero))
-    dynamic = _pairs((one, zero), (of(_X), y_of("y")))
-    return dynamic, _pairs((0.5 * one, of(_Y0)), (one, zero))
+        dynamic = _pairs((one, y_of("y1")), (factor_at(_X2), y_of("y2")))
+        return dynamic, _pairs((one, factor_at(_Y0_DOUBLE)), (one, zero))
+    dynamic = _pairs((one, zero), (factor_at(_X), y_of("y")))
+    return dynamic, _pairs((0.5 * one, factor_at(_Y0)), (one, zero))
 
 
 def _of_rollers(row, angle, double, sharing, axial):
@@ -337,7 +337,7 @@ def _of_thrust(angle, first_of, double):
     return dynamic, _pairs(static, static)
 
 
-def _along(places, values, at):
+def _interpolate(places, values, at):
     """Values between the lines of a table; beyond its ends those of the ends."""
     xp = jnp.asarray(np.asarray(places), at.dtype)
     return jnp.interp(at, xp, jnp.asarray(values, at.dtype))

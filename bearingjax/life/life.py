@@ -475,7 +475,7 @@ def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
     life = _lifetime(damage)
     least = 1e-12 * rated.static_capacity
     equivalent = EquivalentLoad(
-        *(_above(p, least) for p in equivalent_load(bearing, force))
+        *(_above_residual(p, least) for p in equivalent_load(bearing, force))
     )
     lost = left_out(bearing, force, solution.free)
     # ISO 281 rates rollers with 10/3, ISO/TS 16281 with 4 and a part of C.
@@ -487,10 +487,10 @@ def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
         "static_equivalent_load": equivalent.static,
         "reference_load": rated.dynamic_capacity
         * positive_power(_MILLION * damage, exponent[1], exponent[0]),
-        "radial_left_out": _above(lost.radial, least),
-        "axial_left_out": _above(lost.axial, least),
-        "moment_left_out": _above(lost.moment, least * pitch_radius(bearing)),
-        "static_safety": _over(rated.static_capacity, equivalent.static),
+        "radial_left_out": _above_residual(lost.radial, least),
+        "axial_left_out": _above_residual(lost.axial, least),
+        "moment_left_out": _above_residual(lost.moment, least * pitch_radius(bearing)),
+        "static_safety": _ratio(rated.static_capacity, equivalent.static),
         "basic_rating_life": _lifetime(positive_power(ratio, *exponent) / _MILLION),
         "reference_rating_life": life,
         "damage_share": same,
@@ -570,17 +570,17 @@ def _modified_damage(fatigue, limit, thrust, kappa, clean, kind):
     return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
 
 
-def _above(load, least):
+def _above_residual(load, least):
     """A load, zero where it is no more than the solver's residual."""
     return jnp.where(load <= least, 0.0, load)
 
 
 def _lifetime(damage):
     """1/damage; infinite, with zero derivative, without damage."""
-    return _over(jnp.ones_like(damage), damage)
+    return _ratio(jnp.ones_like(damage), damage)
 
 
-def _over(a, b):
+def _ratio(a, b):
     """a/b; infinite, with zero derivatives, where b is 0; NaN passes through."""
     nothing = b == 0
     return jnp.where(nothing, jnp.inf, a / jnp.where(nothing, 1.0, b))

@@ -115,13 +115,13 @@ def life_sizes(
 def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
     load = _load(numbers)
     if load is not None:
-        yield "heavy_load", load / _most(ratings)
+        yield "heavy_load", load / _limit(ratings)
     hours = numbers.get("life_hours")
     if load is not None and hours is not None:
         xp = array_namespace(load)
         # At a standstill nothing skids.
         turns = xp.isfinite(hours) | (load == 0)
-        yield "light_load", xp.where(turns, 1.0 - load / _least(bearing, ratings), 0.0)
+        yield "light_load", xp.where(turns, 1.0 - load / _floor(bearing, ratings), 0.0)
     if "equivalent_load" in numbers:
         load, radius = numbers["equivalent_load"], pitch_radius(bearing)
         much = {"radial": 1e-6, "axial": 1e-6, "moment": LARGEST_MOMENT * radius}
@@ -155,22 +155,22 @@ def _load(numbers) -> Any:
     return array_namespace(known[0]).maximum(known[0], known[-1]) if known else None
 
 
-def _most(ratings):
+def _limit(ratings):
     c, c0 = ratings.dynamic_capacity, ratings.static_capacity
     return array_namespace(c0).minimum(0.5 * c, c0)
 
 
-def _least(bearing, ratings):
+def _floor(bearing, ratings):
     return LEAST_LOAD[bearing.noun] * ratings.dynamic_capacity
 
 
 def _heavy_numbers(bearing, ratings, numbers):
-    load, most = (1e-3 * float(x) for x in (_load(numbers), _most(ratings)))
+    load, most = (1e-3 * float(x) for x in (_load(numbers), _limit(ratings)))
     return f"of {load:.4g} kN, above {most:.4g} kN,"
 
 
 def _light_numbers(bearing, ratings, numbers):
-    least = float(_least(bearing, ratings))
+    least = float(_floor(bearing, ratings))
     share = least / float(ratings.dynamic_capacity)
     kind = bearing.noun
     return (

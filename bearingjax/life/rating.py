@@ -333,14 +333,14 @@ class _Part(NamedTuple):
 @eqx.filter_jit
 def _combine(parts: tuple[_Part, ...]) -> tuple[Scalar, Scalar]:
     """C and C0 from the geometry; NaN of rows that prove to be unlike when traced."""
-    return _together(parts, [by_row.capacities(p.rows, p.is_thrust) for p in parts])
+    return _combine_rows(parts, [by_row.capacities(p.rows, p.is_thrust) for p in parts])
 
 
 @program(quick=True)
 def _rate(parts, given, factors):
     """C, C0, C_u, whether they are axial, and whether all is published (4,)."""
     each = [_rate_part(part) for part in parts]
-    c, c0 = _together(parts, [values[:2] for values, _ in each])
+    c, c0 = _combine_rows(parts, [values[:2] for values, _ in each])
     published = jnp.all(jnp.stack([flags for _, flags in each]), axis=0)
     # What is given does not rate a set of unlike rows either.
     given_c, given_c0, limit = given
@@ -354,7 +354,7 @@ def _rate(parts, given, factors):
     return c, c0, limit, axial, jnp.append(published, factors)
 
 
-def _together(parts, each) -> tuple[Scalar, Scalar]:
+def _combine_rows(parts, each) -> tuple[Scalar, Scalar]:
     """C and C0 of all rows, from those of alike rows, or of each of thrust rollers."""
     if len(parts) == 1:
         c, c0 = (jnp.where(parts[0].alike, value, jnp.nan) for value in each[0])
@@ -402,7 +402,7 @@ def row_ratings(
     first = parts[0]
     if len(parts) > 1:
         each = [_rate_part(part)[0] for part in parts]
-        c, c0 = _together(parts, [values[:2] for values in each])
+        c, c0 = _combine_rows(parts, [values[:2] for values in each])
         shares = [(one[0] / c, one[1] / c0) for one in each]
     else:
         rows = first.rows
@@ -522,7 +522,7 @@ def _are_alike(rows) -> Any:
     """
     first, alike = rows[0].bearing, True
     for k, row in enumerate(rows[1:], 1):
-        same = _same(first, row.bearing)
+        same = _rated_alike(first, row.bearing)
         if not is_traced(same) and not same:
             raise ValueError(
                 f"load rating: row {k} of the set is another bearing than row 0; the"
@@ -569,7 +569,7 @@ def _part(rows) -> _Part:
     return part._replace(alone=alone, published=printed, holds=jnp.asarray(holds))
 
 
-def _same(one, other) -> Any:
+def _rated_alike(one, other) -> Any:
     """Whether two bearings are rated alike, a traced flag if a number is traced."""
     if one is other:
         return True

@@ -60,7 +60,7 @@ def static_start(
     def place(element, *motion):
         return combine_rows(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
 
-    places = system.row.each(place, u, v, tilt)
+    places = system.row.map(place, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
     motion = jnp.concatenate([ring, places.T.ravel()])
     between, most = _carried_loads(system, motion)

@@ -18,7 +18,7 @@ class Warning(str):
     It is a string, equal to its `words`: it prints, joins and goes to files as one.
 
     Attributes:
-        kind: Stable name of the kind of warning, as of `Sweep.warned`.
+        kind: Stable name of the kind of warning, as of `Sweep.warning_sizes`.
         words: The sentence.
         size: The number that is doubtful, in SI; NaN if there is none.
         limit: Its last value without a warning, NaN if there is none.

@@ -25,7 +25,7 @@ from .system import (
     describe_failure,
     has_loads,
     loads_of,
-    ready,
+    prepare,
     solved_case,
 )
 from .trials import Trial
@@ -110,7 +110,7 @@ class Problem:
         self.bounds = tuple(_bounds(constraints))
         self.size = 1.0
 
-    def scaled(self, values: Any) -> np.ndarray:
+    def to_unit_box(self, values: Any) -> np.ndarray:
         """Values of the variables in the unit box."""
         return (np.asarray(values) - self.lower) / self.width
 
@@ -136,7 +136,7 @@ class Problem:
     def outcome(self, trial: Trial) -> tuple[Any, Outcome]:
         """The design of a trial and its results, by the program already compiled."""
         values = self.values(trial.unit)
-        element = ready(with_values(self.element, self.paths, values), self.build)
+        element = prepare(with_values(self.element, self.paths, values), self.build)
         found = self.run(trial.unit, trial.slope is not None)
         smooth, exact = np.asarray(found.measures), np.asarray(found.exact)
         return element, Outcome(
@@ -220,15 +220,15 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
     paths, lower, width = box
 
     def outputs(unit):
-        design = ready(with_values(element, paths, lower + width * unit), build)
+        design = prepare(with_values(element, paths, lower + width * unit), build)
 
-        def one(case):
+        def solve_one(case):
             return solved_case(design, case, *solves)
 
         if cases.count <= CHUNK:
-            solution = jax.vmap(one)(cases)
+            solution = jax.vmap(solve_one)(cases)
         else:
-            solution = jax.lax.map(one, cases, batch_size=CHUNK)
+            solution = jax.lax.map(solve_one, cases, batch_size=CHUNK)
         values = [_scalar(m, m(design, cases, solution)) for m in measures]
         exact = [exact_of(m, design, cases, solution) for m in measures]
         values = jnp.stack(values)

@@ -68,14 +68,14 @@ class OfLife(AbstractMeasure):
             element, solution: As in `life`.
         """
 
-        def one(solution):
+        def case_life(solution):
             found = rating_life(element, solution, self.conditions)
             if self.hours:
                 return found.life_hours
             none = found.damage == 0
             return jnp.where(none, jnp.inf, 1.0 / jnp.where(none, 1.0, found.damage))
 
-        return jax.vmap(one)(loads_of(solution))
+        return jax.vmap(case_life)(loads_of(solution))
 
     def warnings(self, element: Any, solution: Any) -> list[Warning]:
         """Warnings about the lives of all cases, each kind once.
@@ -88,11 +88,11 @@ class OfLife(AbstractMeasure):
 
     @eqx.filter_jit
     def _sizes(self, element, solution):
-        def one(solution):
+        def case_sizes(solution):
             life = rating_life(element, solution, self.conditions)
             return life_sizes(element.bearing, life.ratings, vars(life))
 
-        return jax.vmap(one)(loads_of(solution))
+        return jax.vmap(case_sizes)(loads_of(solution))
 
 
 class RatingLife(OfLife):

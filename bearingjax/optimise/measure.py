@@ -38,7 +38,7 @@ class AbstractMeasure(eqx.Module):
             solution: Solution of the cases, leading axis case.
         """
 
-    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
+    def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
         """The measure with the true maximum or minimum in place of the smooth one.
 
         Args:
@@ -112,7 +112,7 @@ class AbstractLargest(AbstractSmooth):
     def __call__(self, element, cases, solution):
         return smooth_maximum(self.samples(solution), self.exponent)
 
-    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
+    def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return jnp.max(self.samples(solution))
 
 
@@ -158,7 +158,7 @@ class MeanPressure(AbstractSmooth):
         peaks = jax.vmap(lambda p: smooth_maximum(p, self.exponent))(pressure)
         return _mean(peaks, cases)
 
-    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
+    def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return _mean(jnp.max(_pressures(solution), axis=1), cases)
 
     @property
@@ -251,7 +251,7 @@ class Stiffness(AbstractSmooth):
         values = _stiffness(solution, self.freedom, self.freedom)
         return smooth_minimum(values, self.exponent)
 
-    def exact(self, element: Design, cases: Any, solution: Any) -> Scalar:
+    def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
         return jnp.min(_stiffness(solution, self.freedom, self.freedom))
 
     @property
@@ -321,13 +321,13 @@ def label_of(measure: Any) -> str:
 
 
 def exact_of(measure: Any, element: Design, cases: Any, solution: Any) -> Scalar:
-    """`exact` of a measure; for a plain function its value.
+    """`exact_value` of a measure; for a plain function its value.
 
     Args:
         measure: Any measure.
         element, cases, solution: As in `AbstractMeasure.__call__`.
     """
-    call = measure.exact if isinstance(measure, AbstractMeasure) else measure
+    call = measure.exact_value if isinstance(measure, AbstractMeasure) else measure
     return call(element, cases, solution)
 
 

@@ -202,7 +202,7 @@ def optimise(
     asked = variables, objective, constraints
     problem = Problem(element, cases, *asked, options, support, build)
     slopes = takes_gradients(method)
-    first = problem.begin(problem.scaled(start), slopes)
+    first = problem.begin(problem.to_unit_box(start), slopes)
     trials = Trials(problem.evaluate, first)
 
     from tqdm import tqdm
@@ -231,7 +231,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
         text += _most_violated(problem, best)
     if result != "converged":
         text += _near_by(problem, trials, best)
-    text += _idle(problem, trials)
+    text += _idle_variables(problem, trials)
     steps = trials.steps
     history = History(
         values=np.stack([problem.values(s.unit) for s in steps]),
@@ -328,7 +328,7 @@ def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:
     return f"; rejected near by, at {where}: {trial.fault}"
 
 
-def _idle(problem: Problem, trials: Trials) -> str:
+def _idle_variables(problem: Problem, trials: Trials) -> str:
     """Variables on which nothing depended at any step, in words; empty if none."""
     slopes = [
         np.vstack([step.slope, step.margin_slopes])

@@ -30,7 +30,7 @@ _PATIENCE = 20
 
 _ROUND_OFF = 1e-13
 """Change of the objective, over its size at the start, at which SciPy's searches end:
-it is round-off. Whether they have converged is judged by the gradient (`arrived`)."""
+it is round-off. Whether they converged is judged by the gradient (`is_minimum`)."""
 
 
 def takes_gradients(method: Any) -> bool:
@@ -101,11 +101,11 @@ def search_least(
         trial = attempt(unit)
         trials.accept(trial)
         on_step()
-        if slopes and not trial.fault and arrived(trial, tolerance):
+        if slopes and not trial.fault and is_minimum(trial, tolerance):
             raise _Flat
 
     best, patience, begun = trials.steps[0], np.inf, 0
-    if slopes and arrived(best, tolerance):
+    if slopes and is_minimum(best, tolerance):
         return SearchOutcome(
             best.unit, True, "the start fulfils the first-order conditions"
         )
@@ -125,7 +125,7 @@ def search_least(
             ending = ending._replace(unit=best.unit)
             if not slopes or ending.limited or len(trials.steps) > max_steps:
                 return ending
-            better = _onward(attempt, best, bool(trials.rejected), tolerance)
+            better = _improve_nearby(attempt, best, bool(trials.rejected), tolerance)
             if better is None or begun == _RUNS:
                 return ending._replace(converged=False)
             best = better
@@ -135,7 +135,7 @@ def search_least(
         return SearchOutcome(unit, True, "the first-order conditions hold")
 
 
-def arrived(trial: Trial, tolerance: float) -> bool:
+def is_minimum(trial: Trial, tolerance: float) -> bool:
     """Whether the first-order conditions of a minimum hold.
 
     Args:
@@ -152,7 +152,7 @@ def _merit(trial, tolerance):
     return missed, trial.objective
 
 
-def _onward(attempt, here, rejected, tolerance) -> Trial | None:
+def _improve_nearby(attempt, here, rejected, tolerance) -> Trial | None:
     """A design nearby that is better by a tenth or more of what the slope predicts.
 
     Tried are steps along the steepest descent and, if designs were rejected, steps

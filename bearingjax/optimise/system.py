@@ -110,11 +110,11 @@ def solved_case(
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, support, options)
     if isinstance(design, Installed):
-        design = design.at(case_speed(case), throw=False)
+        design = design.element_at(case_speed(case), throw=False)
     return solve_case(design, case, support, options)
 
 
-def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:
+def prepare(design: Design, build: Callable[[Any], Any] | None) -> Design:
     """Return a changed design ready to be solved: the rows of a set are ground once.
 
     Args:
@@ -123,7 +123,7 @@ def ready(design: Design, build: Callable[[Any], Any] | None) -> Design:
     """
     if build is not None:
         design = build(design)
-    return design.ground(throw=False) if isinstance(design, Installed) else design
+    return design.grind_rows(throw=False) if isinstance(design, Installed) else design
 
 
 def element_of(design: Design) -> BearingElement[Any]:
@@ -133,7 +133,7 @@ def element_of(design: Design) -> BearingElement[Any]:
         design: An element, an installed bearing or a system.
     """
     if isinstance(design, Installed):
-        return design.at()
+        return design.element_at()
     return design.element if isinstance(design, AbstractSystem) else design
 
 

@@ -71,7 +71,7 @@ def _as_mounted(installed):
     installed = eqx.tree_at(
         lambda i: i.conditions, installed, cold, is_leaf=lambda leaf: leaf is None
     )
-    return installed.at(throw=False)
+    return installed.element_at(throw=False)
 
 
 def supports_of(
@@ -96,7 +96,7 @@ def _support(system, seat: Seat, power, growth):
     assert seat.installed is not None
     speed = power.speed[shaft]
     sign = -1.0 if seat.turned else 1.0
-    element = seat.installed.at(Speed(inner=sign * speed), throw=False)
+    element = seat.installed.element_at(Speed(inner=sign * speed), throw=False)
     offset = seat.axial_offset + sign * growth
     along = jnp.zeros(N_STATION, growth.dtype).at[2].set(offset)
     return BearingSupport(
@@ -192,6 +192,6 @@ def in_place(
         points: Positions along the rollers at which loads are reported. Static.
     """
     rings = jnp.zeros(2 * _RING, motion.dtype).at[_RING : _RING + N_STATION].set(motion)
-    element = installed.at(speed, throw=False)
+    element = installed.element_at(speed, throw=False)
     known = None if inertia is None else speed
     return solution_at(element, rings, known, points, bool(inertia))

@@ -242,8 +242,8 @@ class PowerOf(AbstractMeasure):
     def __call__(self, element: Any, cases, solution):
         return self.measure(element, cases, solution) ** self.power
 
-    def exact(self, element: Any, cases: Any, solution: Any) -> Scalar:
-        return self.measure.exact(element, cases, solution) ** self.power
+    def exact_value(self, element: Any, cases: Any, solution: Any) -> Scalar:
+        return self.measure.exact_value(element, cases, solution) ** self.power
 
     @property
     def reported_as(self) -> "AbstractMeasure":
@@ -368,7 +368,7 @@ class Worst(AbstractSmooth):
         of = smooth_minimum if self._power < 0 else smooth_maximum
         return of(self.samples(element, cases, solution), self.exponent)
 
-    def exact(self, element: Any, cases: Any, solution: Any) -> Scalar:
+    def exact_value(self, element: Any, cases: Any, solution: Any) -> Scalar:
         of = jnp.min if self._power < 0 else jnp.max
         return of(self.samples(element, cases, solution))
 

@@ -81,7 +81,7 @@ class BalancedLoads(eqx.Module):
         ball = model.rows[0].element
         axes = ball.axes(azimuth)
         both = RingMotion(*split_rings(self.balance.ring_freedoms(ring)))
-        seen = axes @ both.between
+        seen = axes @ both.difference
         if not ball.sees_difference:
             seen = jnp.concatenate([axes @ both.outer, axes @ both.inner])
         forces = derivatives(ball, seen, centre, with_hessian=False).gradient
@@ -95,7 +95,7 @@ class BalancedLoads(eqx.Module):
         moving = on_rings.outer if self.balance.outer_moves else on_rings.inner
         if ball.sees_difference and self.balance.outer_moves:
             moving = -on_rings.inner
-        return loaded, -forces[-2:], self.balance.along(axes.T @ moving)
+        return loaded, -forces[-2:], self.balance.free_part(axes.T @ moving)
 
     def push(self, time: Scalar, ring: Float[Array, "6"]) -> Float[Array, "6"]:
         """Return the load in the balance of the ring; for a held freedom, its
@@ -106,6 +106,6 @@ class BalancedLoads(eqx.Module):
             ring: Unknowns of the balance [m].
         """
         balance = self.balance
-        apart = (1.0 - balance.free) * ring - balance.held
+        apart = (1.0 - balance.free) * ring - balance.held_values
         load = jnp.asarray(self.load(time), ring.dtype)
-        return balance.along(load) - apart * (self.force / self.unit)
+        return balance.free_part(load) - apart * (self.force / self.unit)

@@ -63,7 +63,7 @@ def orbiting(
         model.rows[0] for model in (element.model(speed), jax.vmap(one)(excess))
     )
     rows = (dataclasses.replace(row, element=each.element, per_element=True),)
-    return BearingModel(RowGroup.of(rows), element.equilibrium, element.cage_torque)
+    return BearingModel(RowGroup.group(rows), element.equilibrium, element.cage_torque)
 
 
 def ring_forces(
@@ -89,7 +89,7 @@ def ring_forces(
         def one(solved_element, rings, energies):
             return expand(condense, rings, solved_element, energies)
 
-        return jnp.sum(solved.each(row, one, rings))
+        return jnp.sum(solved.map(row, one, rings))
 
     return jnp.einsum("kr,krq->kq", jax.grad(energy)(seen(q)), jax.jacfwd(seen)(q))
 
@@ -119,7 +119,7 @@ def at_places(
         azimuth: The places [rad].
     """
     (row,) = model.rows
-    return row.at(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
+    return row.results(q, azimuth, row.solve(q, azimuth, model.equilibrium, None))
 
 
 def contact_ellipses(

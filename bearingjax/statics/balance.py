@@ -39,12 +39,12 @@ class Balance(eqx.Module):
     outer_moves: bool = eqx.field(static=True)
 
     @property
-    def moving(self) -> slice:
+    def moving_slice(self) -> slice:
         """Place of the moving ring among the ring freedoms (12,)."""
         return slice(0, 6) if self.outer_moves else slice(6, 12)
 
     @property
-    def held(self) -> Float[Array, "6"]:
+    def held_values(self) -> Float[Array, "6"]:
         """Unknowns of the held freedoms, zero of the free ones (6,) [m]."""
         return (1.0 - self.free) * (self.given / self.scale)
 
@@ -58,7 +58,7 @@ class Balance(eqx.Module):
         pair = [mine, self.fixed] if self.outer_moves else [self.fixed, mine]
         return jnp.concatenate(pair)
 
-    def along(self, force: Float[Array, "6"]) -> Float[Array, "6"]:
+    def free_part(self, force: Float[Array, "6"]) -> Float[Array, "6"]:
         """Components of a force on the moving ring along the free unknowns (6,) [N].
 
         Moments are divided by the pitch radius; the equation of equilibrium is
@@ -76,7 +76,7 @@ class Balance(eqx.Module):
             force: External load that would hold both rings where they are (12,)
                 [N, N m].
         """
-        return self.along(force[self.moving] - self.load)
+        return self.free_part(force[self.moving_slice] - self.load)
 
 
 def balance_of(case: LoadCase, radius: Scalar) -> Balance:

@@ -110,7 +110,7 @@ def _row_results(
 ) -> dict:
     """Ball results of one row, with room for `contacts` contacts per ball."""
     ball = row.element
-    touching = row.each(lambda ball, *at: ball.contacts(*at))
+    touching = row.map(lambda ball, *at: ball.contacts(*at))
     outwards = jnp.asarray(ball.grooves.outwards)
     vectors = outwards[None, :, None] * touching.normal
     load = row.contact_load
@@ -131,10 +131,10 @@ def _row_results(
     pressure = ellipses.peak_pressure(load.T).T
     kinematics = moment = force = None
     if ball.ball_inertia is not None:
-        kinematics = row.each(lambda ball, *at: ball.carried(*at))
+        kinematics = row.map(lambda ball, *at: ball.ball_kinematics(*at))
         inertia = ball.ball_inertia
         moment = gyroscopic_moment(inertia.moment, kinematics)
-        force = row.each(lambda ball, *at: ball.inertia(*at)[1])
+        force = row.map(lambda ball, *at: ball.inertia(*at)[1])
         if not inertia.control.has_moment:
             moment = jnp.zeros_like(moment)
     by_contact = {

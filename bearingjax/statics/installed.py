@@ -47,9 +47,9 @@ class Installed(eqx.Module):
 
     The order is that of the workshop: the rows of a set are ground to their preload,
     then the bearing is mounted, then it gets warm and turns. Every command of
-    bearingjax solves the element that `at` returns. `fit_states` and `set_preload` give
-    clearance, seats and preload from the drawing to operation, `warnings` what is
-    suspicious about them.
+    bearingjax solves the element that `element_at` returns. `fit_states` and
+    `set_preload` give clearance, seats and preload from the drawing to operation,
+    `warnings` what is suspicious about them.
 
     Any number may be a variable of `optimise`: "drawing.bearing.contact_angle",
     "mounting.shaft_interference", "conditions.inner_ring" (a temperature, on the scale
@@ -102,7 +102,7 @@ class Installed(eqx.Module):
                 " limits of its sizes: give both or neither."
             )
 
-    def ground(self, *, throw: bool = True) -> "Installed":
+    def grind_rows(self, *, throw: bool = True) -> "Installed":
         """Return the bearing with its rows ground to give `preload`.
 
         Args:
@@ -120,7 +120,7 @@ class Installed(eqx.Module):
         element = preload(self.drawing, self.preload, throw=throw)
         return dataclasses.replace(self, drawing=element, preload=None)
 
-    def at(
+    def element_at(
         self, speed: Speed | None = None, *, throw: bool = True
     ) -> BearingElement[Any]:
         """The element to be solved: ground, mounted, warm and turning.
@@ -128,16 +128,16 @@ class Installed(eqx.Module):
         Args:
             speed: Ring speeds, at which seats lose interference by centrifugal growth;
                 `None`: those of `conditions`. The solve needs them too.
-            throw: As in `ground`.
+            throw: As in `grind_rows`.
 
         Returns:
             Element with the offsets, clearances and contact angles in operation,
             differentiable with respect to every number.
 
         Raises:
-            TypeError, ValueError: As `mount`; those of `ground`.
+            TypeError, ValueError: As `mount`; those of `grind_rows`.
         """
-        element = self.ground(throw=throw).drawing
+        element = self.grind_rows(throw=throw).drawing
         if self.mounting is None:
             return element
         turning = self if speed is None else self.with_speed(speed)
@@ -198,18 +198,18 @@ class Installed(eqx.Module):
         own = self.mounting
         if own is None or not is_opposed(self.drawing.bearing):
             return None
-        ground = dataclasses.replace(self.ground(throw=False), limits=None)
+        ground = dataclasses.replace(self.grind_rows(throw=False), limits=None)
         cold = dataclasses.replace(ground, conditions=None)
         # On seats without contact the set stays as ground, and has the same structure
         # as the others.
         loose = -1e-3 * own.bore
         at = {"middle": own, **self._seats_at_ends(own)}
         states: dict[str, Any] = {
-            "ground": (_on(_fitting(own, loose, loose), cold), None)
+            "ground": (_element_on(_fitting(own, loose, loose), cold), None)
         }
         for place, seats in at.items():
-            states[f"{place} mounted"] = _on(seats, cold), None
-            states[f"{place} operating"] = _on(seats, ground), speed
+            states[f"{place} mounted"] = _element_on(seats, cold), None
+            states[f"{place} operating"] = _element_on(seats, ground), speed
         possible = {k: state for k, state in states.items() if state[0] is not None}
         elements = _stack([element for element, _ in possible.values()])
         speeds = None
@@ -357,10 +357,10 @@ def _fitting(mounting: Mounting, shaft: Any, housing: Any) -> Mounting:
     )
 
 
-def _on(seats: Mounting, ground: Installed) -> BearingElement[Any] | None:
+def _element_on(seats: Mounting, ground: Installed) -> BearingElement[Any] | None:
     """Return the set on seats; `None` if its balls have no contact angle left."""
     try:
-        return dataclasses.replace(ground, mounting=seats).at()
+        return dataclasses.replace(ground, mounting=seats).element_at()
     except ValueError:
         return None
 
@@ -370,7 +370,7 @@ def _stack(trees: list[Any]) -> Any:
 
 
 def _preloads(elements, speeds):
-    def one(element, speed):
+    def preload_at(element, speed):
         return remaining_preload(element, speed, throw=False)
 
-    return eqx.filter_vmap(one)(elements, speeds)
+    return eqx.filter_vmap(preload_at)(elements, speeds)

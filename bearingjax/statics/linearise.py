@@ -66,7 +66,7 @@ class OperatingPoint(eqx.Module):
         first = 6 * RINGS.index(self.solution.moving_ring)
         return self.solution.stiffness[first : first + 6, first : first + 6]
 
-    def condensed(
+    def condense(
         self, keep: Sequence[str] = ("ux", "uy", "uz")
     ) -> Float[Array, "kept kept"]:
         """Stiffness of a few freedoms of the moving ring, the others condensed.

@@ -82,7 +82,7 @@ def load_case(
     left_out = () if support.free is None else set(FREEDOMS[:5]) - set(free)
     return LoadCase(
         forces,
-        support.given(dtype),
+        support.given_values(dtype),
         as_array(nothing if fixed is None else fixed, dtype),
         None if start is None else six_numbers("solve_load", "start", start, dtype),
         speed,

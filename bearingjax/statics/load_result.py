@@ -21,7 +21,7 @@ from ..numerics.result import Result
 from ..numerics.types import Ring
 from .balance import Balance
 from .load_case import LoadCase
-from .load_search import SearchStart, differentiable
+from .load_search import SearchStart, differentiable_unknowns
 from .options import SolveOptions
 from .solution import Solution, Stats, describe, solution_kind
 from .warning_sizes import stiffness_scale
@@ -59,10 +59,10 @@ def solution_of(
         begin: Start of the search.
         minimum: End of the search.
     """
-    y = differentiable(model, balance, minimum)
+    y = differentiable_unknowns(model, balance, minimum)
     q = balance.ring_freedoms(y)
     # gz may be prescribed: the results follow it through the azimuths.
-    solved = model.following(q, minimum.memory.solved)
+    solved = model.follow_azimuths(q, minimum.memory.solved)
     fields, evaluated = describe(element, model, q, options.points, solved)
     left = stop_gradient(balance.out_of_balance(fields["force"]))
     reference = jnp.where(begin.size > 0, begin.size, evaluated.magnitude)

@@ -88,12 +88,12 @@ def search_start(
         balance: The load and what holds the rings.
         start: As in `solve_load`.
     """
-    load, radius = balance.along(balance.load), balance.radius
+    load, radius = balance.free_part(balance.load), balance.radius
     size = jnp.sqrt(load @ load)
     play = _play(rows)
     pressing = _load_for(model, play)
     factor = jnp.where(size > 0, jnp.maximum(1.0, pressing / size), 1.0)
-    y = balance.held
+    y = balance.held_values
     if start is not None:
         there = jnp.where(jnp.isfinite(start), start, 0.0)
         near = balance.free * there / balance.scale
@@ -125,7 +125,7 @@ def search(
     """
     solver = TrustRegionNewton(symmetric=model.has_potential, softest=0.03)
     # To know its shapes takes a part of the time of tracing a solve: once.
-    shapes = jax.eval_shape(model.unsolved)
+    shapes = jax.eval_shape(model.unsolved_state)
     problem = partial(_problem, shapes=shapes)
     loop = continuation(solver, problem, lambda given: given.begin.factor)
     given = _Inputs(model, balance, begin, options)
@@ -161,18 +161,18 @@ def _problem(given: _Inputs, shapes: Solved) -> Problem:
 
 def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
     """The energy of the bearing as a function of the unknowns, without the load."""
-    weight, moving = balance.free * balance.scale, balance.moving
+    weight, moving = balance.free * balance.scale, balance.moving_slice
 
     def function(y, _, before):
         q = balance.ring_freedoms(y)
-        solved = model.solve(q, model.near(before.solved))
+        solved = model.solve(q, model.starts(before.solved))
         e = model.evaluate(q, solved)
         h = jnp.outer(weight, weight) * e.stiffness[moving, moving]
         # Round-off of forces that cancel, and of positions in a stiff bearing.
         floor = e.magnitude + jnp.trace(h) * jnp.sqrt(y @ y)
         return Evaluation(
             value=e.energy if model.has_potential else jnp.full_like(e.energy, jnp.nan),
-            gradient=balance.along(e.force[moving]),
+            gradient=balance.free_part(e.force[moving]),
             hessian=h + jnp.diag(1.0 - balance.free),
             scale=e.magnitude,
             noise=jnp.finfo(y.dtype).eps * floor,
@@ -182,7 +182,7 @@ def _energy(model: BearingModel, balance: Balance) -> Callable[..., Evaluation]:
     return function
 
 
-def differentiable(
+def differentiable_unknowns(
     model: BearingModel, balance: Balance, minimum: Minimum
 ) -> Float[Array, "6"]:
     """The unknowns found, differentiable by the implicit function theorem [m].
@@ -206,17 +206,17 @@ def differentiable(
 
     def correction(of_y, y, change, args):
         model, balance, _, stiffness = args
-        floating = _floating(stiffness, balance.free)
+        floating = _free_projector(stiffness, balance.free)
         return -_by_stiffness(
             jax.jacfwd(of_y)(y), change, floating, model.has_potential
         )
 
     y = attach_by(_residual, minimum.x, args, correction)
-    load = balance.along(balance.load)
+    load = balance.free_part(balance.load)
     return _without_limit(y, load, stiffness, balance.free)
 
 
-def _floating(stiffness, free):
+def _free_projector(stiffness, free):
     """Projector on the free directions that no more than round-off holds (6, 6) [1]."""
     size = jnp.max(jnp.diagonal(stiffness))
     size = jnp.where(size > 0, size, 1.0)
@@ -245,11 +245,11 @@ def _rule(primals, tangents):
     y, _, stiffness, free = primals
     change = jnp.zeros_like(y) if isinstance(change, SymbolicZero) else change
     if not isinstance(by_load, SymbolicZero):
-        change = change + _infinite(by_load, _floating(stiffness, free))
+        change = change + _infinite_rate(by_load, _free_projector(stiffness, free))
     return _without_limit(*primals), change
 
 
-def _infinite(rate, floating):
+def _infinite_rate(rate, floating):
     """Infinity times the part of `rate` that floats, 0 where that is round-off.
 
     To JAX it is a linear solve, which says itself what its transpose is.
@@ -271,10 +271,10 @@ def _residual(y, args):
     model, balance, solved, _ = args
     # Held freedoms take their prescribed values, not those of `y`, which would make the
     # Jacobian between held and free ones unsymmetric.
-    held = balance.held
+    held = balance.held_values
     q = balance.ring_freedoms(balance.free * y + held)
     # gz may be prescribed: the answer follows it through the azimuths.
-    force = model.force(q, model.following(q, solved))
+    force = model.force(q, model.follow_azimuths(q, solved))
     return balance.out_of_balance(force) + (1.0 - balance.free) * y - held
 
 
@@ -292,7 +292,7 @@ def _play(rows: tuple[SetRow, ...]) -> Scalar:
 
 def _load_for(model: BearingModel, approach: Scalar) -> Scalar:
     """Load of one raceway contact pressed by `approach` [N]."""
-    loads = model.of_elements(lambda one: one.hints.pressed(approach))
+    loads = model.of_elements(lambda one: one.hints.approximate_load(approach))
     return jnp.max(jnp.stack([jnp.max(load) for load in loads]))
 
 

@@ -85,13 +85,13 @@ def preload(
         travel = jnp.where(solution.converged, solution.displacement[8], jnp.nan)
         offsets[side] = sign * travel
 
-    def moved(row):
+    def row_offset(row):
         return row.inner_offset + offsets[row.mirrored]
 
     return eqx.tree_at(
         lambda e: [r.inner_offset for r in e.bearing.rows],
         element,
-        [moved(row) for row in bearing.rows],
+        [row_offset(row) for row in bearing.rows],
     )
 
 

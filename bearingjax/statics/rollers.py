@@ -116,7 +116,7 @@ def distribution(row: RowResults, points: int) -> Distribution:
     xi = jnp.linspace(-1.0, 1.0, points, dtype=dtype)
     scan = jnp.linspace(-1.0, 1.0, _SCAN, dtype=dtype)
 
-    def one(roller, approaches):
+    def roller_distribution(roller, approaches):
         c = roller.constants
         weight = relative_radii(c, c.half_length * scan) ** -0.9
         loads, peaks, ends = [], [], []
@@ -141,7 +141,7 @@ def distribution(row: RowResults, points: int) -> Distribution:
             edge_pressure,
         )
 
-    found = row.row.each(one, approaches(row))
+    found = row.row.map(roller_distribution, approaches(row))
     # All rollers are of one length.
     return found._replace(position=found.position[0])
 
@@ -169,14 +169,14 @@ def line_loads(
         xi: Positions s/(L/2) along the roller, from -1 to 1 (point,).
     """
 
-    def one(roller, approaches):
+    def roller_loads(roller, approaches):
         c = roller.constants
         contacts = zip(c.lines, c.tables, approaches, strict=True)
         return jnp.stack(
             [line.load_along(table, xi, *at) for line, table, at in contacts]
         )
 
-    return row.row.each(one, approaches(row))
+    return row.row.map(roller_loads, approaches(row))
 
 
 def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
@@ -188,4 +188,4 @@ def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
     Returns:
         (roller, raceway, 2) [m]: a in the middle, a + b at +L/2.
     """
-    return row.each(lambda roller, *at: roller.approaches(*at).raceway)
+    return row.map(lambda roller, *at: roller.approaches(*at).raceway)

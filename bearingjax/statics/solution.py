@@ -281,7 +281,7 @@ def describe(
     shown = rows
     if rolling is not None:
         pairs = zip(rows, rolling.rows, strict=True)
-        shown = tuple(one.rolling(row) for one, row in pairs)
+        shown = tuple(one.as_rolling(row) for one, row in pairs)
     special = contact_results(element.choices, element.bearing, shown, points)
     return {
         "displacement": q,

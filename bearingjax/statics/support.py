@@ -115,7 +115,7 @@ class Support(eqx.Module):
                 " Cases(prescribed={'uz': 1e-5})."
             )
 
-    def given(self, dtype: Any) -> Float[Array, "6"]:
+    def given_values(self, dtype: Any) -> Float[Array, "6"]:
         """Prescribed displacements, zero of the other freedoms (6,) [m, rad].
 
         Args:

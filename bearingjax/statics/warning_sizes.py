@@ -154,12 +154,12 @@ def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
         yield row.bearing, values[int(end) - count : int(end)]
 
 
-def _largest(solution, numbers):
+def _largest_number(solution, numbers):
     xp = array_namespace(solution.result)
     return xp.max(xp.stack([xp.asarray(number) for number in numbers]))
 
 
-def _one(solution, flags):
+def _ones(solution, flags):
     """1 where flags are set, 0 elsewhere."""
     return array_namespace(solution.result).where(flags, 1.0, 0.0)
 
@@ -201,7 +201,7 @@ def _free_stiffness(solution):
     k = solution.stiffness[first : first + 6, first : first + 6]
     k = 0.5 * scale[None, :] * (k + k.T) * scale[:, None]
     # Elements that just touch, where the ring came to rest, hold it to one side only.
-    across = _across(solution)
+    across = _free_shift(solution)
     rest = xp.eye(6, dtype=k.dtype) - across[:, None] * across[None, :]
     k = rest @ k @ rest
     index = np.array([FREEDOMS.index(name) for name in solution.free], dtype=int)
@@ -210,11 +210,11 @@ def _free_stiffness(solution):
     return k[np.ix_(index, index)], nothing
 
 
-def _across(solution):
+def _free_shift(solution):
     """Unit vector (6,) of a free shift at right angles to all loaded elements; zero if
     there is none, or finite kinematics, in which a shift across an element lifts it."""
     xp = array_namespace(solution.result)
-    loaded = _one(solution, solution.load_zone)
+    loaded = _ones(solution, solution.load_zone)
     double = 2.0 * solution.azimuth
     x, y = (loaded * xp.cos(double)).sum(), (loaded * xp.sin(double)).sum()
     along, count = 0.5 * xp.arctan2(y, x), loaded.sum()
@@ -225,7 +225,7 @@ def _across(solution):
     for part, name in zip(shift, FREEDOMS, strict=False):
         free = linearised and name in solution.free
         one_line = one_line & (free | (abs(part) <= 1e-6))
-    shift = shift * _one(solution, one_line)
+    shift = shift * _ones(solution, one_line)
     return xp.concatenate([shift, xp.zeros(4, shift.dtype)])
 
 
@@ -241,7 +241,7 @@ def unrestrained_directions(solution: Solution) -> Any:
     count = xp.zeros((), k.dtype)
     for i in range(n):
         pivot = k[i, i]
-        count = count + _one(solution, pivot <= 0)
+        count = count + _ones(solution, pivot <= 0)
         k = k - k[:, i, None] * k[None, i] / xp.where(pivot == 0, 1.0, pivot)
     return count
 
@@ -262,8 +262,8 @@ def unloaded_rows(solution: Solution) -> Any:
     """Number of rows that carry no load while others do."""
     load = solution.roller_load.min(axis=1)
     tops = [part.max() for _, part in _by_row(solution, load)]
-    most = _largest(solution, tops)
-    return sum(_one(solution, (top <= 1e-9 * most) & (most > 0)) for top in tops)
+    most = _largest_number(solution, tops)
+    return sum(_ones(solution, (top <= 1e-9 * most) & (most > 0)) for top in tops)
 
 
 def idle_numbers(solution: Solution) -> str:
@@ -277,7 +277,7 @@ def idle_numbers(solution: Solution) -> str:
 def slack_springs(solution: Solution) -> Any:
     """Number of springs that have lost their force."""
     slack = (solution.spring_force == 0) & (solution.spring_travel != 0)
-    return _one(solution, slack).sum()
+    return _ones(solution, slack).sum()
 
 
 def slack_numbers(solution: Solution) -> str:
@@ -300,7 +300,7 @@ def widths(solution: Solution) -> Any:
         2.0 * pressure.max() / _modulus(bearing)
         for bearing, pressure in _by_row(solution, solution.roller_pressure)
     ]
-    return _largest(solution, parts)
+    return _largest_number(solution, parts)
 
 
 def ellipses(solution: Solution) -> Any:
@@ -309,7 +309,7 @@ def ellipses(solution: Solution) -> Any:
         2.0 * axes.max() / bearing.ball_diameter
         for bearing, axes in _by_row(solution, _of_balls(solution).semi_axes)
     ]
-    return _largest(solution, parts)
+    return _largest_number(solution, parts)
 
 
 def groove_angles(solution: Solution) -> Any:
@@ -319,10 +319,10 @@ def groove_angles(solution: Solution) -> Any:
     angles = _by_row(solution, balls.contact_angle)
     least = 1e-9 * balls.contact_load.max()
     parts = [
-        _one(solution, load > least) * abs(angle - bearing.groove_axis)
+        _ones(solution, load > least) * abs(angle - bearing.groove_axis)
         for (bearing, load), (_, angle) in zip(loads, angles, strict=True)
     ]
-    return _largest(solution, [part.max() for part in parts])
+    return _largest_number(solution, [part.max() for part in parts])
 
 
 def tilt_error(solution: Solution) -> Any:
@@ -351,7 +351,7 @@ def _line_approach(solution):
 
     By Palmgren's law, 2.5 b²/ρ, half width b = 2 p ρ/E*.
     """
-    return _largest(
+    return _largest_number(
         solution,
         [
             5.0 * _diameter(bearing) * (pressure.max() / _modulus(bearing)) ** 2
@@ -405,7 +405,7 @@ def travel_error(solution: Solution) -> Any:
             across = abs(f[0] * q[10] - f[1] * q[9]) / xp.where(size > 0, size, 1.0)
             tilted = 0.44 / slope * across
         shares.append(closed + turned / slope + tilted)
-    return xp.where(pressed, _largest(solution, shares), 0.0)
+    return xp.where(pressed, _largest_number(solution, shares), 0.0)
 
 
 def free_tilt(solution: Solution) -> Any:
@@ -413,7 +413,7 @@ def free_tilt(solution: Solution) -> Any:
     mine = 6 * RINGS.index(solution.moving_ring)
     free = [FREEDOMS.index(name) for name in ("gx", "gy") if name in solution.free]
     square = sum(solution.displacement[mine + k] ** 2 for k in free)
-    return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
+    return _ones(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
 
 
 def prescribed_tilt(solution: Solution) -> Any:
@@ -422,7 +422,7 @@ def prescribed_tilt(solution: Solution) -> Any:
     q = solution.displacement
     held = [FREEDOMS.index(name) for name in ("gx", "gy") if name not in solution.free]
     square = sum((q[6 + k] - q[k]) ** 2 for k in held)
-    return _one(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
+    return _ones(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
 
 
 def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
@@ -480,7 +480,7 @@ def clearance_lost(solution: Solution) -> Any:
     row: Any = rows_of(solution.element.bearing)[0].bearing
     clearance = row.clearance if row.is_ball else row.radial_internal_clearance
     turns = solution.speed.inner != solution.speed.outer
-    return -clearance * _one(solution, turns)
+    return -clearance * _ones(solution, turns)
 
 
 def speed_factor(solution: Solution) -> Any:
@@ -506,7 +506,7 @@ def implausible_dimensions(solution: Solution) -> Any:
     """Number of design values far outside their usual ranges."""
     rows = rows_of(solution.element.bearing)
     found = [strange for row in rows for *_, strange in _implausible(row.bearing)]
-    return sum(_one(solution, flag) for flag in found)
+    return sum(_ones(solution, flag) for flag in found)
 
 
 def odd_names(solution: Solution) -> str:
@@ -524,7 +524,7 @@ def interference(solution: Solution) -> Any:
     """Largest interference of a rib and the roller ends, unloaded [m]."""
     every: Any = [row.bearing for row in rows_of(solution.element.bearing)]
     gaps = [getattr(b.ribs, n).axial_gap for b in every for n in b.ribs.present]
-    return _largest(solution, [-gap for gap in gaps])
+    return _largest_number(solution, [-gap for gap in gaps])
 
 
 def truncation(solution: Solution) -> Any:
@@ -586,7 +586,7 @@ def load_beyond_groove(solution: Solution) -> Any:
 
 def on_land_count(solution: Solution) -> Any:
     """Number of balls that `load_beyond_groove` marks."""
-    return _one(solution, load_beyond_groove(solution).any(axis=1)).sum()
+    return _ones(solution, load_beyond_groove(solution).any(axis=1)).sum()
 
 
 def balls_off_inner_ring(solution: Solution) -> Any:
@@ -604,7 +604,7 @@ def balls_off_inner_ring(solution: Solution) -> Any:
 
 def lifted_count(solution: Solution) -> Any:
     """Number of balls that `balls_off_inner_ring` marks."""
-    return _one(solution, balls_off_inner_ring(solution)).sum()
+    return _ones(solution, balls_off_inner_ring(solution)).sum()
 
 
 def edge_pressure(solution: Solution) -> Any:

@@ -1054,7 +1054,7 @@ def doubted():
 def test_sweep_warns_of_lives_without_life_outputs(kind, doubted):
     k, swept = doubted[kind]
     assert not set(LIFE_OUTPUTS) & set(swept.outputs)
-    assert swept.warned[kind][k] > LIFE_KINDS[kind].limit
+    assert swept.warning_sizes[kind][k] > LIFE_KINDS[kind].limit
     told = dict(zip(swept.warning_counts(), swept.warnings, strict=True))[kind]
     assert f", in {swept.warning_counts()[kind]} of 5 cases, worst case" in told
 

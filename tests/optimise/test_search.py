@@ -4,7 +4,7 @@ import numpy as np
 import optax
 import pytest
 
-from bearingjax.optimise.search import SearchOutcome, arrived, search_least
+from bearingjax.optimise.search import SearchOutcome, is_minimum, search_least
 from bearingjax.optimise.trials import Trial, Trials, optimality
 
 TOLERANCE = 1e-5
@@ -59,7 +59,7 @@ def test_disc_of_rejected_designs_is_passed(method):
 
     tried = trials(disc)
     _, best = run(method, tried)
-    assert tried.rejected and arrived(best, TOLERANCE)
+    assert tried.rejected and is_minimum(best, TOLERANCE)
     assert np.allclose(best.unit, BEST, atol=2 * TOLERANCE)
 
 
@@ -73,7 +73,7 @@ def test_search_not_converged_at_wall_of_rejected_designs(method):
     aside = np.linalg.solve(HESSE, row)
     least = BEST + aside * (limit - row @ BEST) / (row @ aside)
     assert np.isclose(best.objective, objective(least), rtol=1e-3)
-    assert not arrived(best, TOLERANCE)
+    assert not is_minimum(best, TOLERANCE)
     # So many are tried, not thousands.
     assert tried.n_evaluations < 500
     if method != "nelder-mead":
@@ -85,7 +85,7 @@ def test_constraint_holds_the_gradient_with_a_multiplier_of_the_right_sign(start
     row, least = np.array([-1.0, -0.5]), -0.8
     tried = trials(nowhere, start, (row, least))
     ending, best = run("slsqp", tried, 1)
-    assert ending.converged and arrived(best, TOLERANCE)
+    assert ending.converged and is_minimum(best, TOLERANCE)
     assert abs(best.unit @ row - least) <= TOLERANCE
     # The same point with the sense of the constraint turned round is no minimum.
     turned = best._replace(margin_slopes=-row[None])
@@ -95,7 +95,7 @@ def test_constraint_holds_the_gradient_with_a_multiplier_of_the_right_sign(start
 def test_search_with_infeasible_constraint():
     tried = trials(nowhere, kept=(np.array([1.0, 1.0]), 3.0))
     ending, best = run("slsqp", tried, 1)
-    assert not ending.converged and not arrived(best, TOLERANCE)
+    assert not ending.converged and not is_minimum(best, TOLERANCE)
     # As near to it as the bounds allow.
     assert np.isclose(best.violation, 1.0) and np.allclose(best.unit, 1.0)
 
@@ -110,7 +110,7 @@ def test_start_at_the_minimum_is_left_alone(method):
 
 def test_step_limit_is_no_minimum():
     ending, best = run("l-bfgs-b", trials(nowhere), max_steps=1)
-    assert ending.limited and not arrived(best, TOLERANCE)
+    assert ending.limited and not is_minimum(best, TOLERANCE)
 
 
 def test_custom_search_callable_arguments():

@@ -43,7 +43,9 @@ def test_states_are_those_of_the_seats():
         half = len(leaves) // 2
         np.testing.assert_allclose(leaves[:half], leaves[half:], rtol=1e-12, atol=1e-20)
     # What is solved has the clearance in operation.
-    left = float(bj.Installed(BEARING, None, SEATS, WARM).at().bearing.clearance)
+    left = float(
+        bj.Installed(BEARING, None, SEATS, WARM).element_at().bearing.clearance
+    )
     assert float(states.operating.radial_clearance) == pytest.approx(left, rel=1e-12)
 
 

@@ -150,7 +150,7 @@ def test_tilts_beyond_small_rotations(deep):
     ours, true = (np.asarray(e.force(q))[9] for e in (deep, finite))
     s = solved(deep, [0, -2000.0, 300, 0, 0, 0])
     rows = deep.rows(q)
-    approach = rows[0].each(lambda m, r, x: m.contacts(r, x)).approach
+    approach = rows[0].map(lambda m, r, x: m.contacts(r, x)).approach
     s = eqx.tree_at(lambda s: (s.displacement, s.approach), s, (q, approach))
     (free,) = bj.warnings(s)  # tilts that are free follow the load
     assert free.startswith("the ring tilts freely, 5 mrad where makers of ball bearin")
@@ -388,9 +388,9 @@ def test_sweep_warnings_match_single_solutions(deep):
     swept = bj.sweep(deep, cases, outputs=["largest_load"])
     for k, load in enumerate(LOADS):
         single = sizes(solved(deep, load, throw=False))
-        assert set(single) == set(swept.warned)
+        assert set(single) == set(swept.warning_sizes)
         for name, size in single.items():
-            assert swept.warned[name][k] == pytest.approx(
+            assert swept.warning_sizes[name][k] == pytest.approx(
                 float(size), rel=1e-6, nan_ok=True
             )
     counts = swept.warning_counts()
@@ -411,7 +411,7 @@ def test_sweep_warnings_match_single_solutions(deep):
         *(solved(deep, load, throw=False) for load in LOADS),
     )
     assert len(bj.warnings(both)) == len(counts)
-    assert set(swept.warned) <= set(KINDS)
+    assert set(swept.warning_sizes) <= set(KINDS)
 
 
 def test_message_for_displacement_far_outside_the_bearing(deep):

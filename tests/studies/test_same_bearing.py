@@ -19,7 +19,7 @@ from bearingjax.cli.execute import Tools
 from bearingjax.design import rows_of
 from bearingjax.fits import Mounting, radial_clearance
 from bearingjax.fits.fits import FitConditions
-from bearingjax.optimise.system import element_of, ready, solved_case
+from bearingjax.optimise.system import element_of, prepare, solved_case
 from bearingjax.statics.options import SolveOptions
 from bearingjax.studies.cases.life_command import run
 from bearingjax.studies.cases.read_cases import read_cases
@@ -140,7 +140,7 @@ def facts(bearing):
 def of_optimise(path):
     task = read_optimisation(path)
     case = jax.tree.map(lambda leaf: leaf[0], task.cases)
-    design = ready(task.scene.installed, None)
+    design = prepare(task.scene.installed, None)
     solved = solved_case(design, case, Support(task.scene.free), SolveOptions(points=2))
     np.testing.assert_allclose(
         facts(element_of(design).bearing), facts(solved.element.bearing), rtol=1e-12

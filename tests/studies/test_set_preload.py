@@ -63,7 +63,9 @@ def left(read, at):
     """What `remaining_preload` says of the set ground by hand and put on its seats."""
     ground = bj.preload(read.element, 200.0)
     seats = at.installed.mounting, at.installed.conditions
-    return float(bj.statics.remaining_preload(bj.Installed(ground, None, *seats).at()))
+    return float(
+        bj.statics.remaining_preload(bj.Installed(ground, None, *seats).element_at())
+    )
 
 
 @pytest.mark.slow

@@ -16,9 +16,9 @@ from ...numerics.types import Scalar
 from ..energy import ball_energy
 from ..rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from ..search_hints import SearchHints
-from .ball_contacts import Contacts, GrooveGeometry, along_normals, angles, bent
+from .ball_contacts import Contacts, GrooveGeometry, along_normals, angles, bend_step
 from .ball_geometry import AbstractBallGeometry
-from .ball_inertia import BallInertia, Carried, carried_loads
+from .ball_inertia import BallInertia, CarriedLoads, carried_loads
 from .ball_speed import BallKinematics
 
 _N, _D = EXPONENT
@@ -78,7 +78,7 @@ class Ball(AbstractRollingElement):
         return dataclasses.replace(self, grooves=grooves)
 
     def coordinates(self, rings: RingMotion, x: Unknowns) -> Any:
-        return self.geometry.moved(rings, x)
+        return self.geometry.travel(rings, x)
 
     def respond(self, coordinates: Any) -> Expansion:
         contacts = self.grooves.touch(coordinates)
@@ -125,16 +125,16 @@ class Ball(AbstractRollingElement):
     ) -> tuple[RingMotion, Unknowns] | None:
         if not self.has_reaction:
             return None
-        now = self._carried(self.contacts(rings, x))
+        now = self._carried_loads(self.contacts(rings, x))
         pushed = now.on_ball.at[1].add(now.centrifugal)
         _, back = jax.vjp(self.geometry.places, rings, x)
         return back((-pushed, -now.on_rings))
 
-    def carried(self, rings: RingMotion, x: Unknowns) -> BallKinematics:
+    def ball_kinematics(self, rings: RingMotion, x: Unknowns) -> BallKinematics:
         """Orbit, rotation and spin; only of a turning ball."""
-        return self._carried(self.contacts(rings, x)).kinematics
+        return self._carried_loads(self.contacts(rings, x)).kinematics
 
-    def _carried(self, contacts) -> Carried:
+    def _carried_loads(self, contacts) -> CarriedLoads:
         assert self.ball_inertia is not None
         power = positive_power(contacts.approach, _N, _D)
         load = self.constants(contacts) * power
@@ -150,7 +150,7 @@ class Ball(AbstractRollingElement):
             return None
         force, moment = t.centrifugal, jnp.zeros_like(t.centrifugal)
         if self.has_reaction:
-            c = self._carried(self.contacts(rings, x))
+            c = self._carried_loads(self.contacts(rings, x))
             force = c.centrifugal
             moment = -0.5 * self.diameter * (c.traction[0] + c.traction[1])
         moment = moment + self.geometry.lever(x) * force
@@ -194,7 +194,7 @@ class BallSearchHints(SearchHints):
     def reach(self, rings: Any) -> Scalar:
         return self.element.geometry.reach(rings)
 
-    def pressed(self, approach: Scalar) -> Scalar:
+    def approximate_load(self, approach: Scalar) -> Scalar:
         grooves = self.element.grooves
         one = jnp.ones_like(grooves.reach)
         free = Contacts(one, one, one, grooves.free, jnp.ones_like(grooves.free))
@@ -225,7 +225,7 @@ class BallSearchHints(SearchHints):
         pressed = (
             element.ball_inertia.centrifugal
             / len(outer)
-            / self.pressed(jnp.ones_like(aside))
+            / self.approximate_load(jnp.ones_like(aside))
         )
         length = reach[outer[0]] + positive_power(pressed, _D, _N)
         height = jnp.sqrt(jnp.maximum(length**2 - aside**2, 0.0))
@@ -247,7 +247,7 @@ class BallSearchHints(SearchHints):
     def corrects_steps(self) -> bool:
         return True
 
-    def corrected(
+    def correct_step(
         self, rings: Any, x: Float[Array, " n"], step: Float[Array, " n"], size: Scalar
     ) -> Float[Array, " n"]:
         """Step along the groove that carries most, no deeper into others than needed.
@@ -259,7 +259,7 @@ class BallSearchHints(SearchHints):
         c = element.contacts(rings, x)
         constant = element.constants(c)
         load = constant * positive_power(c.approach, _N, _D)
-        turned = bent(c, load, step)
+        turned = bend_step(c, load, step)
         # An open contact is entered so far that it carries the unbalanced force.
         wanted = positive_power(size, _D, _N) / positive_power(constant, _D, _N)
         reached = element.contacts(rings, x + turned).approach
@@ -271,7 +271,7 @@ class BallSearchHints(SearchHints):
         root = jnp.sqrt(jnp.maximum(slope**2 + 4.0 * curve * rise, 0.0))
         share = 2.0 * rise / jnp.where(entered, slope + root, 1.0)
         share = jnp.where(share > 0.0, jnp.minimum(share, 1.0), 1.0)
-        return bent(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
+        return bend_step(c, load, step * jnp.min(jnp.where(entered, share, 1.0)))
 
     @property
     def may_be_ejected(self) -> bool:

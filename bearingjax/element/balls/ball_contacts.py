@@ -169,7 +169,7 @@ def along_normals(c: Contacts, step: Unknowns) -> Float[Array, " contact"]:
     return c.normal[:, 0] * step[0] + c.normal[:, 1] * step[1]
 
 
-def bent(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Unknowns:
+def bend_step(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Unknowns:
     """A step, turned along the circle around the centre of the busiest groove.
 
     Args:

@@ -32,7 +32,7 @@ class AbstractBallGeometry(eqx.Module):
         """Motion of one ring in the ball's axes, from its six freedoms."""
 
     @abc.abstractmethod
-    def moved(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
+    def travel(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
         """Motion (z, r) of the ball centre against each groove centre [m].
 
         Args:
@@ -90,8 +90,8 @@ class LinearisedBall(AbstractBallGeometry):
         shift = jnp.eye(3, dtype=self.sides.dtype).at[0, 2].set(-self.pitch_radius)
         return shift @ section_matrix(azimuth)
 
-    def moved(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
-        between = rings.between
+    def travel(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
+        between = rings.difference
         moved = self.sides[:, None] * between[None, :2] + x[None, :]
         return moved - self.tilted * between[2]
 
@@ -105,7 +105,7 @@ class LinearisedBall(AbstractBallGeometry):
         return jnp.stack([place[0], place[1], jnp.zeros_like(place[0])])
 
     def reach(self, rings: RingMotion) -> Scalar:
-        between = rings.between
+        between = rings.difference
         lever = jnp.max(jnp.abs(self.tilted))
         return jnp.abs(between[0]) + jnp.abs(between[1]) + lever * jnp.abs(between[2])
 
@@ -149,7 +149,7 @@ class FiniteBall(AbstractBallGeometry):
         tilt = turn.at[2, 2].set(0.0)
         return jax.scipy.linalg.block_diag(turn, tilt)
 
-    def _against(self, away, ring):
+    def _motion_in_ring(self, away, ring):
         """Motion (z, r) of the ball in the axes of a ring.
 
         Args:
@@ -169,10 +169,10 @@ class FiniteBall(AbstractBallGeometry):
         away = jnp.sqrt(radius * radius + change)
         return jnp.stack([axial, change / (away + radius)])
 
-    def moved(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
+    def travel(self, rings: RingMotion, x: Unknowns) -> Float[Array, "contact 2"]:
         from_outer = jnp.stack([x[1], jnp.zeros_like(x[0]), x[0]])
-        away = jnp.stack([from_outer, from_outer - rings.between[:3]])
-        both = jax.vmap(self._against)(away, jnp.stack(rings))
+        away = jnp.stack([from_outer, from_outer - rings.difference[:3]])
+        both = jax.vmap(self._motion_in_ring)(away, jnp.stack(rings))
         both = both.at[1, 0].add(-self.inner_offset)
         return jnp.repeat(both, self.n_arcs, axis=0)
 
@@ -197,7 +197,7 @@ class FiniteBall(AbstractBallGeometry):
         return jnp.stack([outer[2] + x[0], outer[0] + x[1], jnp.zeros_like(x[0])])
 
     def midpoint(self, rings: RingMotion) -> Unknowns:
-        between = rings.between[:3]
+        between = rings.difference[:3]
         gx, gy = rings.inner[3], rings.inner[4]
         sine, versine = turn_factors(gx * gx + gy * gy)
         z = between[2] - sine * gy * self.pitch_radius
@@ -206,7 +206,7 @@ class FiniteBall(AbstractBallGeometry):
         return jnp.stack([z, r])
 
     def reach(self, rings: RingMotion) -> Scalar:
-        moved = self.moved(rings, self.midpoint(rings))
+        moved = self.travel(rings, self.midpoint(rings))
         return jnp.max(jnp.sum(jnp.abs(moved), axis=1))
 
     def lever(self, x: Unknowns) -> Scalar | float:

@@ -47,7 +47,7 @@ class BallInertia(NamedTuple):
     diameter: Annotated[Scalar, unit("m")]
 
 
-class Carried(NamedTuple):
+class CarriedLoads(NamedTuple):
     """Motion and inertia forces of an orbiting ball.
 
     Attributes:
@@ -93,7 +93,7 @@ def ball_inertia(
 
 def carried_loads(
     t: BallInertia, normals: Float[Array, "2 2"], loads: Float[Array, "2"]
-) -> Carried:
+) -> CarriedLoads:
     """Orbit, rotation and tractions of a ball at given contact angles.
 
     Args:
@@ -118,7 +118,7 @@ def carried_loads(
     signed = jnp.stack([traction[0], -traction[1]])
     forces = signed[:, None] * across
     turn = -0.5 * t.diameter * traction[:, None]
-    return Carried(
+    return CarriedLoads(
         kinematics,
         t.pitch_radius * t.mass * kinematics.orbit**2,
         traction,

@@ -144,7 +144,7 @@ def _dynamic_row(row: Row, bearing: Any, speed: Speed) -> DynamicRow:
             element, bearing.material, row.pitch_radius, speed, carried
         )
 
-    row = eqx.tree_at(lambda r: r.element, row, row.each(with_inertia))
+    row = eqx.tree_at(lambda r: r.element, row, row.map(with_inertia))
     return DynamicRow(row, None, carried, own, (surfaces,))
 
 

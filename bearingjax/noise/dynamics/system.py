@@ -96,9 +96,7 @@ class NoiseSystem(eqx.Module):
 
     def _of_each(self, name):
         """Return a property of the rolling elements, with leading axis element."""
-        return self.row.each(
-            lambda element, _: getattr(element, name), self.row.azimuth
-        )
+        return self.row.map(lambda element, _: getattr(element, name), self.row.azimuth)
 
     def parted(
         self, motion: Float[Array, " n"]
@@ -219,7 +217,7 @@ class NoiseSystem(eqx.Module):
                 element = element.with_heights(heights[0])
             return function(element, element.in_element_axes(outer, inner), place)
 
-        return self.row.each(one, *rings, places, *given)
+        return self.row.map(one, *rings, places, *given)
 
     def _contacts(self, motion, positions):
         """Return derivatives of the energy by both ring sections, and by places."""

@@ -107,7 +107,7 @@ def _sweep(element, speeds, load, tilts, fixed_ring):
 
     def one(speed, load):
         point = _point(element, speed, load, tilts, fixed_ring)
-        return point.condensed(), point.solution.result
+        return point.condense(), point.solution.result
 
     return jax.vmap(one)(speeds, load)
 

@@ -175,7 +175,7 @@ class AbstractOrbit(eqx.Module):
 
     def _found(self, row, q, solved):
         """Return the balls or rollers from `loaded`, and the row at its equilibrium."""
-        found = row.at(q, self.solved_at[0], solved)
+        found = row.results(q, self.solved_at[0], solved)
         places = self.azimuth.size
         return jax.tree.map(lambda a: a[:places], self.loaded(found)), found
 
@@ -197,8 +197,8 @@ class AbstractOrbit(eqx.Module):
         bearing, q = self._turning(own, common, ring)
         (row,), (azimuth, stand, _) = bearing.rows, self.solved_at
         solved = row.solve(q, azimuth, bearing.equilibrium, None)
-        pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving]
-        pulls = jax.vmap(self.balance.along)(pulls)
+        pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving_slice]
+        pulls = jax.vmap(self.balance.free_part)(pulls)
         (bodies, rolls), found = self._found(row, q, solved)
         motion = jax.vmap(self.motion)(bodies, rolls, own)
         slope = self.along @ (motion if sloped is None else stop_gradient(motion))
@@ -210,8 +210,8 @@ class AbstractOrbit(eqx.Module):
 
     def _assembled(self, out, pulls, ring):
         k, balance = self.n_own, self.balance
-        held = (1.0 - balance.free) * ring - balance.held
-        left = balance.along(balance.load) - jnp.sum(pulls, axis=0) - held
+        held = (1.0 - balance.free) * ring - balance.held_values
+        left = balance.free_part(balance.load) - jnp.sum(pulls, axis=0) - held
         return jnp.concatenate(
             [out[:, :k].reshape(-1), jnp.mean(out[:, k:], axis=0), left]
         )
@@ -445,7 +445,7 @@ def _trivial_result(orbit):
 
 def _unsolved_motion(orbit):
     (row,) = orbit.model.element.model(orbit.carried).rows
-    return dataclasses.replace(row, azimuth=orbit.solved_at[0]).unsolved()
+    return dataclasses.replace(row, azimuth=orbit.solved_at[0]).unsolved_state()
 
 
 def _residual(y, orbit):

@@ -76,7 +76,7 @@ class FromCatalogue:
         """
         if self.rerated:
             return row
-        return with_published(row, self.entry.published(row))
+        return with_published(row, self.entry.ratings_for(row))
 
     def varied(self, keys: Iterable[str]) -> "FromCatalogue":
         """Mark further scene keys, such as "bearing.n_balls", as overridden."""

@@ -112,22 +112,22 @@ class Scene:
         """Clearance and seats, drawing to operation; `None` without fits."""
         return self.installed.fit_states()
 
-    def ground(self) -> Installed:
+    def grind_rows(self) -> Installed:
         """Return the installed bearing with its rows ground to their preload.
 
         Fails: offsets are NaN where the preload was not reached.
         """
         if self.installed.preload is None:
             return self.installed
-        return call_stored(_ground, self.installed)
+        return call_stored(_grind_rows, self.installed)
 
     def running(self) -> BearingElement[Any]:
         """Return the element that all commands solve: ground, mounted, in operation."""
-        return self.ground().at()
+        return self.grind_rows().element_at()
 
 
-def _ground(bearing: Installed) -> Installed:
-    return bearing.ground(throw=False)
+def _grind_rows(bearing: Installed) -> Installed:
+    return bearing.grind_rows(throw=False)
 
 
 def load_bearing(source: str | Path) -> Any:

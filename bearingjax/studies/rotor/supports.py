@@ -34,7 +34,7 @@ def support_of(mount: Mount) -> AbstractSupport:
     if mount.installed is None:
         springs = () if keys.stiffness is None else keys.stiffness.diagonal
         return LinearSupport(keys.station, springs, damping, housing=housing)
-    element = mount.installed.at()
+    element = mount.installed.element_at()
     offset = as_array(keys.offset or 0.0, float)
     if keys.preload is not None:
         offset = preload_offset(element, as_array(keys.preload, float))

@@ -61,7 +61,7 @@ def with_set_preload(scene: Scene) -> Scene:
     """
     if scene.fits is None:
         return scene
-    found = scene.ground().set_preload(scene.speed)
+    found = scene.grind_rows().set_preload(scene.speed)
     if found is None:
         return scene
     warned = (*scene.warnings, *preload_warnings(found))
