@@ -308,6 +308,7 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
     return _entry(kind, key, changes, remarks, suffixes)
 
 
+@functools.cache
 def catalogue_entries() -> tuple[CatalogueEntry, ...]:
     """Return all bearings of the catalogue, by type and in the order of the files."""
     plain = Suffixes()

@@ -89,12 +89,32 @@ def required_numbers(kind: str) -> tuple[str, ...]:
     return ("outer_osculation",) if grooved else ()
 
 
+PITCH_FOLLOWS = (
+    "contact_angle",
+    "outer_raceway_radius",
+    "profile_offset",
+    "radial_internal_clearance",
+    "roller_diameter",
+    "roller_profile_radius",
+)
+"""Numbers from which a pitch diameter that is left out follows."""
+
+
+def pitch_follows(table: Table) -> bool:
+    """Whether the pitch diameter of a [bearing] follows from its other numbers.
+
+    Args:
+        table: As in `read_design`.
+    """
+    return table.raw("type", None) in SPHERES and "pitch_diameter" not in table
+
+
 def _balls(table: Table, kind: str) -> AbstractBearing:
     return build(BALLS[kind], table, required_numbers(kind), **_materials(table))
 
 
 def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
-    derived = kind in SPHERES and "pitch_diameter" not in table
+    derived = pitch_follows(table)
     if derived and "outer_raceway_radius" not in table:
         problem = "is missing, and so is `outer_raceway_radius`; one of them must be a"
         raise table.error("pitch_diameter", f"{problem} length, a text with its unit")

@@ -192,7 +192,19 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
         SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
-    data = parse_bearing(path, settings)
+    return case_table(parse_bearing(path, settings), path)
+
+
+def case_table(data: dict[str, Any], path: Path) -> CaseTable:
+    """Read a scene with `[cases]` that is parsed.
+
+    Args:
+        data: The scene.
+        path: Its path.
+
+    Raises:
+        SceneError: As `read_cases`.
+    """
     if "cases" not in data:
         raise SceneError(
             f"{path.name}: `cases` is missing; it must be a table with one of `grid`,"
@@ -205,7 +217,7 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
-    design_groups, design, made, warned = _designs(data, path, columns)
+    design_groups, design, made, warned = _designs(data, path, columns, scene)
     _check_outputs(table, outputs, design_groups)
     cases = _cases(table, scene, columns, design)
     warned += speed_warnings(design_groups, cases)
@@ -442,11 +454,13 @@ def _spectrum(table, data) -> list[Varied]:
     return [Varied(key, [entry[key] for entry in entries], index) for key in keys]
 
 
-def _designs(data, path, columns):
-    """Return structures, design of each case, settings and warnings of all designs."""
+def _designs(data, path, columns, scene):
+    """Return structures, design of each case, settings and warnings of all designs.
+
+    Where the design does not vary, it is that of `scene`.
+    """
     varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
     if not varied:
-        scene = scene_of(data, path)
         return (DesignGroup(scene.running(), None, scene),), None, ({},), ()
     # Repeated values are merged, and so are repeated designs.
     codes = []

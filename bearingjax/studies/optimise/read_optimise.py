@@ -9,7 +9,7 @@ from ...cases.cases import Cases
 from ...design import BearingSet, rows_of
 from ...element import FREEDOMS, BearingElement
 from ...files.quantity import SceneError, kind_of, scene_number
-from ...files.scene_file import find_scene, parse_bearing
+from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...fits.fits import PARTS
@@ -28,9 +28,10 @@ from ...optimise.search import METHODS
 from ...optimise.smooth import EXPONENT
 from ...optimise.variable import Variable, check_variables, design_numbers
 from ..bearing.life_ratings import life_conditions
+from ..bearing.read_design import PITCH_FOLLOWS, pitch_follows
 from ..bearing.read_fit import no_expansion, read_temperature
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
-from ..cases.read_cases import DESIGN, read_cases, turns_of
+from ..cases.read_cases import DESIGN, case_table, turns_of
 
 OBJECTIVES = (
     "peak_pressure",
@@ -219,26 +220,25 @@ def read_bearing_optimisation(
     Raises:
         SceneError: One line with file, line, key, fault and the allowed values.
     """
-    settings = tuple(settings)
     path = find_scene(source)
     data = parse_bearing(path, settings)
     check_present(data, path)
     begun = _start_values(data)
-    if begun:
-        settings = (*settings, *(f"{key}={value}" for key, value in begun.items()))
-        data = parse_bearing(path, settings)
+    for key, value in begun.items():
+        assign(data, key, value, path.name)
     top = Table(data, path)
-    scene = scene_of(data, path)
-    cases, inputs = _operating(scene), scene.inputs
     if "cases" in data:
-        listed = read_cases(source, settings)
-        cases, inputs = listed.cases, listed.inputs
+        listed = case_table(data, path)
+        scene, cases, inputs = listed.scene, listed.cases, listed.inputs
         makers = [key for key in listed.varied if key.partition(".")[0] in DESIGN]
         if makers:
             problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
             raise top.error("cases", problem)
         # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
+    else:
+        scene = scene_of(data, path)
+        cases, inputs = _operating(scene), scene.inputs
     scene = with_speed_warnings(scene, turns_of(cases))
     table = top.table("optimise")
     task = _optimisation(top, table, scene, cases, set(begun))
@@ -299,7 +299,7 @@ def _optimisation(
     return Optimisation(
         scene=scene,
         cases=cases,
-        variables=_variables(keys.variables, top.table("fit"), scene, begun),
+        variables=_variables(keys.variables, top, scene, begun),
         objective=objective,
         constraints=tuple(measured.constraint(one) for one in keys.constraints),
         method=keys.method,
@@ -355,12 +355,20 @@ def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def _variables(
-    table: Table, fit: Table, scene: Scene, begun: set[str]
+    table: Table, top: Table, scene: Scene, begun: set[str]
 ) -> tuple[Variable, ...]:
     unknown = {} if scene.fits is None else scene.fits.unknown
+    derived = pitch_follows(top.table("bearing"))
     for key in table.keys():
         if (warm := WARMTH.get(key)) in unknown:
-            raise no_expansion(fit, warm, f"bearing.{unknown[warm]}")
+            raise no_expansion(top.table("fit"), warm, f"bearing.{unknown[warm]}")
+        if derived and key.removeprefix("bearing.") in PITCH_FOLLOWS:
+            problem = (
+                "the pitch diameter follows from it and `outer_raceway_radius` in this"
+                " scene, and a search holds it; give [bearing] `pitch_diameter` in"
+                " place of `outer_raceway_radius`, which then follows"
+            )
+            raise table.error(key, problem)
     return read_variables(table, scene.installed, installed_numbers(scene), begun)
 
 
