@@ -196,7 +196,8 @@ def _set(data: dict, setting: str, file: str) -> None:
     if not equals or not all(re.fullmatch(r"[A-Za-z0-9_-]+", p) for p in parts):
         raise SceneError(
             f"{file}: {setting!r} is not a setting; write key=value, such as"
-            ' "operating.load.Fy=-4 kN"'
+            ' "operating.load.Fy=-4 kN"; a key in quotes stands in its table,'
+            """ "cases={ grid = { 'bearing.n_balls' = [7, 8] } }\""""
         )
     try:
         parsed = tomllib.loads(f"value = {text}")
