@@ -198,7 +198,7 @@ def measure(starts, points, methods=tuple(STEPS)):
     element, cases = bearing_and_cases()
     options = SolveOptions(points=points)
     problem = Problem(element, cases, variables(REFERENCE), PEAK, (), options)
-    reference = problem.run(problem.scaled(REFERENCE), False)
+    reference = problem.run(problem.to_unit_box(REFERENCE), False)
     size = float(reference.measures[0])
     objectives = {"exact": penalised(size), "smooth": smoothly_penalised(size)}
     compile_times = {}
@@ -234,13 +234,13 @@ def check_by_grid(rows, points, n):
     options = SolveOptions(points=points)
     kept = (bj.optimise.Constraint(ENDS, upper=EDGE),)
     problem = Problem(element, cases, variables(REFERENCE), PEAK, kept, options)
-    middle = problem.scaled(best["values"])
+    middle = problem.to_unit_box(best["values"])
     sides = [np.clip(m + np.linspace(-0.1, 0.1, n), 0.0, 1.0) for m in middle]
     grid = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3)
     found = np.array([problem.run(x, False).measures for x in grid])
     allowed = found[:, 1] <= EDGE
     least = float(found[allowed, 0].min()) / best["peak"] - 1.0
-    published = problem.run(problem.scaled(johns_gohar()), False).measures
+    published = problem.run(problem.to_unit_box(johns_gohar()), False).measures
     return least, best, [float(x) for x in published]
 
 

@@ -47,7 +47,7 @@ class PlainNewton(AbstractMinimiser):
     def step(self, problem, state):
         now = state.now
         x = state.x - solve_symmetric(now.hessian, now.gradient)
-        there = problem.at(x, True, now.memory)
+        there = problem.evaluate(x, True, now.memory)
         return state._replace(x=x, now=there, steps=state.steps + 1)
 
     def converged(self, problem, state):

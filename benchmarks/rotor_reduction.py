@@ -117,7 +117,7 @@ def stations(system, whole, found):
     """Amplitudes of ux and uy at the stations [m]."""
     u, _ = METHOD.motion(system, found.x[:-1], found.x[-1])
     every = np.asarray(amplitudes((u * system.scale) @ system.motions.T))
-    places = [whole.at(k).start for k in range(whole.shaft.n_segments + 1)]
+    places = [whole.slice_at(k).start for k in range(whole.shaft.n_segments + 1)]
     return np.array([every[at : at + 2] for at in places])
 
 

@@ -230,7 +230,7 @@ def orbits(rotor, settled, moment, points):
     branch = follow(
         system, *SPEEDS, METHOD, start, steps=Steps(largest=0.2, points=points),
     )  # fmt: skip
-    at = rotor.at(1).start
+    at = rotor.slice_at(1).start
     moved = np.asarray(branch.displacement) @ np.asarray(system.motions)[at : at + 2].T
     x, y = (np.fft.rfft(moved, axis=1)[:, 1] * 2.0 / moved.shape[1]).T
     return branch, 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))

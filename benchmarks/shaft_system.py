@@ -138,7 +138,7 @@ class Peer:
             beam = system.beam(index)
             springs = [bj.rotor.LinearSupport(0, np.zeros(5))]
             whole = np.asarray(
-                bj.rotor.Rotor(beam, (), springs).unsupported().stiffness
+                bj.rotor.Rotor(beam, (), springs).unsupported_matrices().stiffness
             )
             kept = [beam.node(s) for i, s in self.seat_of if i == index]
             self.shafts.append((beam, whole, kept))
@@ -149,7 +149,7 @@ class Peer:
         support = bj.rotor.BearingSupport(
             1, seat.installed.element_at(), jnp.zeros(5), inertia=True
         )
-        call = jax.jit(lambda moved, speed: support.pushed(moved, speed)[:2])
+        call = jax.jit(lambda moved, speed: support.respond(moved, speed)[:2])
         return lambda moved, speed: [np.asarray(part) for part in call(moved, speed)]
 
     def solve(self, torque, speed, force):

@@ -178,7 +178,7 @@ def over_preload(problem, values, preloads):
     """Torque [N m] and slip of the cage [1] of a design with other preloads."""
     rows = []
     for force in preloads:
-        found = problem.run(problem.scaled([force, *values[1:]]), True)
+        found = problem.run(problem.to_unit_box([force, *values[1:]]), True)
         solved = not np.asarray(found.solution.result).any()
         rows.append(np.asarray(found.exact)[:2] if solved else [np.nan, np.nan])
     return np.array(rows)
@@ -203,7 +203,7 @@ def side(outcome):
 def measure(places, finer, points, scan):
     """One search and its checks."""
     problem = problem_of(places)
-    first = problem.scaled([v.start_in(problem.element) for v in VARIABLES])
+    first = problem.to_unit_box([v.start_in(problem.element) for v in VARIABLES])
     begin = time.perf_counter()
     problem.run(first, True)
     compiled = time.perf_counter() - begin
@@ -213,7 +213,7 @@ def measure(places, finer, points, scan):
     )
     seconds = time.perf_counter() - begin
     problem.begin(first, True)
-    best = problem.evaluate(problem.scaled(found.values), True)
+    best = problem.evaluate(problem.to_unit_box(found.values), True)
     rows, left = multipliers(problem, best)
     kept, least = about(problem, best, points)
     result = {

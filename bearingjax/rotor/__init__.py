@@ -21,7 +21,7 @@ axial); `campbell` follows each mode over the speeds by its shape, `instability_
 finds the speed from which one is unstable; `critical_speeds` are
 solved for, not read off, with a warning if strong dampers may have hidden one
 (`missed`); `unbalance_response` and `harmonic_response` give amplitudes;
-`rotor.linearised(speed)` the matrices M, C, G, K. Frequencies, damping ratios, critical
+`rotor.linearise(speed)` the matrices M, C, G, K. Frequencies, damping ratios, critical
 speeds and amplitudes have first derivatives with respect to every number of the rotor,
 also where modes coincide. They agree with ROSS to all ten digits that its tests print.
 The eigenvalues come from LAPACK, which JAX has on the CPU only. Beside other work on

@@ -119,10 +119,10 @@ class BearingSupport(AbstractSupport):
         held = model.force_or_nan(rings, model.solve(rings, None, azimuths))
         return sense * held[_INNER] + self.damping @ velocity
 
-    def pushed(
+    def respond(
         self, motion: Five, speed: Scalar
     ) -> tuple[Five, Float[Array, "5 5"], Float[Array, "5 5"]]:
-        """Return `AbstractSupport.pushed` from one solve of the rolling elements."""
+        """Return `AbstractSupport.respond` from one solve of the rolling elements."""
         sense, _ = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)
         # On its way to the loads of the machine a bearing bears nothing at first.

@@ -24,7 +24,7 @@ Supported = tuple[
 """Force, stiffness and damping of every support."""
 
 
-class Condensed(eqx.Module):
+class CondensedRotor(eqx.Module):
     """Linear rotor condensed to the motions of its supported stations.
 
     Attributes:
@@ -53,11 +53,11 @@ class Condensed(eqx.Module):
         moved = self.rows @ y
         if jnp.ndim(self.speed):
             return map_parts(
-                lambda s, *at: s.pushed(*at), self.supports, moved, self.speed
+                lambda s, *at: s.respond(*at), self.supports, moved, self.speed
             )
-        return map_parts(lambda s, at: s.pushed(at, self.speed), self.supports, moved)
+        return map_parts(lambda s, at: s.respond(at, self.speed), self.supports, moved)
 
-    def nothing(self) -> Supported:
+    def zeros(self) -> Supported:
         """Return zeros of the shapes of `of_supports`."""
         n, none = len(self.supports), jnp.zeros_like(self.force[0])
         matrices = jnp.tile(none, (n, N_STATION, N_STATION))
@@ -76,7 +76,9 @@ class Condensed(eqx.Module):
         return jnp.einsum("sim,sij,sjn->mn", rows, stiffness, rows) + self.stiffness
 
 
-def condense(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Condensed:
+def condense(
+    rotor: Rotor, force: Float[Array, " motion"], speed: Scalar
+) -> CondensedRotor:
     """Return a rotor condensed to its supported stations.
 
     Shifts of supported stations are in m, tilts in m at the end of half the shaft.
@@ -86,7 +88,7 @@ def condense(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Con
         force: Constant force on all motions (motion,) [N, N m].
         speed: Speed of the rotor [rad/s].
     """
-    own = rotor.unsupported().stiffness
+    own = rotor.unsupported_matrices().stiffness
     rows, every = rotor.at_supports(), rotor.motions()
     n, shaft = own.shape[0], rotor.shaft
     arm = 0.5 * (shaft.stations[-1] - shaft.stations[0])
@@ -110,7 +112,7 @@ def condense(rotor: Rotor, force: Float[Array, " motion"], speed: Scalar) -> Con
             back = back.at[rest].set(follow[:, :-1])
             there = there.at[rest].set(follow[:, -1])
     stiffness = back.T @ own @ back
-    return Condensed(
+    return CondensedRotor(
         stiffness=0.5 * (stiffness + stiffness.T),
         force=back.T @ force,
         rows=rows @ back,

@@ -27,8 +27,8 @@ def map_parts(function: Callable, parts: Sequence[Any], *arrays: Any) -> Any:
     """
     kinds: list[tuple[list[int], list[Any]]] = []
     for k, part in enumerate(parts):
-        one = part.anywhere() if isinstance(part, AbstractSupport) else part
-        same = (kind for kind in kinds if _alike(kind[1][0], one))
+        one = part.without_place() if isinstance(part, AbstractSupport) else part
+        same = (kind for kind in kinds if _are_alike(kind[1][0], one))
         members, alike = next(same, ([], []))
         if not members:
             kinds.append((members, alike))
@@ -48,15 +48,15 @@ def _of_kind(function, alike, given):
     rest = parts[0][1]
     stacked = jax.tree.map(lambda *leaf: jnp.stack(leaf), *(part[0] for part in parts))
 
-    def one(numbers, *arrays):
+    def call(numbers, *arrays):
         return function(eqx.combine(numbers, rest), *arrays)
 
-    every = jax.vmap(one)(stacked, *given)
+    every = jax.vmap(call)(stacked, *given)
     leaves, tree = jax.tree.flatten(every)
     return [tree.unflatten([leaf[k] for leaf in leaves]) for k in range(len(alike))]
 
 
-def _alike(one, other):
+def _are_alike(one, other):
     """Return whether two parts differ in numbers only."""
     if jax.tree.structure(one) != jax.tree.structure(other):
         return False

@@ -104,11 +104,11 @@ class RotorLoads(eqx.Module):
         """
         force = acceleration_load(rotor, self.gravity)
         for one in self.forces:
-            force = force.at[rotor.at(one.station)].add(one.force)
+            force = force.at[rotor.slice_at(one.station)].add(one.force)
         return force
 
     @eqx.filter_jit
-    def unbalanced(self, rotor: Rotor) -> tuple[Motions, Motions]:
+    def unbalance_forces(self, rotor: Rotor) -> tuple[Motions, Motions]:
         """Return amplitudes of cos φ and sin φ of unbalance forces, over Ω² [kg m].
 
         U (cos(φ + β), sin(φ + β)) at the station of every unbalance.
@@ -119,13 +119,13 @@ class RotorLoads(eqx.Module):
         cosine = sine = jnp.zeros_like(rotor.motions()[:, 0])
         for one in self.unbalances:
             x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
-            at = rotor.at(one.station).start
+            at = rotor.slice_at(one.station).start
             cosine = cosine.at[at].add(x).at[at + 1].add(y)
             sine = sine.at[at].add(-y).at[at + 1].add(x)
         return cosine, sine
 
     @eqx.filter_jit
-    def shaken(self, rotor: Rotor) -> Motions:
+    def base_force(self, rotor: Rotor) -> Motions:
         """Return the amplitude of cos φ of the forces of base excitation [N, N m].
 
         Args:
@@ -141,7 +141,7 @@ def acceleration_load(rotor: Rotor, acceleration: Any) -> Motions:
         rotor: The rotor.
         acceleration: Along x, y and z (3,) [m/s²].
     """
-    mass = rotor.unsupported().mass
+    mass = rotor.unsupported_matrices().mass
     n_nodes = rotor.shaft.n_nodes
     n_housings = (mass.shape[0] - N_STATION * n_nodes) // N_HOUSING
     still = jnp.append(acceleration, jnp.zeros(2, mass.dtype))

@@ -241,7 +241,7 @@ class AbstractSupport(eqx.Module):
             angle: By which the rotor has turned, from x towards y [rad].
         """
 
-    def pushed(
+    def respond(
         self, motion: Five, speed: Scalar
     ) -> tuple[Five, Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Force (5,), stiffness and damping (5, 5) at a motion and a speed, at rest.
@@ -250,15 +250,15 @@ class AbstractSupport(eqx.Module):
             motion, speed: As `force`.
         """
 
-        def held(motion, velocity):
+        def with_value(motion, velocity):
             force = self.force(motion, velocity, speed)
             return force, force
 
         rest = jnp.zeros_like(motion)
-        slopes, force = jax.jacfwd(held, (0, 1), has_aux=True)(motion, rest)
+        slopes, force = jax.jacfwd(with_value, (0, 1), has_aux=True)(motion, rest)
         return force, *slopes
 
-    def linearised(
+    def linearise(
         self, motion: Five, speed: Scalar
     ) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
         """Stiffness and damping (5, 5) at a motion and a speed, at rest there.
@@ -266,9 +266,9 @@ class AbstractSupport(eqx.Module):
         Args:
             motion, speed: As `force`.
         """
-        return self.pushed(motion, speed)[1:]
+        return self.respond(motion, speed)[1:]
 
-    def anywhere(self) -> "AbstractSupport":
+    def without_place(self) -> "AbstractSupport":
         """Return a copy on station 0 and ground; like supports then compare equal."""
         return dataclasses.replace(self, station=0, housing=None)
 

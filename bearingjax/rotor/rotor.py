@@ -71,17 +71,17 @@ class RotorMatrices(eqx.Module):
         )
         return eigenvalue**2 * mass + eigenvalue * rates + stiffness
 
-    def projected(self, basis: Float[Array, "freedom fewer"]) -> "RotorMatrices":
+    def project(self, basis: Float[Array, "freedom fewer"]) -> "RotorMatrices":
         """Return the rotor reduced to motions q = basis · p, with freedoms p."""
 
-        def within(matrix):
+        def reduce(matrix):
             return basis.T @ matrix @ basis
 
         return RotorMatrices(
-            within(self.mass),
-            within(self.damping),
-            within(self.gyroscopic),
-            within(self.stiffness),
+            reduce(self.mass),
+            reduce(self.damping),
+            reduce(self.gyroscopic),
+            reduce(self.stiffness),
             self.motions @ basis,
             self.speed,
             self.length,
@@ -95,7 +95,7 @@ class RotorMatrices(eqx.Module):
         return nodes, motion[..., n:].reshape(*lead, -1, N_HOUSING)
 
 
-class Unsupported(NamedTuple):
+class UnsupportedMatrices(NamedTuple):
     """Matrices on all motions (motion, motion) of a rotor without its supports.
 
     Attributes:
@@ -162,7 +162,7 @@ class Rotor(eqx.Module):
         """Mass of shaft, discs and point masses, without housings [kg]."""
         return sum((part.mass for part in self.discs), start=self.shaft.mass)
 
-    def at(self, station: int) -> slice:
+    def slice_at(self, station: int) -> slice:
         """Return the slice of the five motions of a station in all motions.
 
         Args:
@@ -195,7 +195,7 @@ class Rotor(eqx.Module):
         for row, support, housing in zip(
             rows, self.supports, self._housings(), strict=True
         ):
-            row[:, self.at(support.station)] = np.eye(N_STATION)
+            row[:, self.slice_at(support.station)] = np.eye(N_STATION)
             if housing is not None:
                 row[:N_HOUSING, housing] = -np.eye(N_HOUSING)
         return as_real(rows).astype(self.shaft.stations.dtype)
@@ -215,7 +215,7 @@ class Rotor(eqx.Module):
                 yield slice(first, first + N_HOUSING)
                 first += N_HOUSING
 
-    def linearised(
+    def linearise(
         self, speed: Any = 0.0, motion: Float[Array, " motion"] | None = None
     ) -> RotorMatrices:
         """Return the rotor as matrices, linearised.
@@ -231,7 +231,7 @@ class Rotor(eqx.Module):
         return _linearise(self, as_real(speed), motion)
 
     @eqx.filter_jit
-    def unsupported(self) -> "Unsupported":
+    def unsupported_matrices(self) -> "UnsupportedMatrices":
         """Return matrices on all motions without supports and `damping`."""
         n_shaft, n = N_STATION * self.shaft.n_nodes, self._n_motions
         nothing = jnp.zeros((n, n), dtype=self.shaft.stations.dtype)
@@ -244,7 +244,7 @@ class Rotor(eqx.Module):
             shaft_stiffness = nothing
         mass, stiffness, damping = shaft_mass, shaft_stiffness, nothing
         for disc in self.discs:
-            at = self.at(disc.station)
+            at = self.slice_at(disc.station)
             inertia, turning = disc.inertia()
             mass = mass.at[at, at].add(inertia)
             gyroscopic = gyroscopic.at[at, at].add(turning)
@@ -254,7 +254,7 @@ class Rotor(eqx.Module):
                 mass = mass.at[at, at].add(base.mass * jnp.eye(N_HOUSING))
                 stiffness = stiffness.at[at, at].add(base.stiffness)
                 damping = damping.at[at, at].add(base.damping)
-        return Unsupported(
+        return UnsupportedMatrices(
             mass, damping, gyroscopic, stiffness, shaft_mass, shaft_stiffness
         )
 
@@ -274,10 +274,10 @@ def matrices_about(
     """Return the rotor as matrices; compiled by the caller.
 
     Args:
-        rotor, speed, motion: As in `Rotor.linearised`.
+        rotor, speed, motion: As in `Rotor.linearise`.
         supported: Whether its supports count. Modal damping takes them along anyway.
     """
-    own, basis, shaft = rotor.unsupported(), rotor.motions(), rotor.shaft
+    own, basis, shaft = rotor.unsupported_matrices(), rotor.motions(), rotor.shaft
     every = jnp.eye(basis.shape[0], dtype=basis.dtype)
     if motion is None:
         motion = jnp.zeros_like(every[0])
@@ -286,13 +286,13 @@ def matrices_about(
     def matrices(damping, stiffness):
         whole = own.mass, damping, own.gyroscopic, stiffness, every
         found = RotorMatrices(*whole, speed, length, shaft.n_nodes)
-        return found.projected(basis) if rotor.rigid else found
+        return found.project(basis) if rotor.rigid else found
 
     free = held = matrices(own.damping, own.stiffness)
     if rotor.supports and (supported or rotor.damping is not None):
         rows = rotor.at_supports()
         k, c = map_parts(
-            lambda support, moved: support.linearised(moved, speed),
+            lambda support, moved: support.linearise(moved, speed),
             rotor.supports,
             rows @ motion,
         )

@@ -195,10 +195,10 @@ class Shaft(eqx.Module):
         rows, columns = place[:, :, None], place[:, None, :]
         mass, gyroscopic, stiffness = elements
 
-        def assembled(parts: Array) -> Array:
+        def assemble(parts: Array) -> Array:
             return nothing.at[rows, columns].add(parts)
 
-        return assembled(mass), assembled(gyroscopic), assembled(stiffness)
+        return assemble(mass), assemble(gyroscopic), assemble(stiffness)
 
 
 def seat_size_warnings(

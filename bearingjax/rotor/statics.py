@@ -25,7 +25,7 @@ from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit, units
 from ..numerics.warning import Warning
-from .condensed import Condensed, Supported, condense
+from .condensed import CondensedRotor, Supported, condense
 from .loads import Motions, RotorLoads
 from .parts import DAMPING_UNITS, STIFFNESS_UNITS, LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
@@ -162,7 +162,7 @@ def checked_loads(owner: str, rotor: Any, loads: Any) -> RotorLoads:
     return loads
 
 
-def search_equilibrium(parts: Condensed, length: Scalar | float) -> Minimum:
+def search_equilibrium(parts: CondensedRotor, length: Scalar | float) -> Minimum:
     """Search the equilibrium, without derivatives; its memory are the supports.
 
     Args:
@@ -195,7 +195,7 @@ def search_equilibrium(parts: Condensed, length: Scalar | float) -> Minimum:
         function,
         jnp.zeros_like(load),
         jnp.asarray(_FIRST_STEP, load.dtype),
-        memory=parts.nothing(),
+        memory=parts.zeros(),
         direction=load / jnp.where(size > 0, size, 1.0),
         limit=length,
         force=load,
@@ -206,11 +206,11 @@ def _balance(y, parts):
     return parts.out_of_balance(y, parts.of_supports(y)[0])
 
 
-def _undone(of_y, y, change, parts):
+def _correction(of_y, y, change, parts):
     return -solve(parts.slope(parts.of_supports(y)[1]), change, False)
 
 
-def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]:
+def at_equilibrium(found: Minimum, parts: CondensedRotor) -> tuple[Array, *Supported]:
     """Return the condensed motions, and force, stiffness, damping of the supports.
 
     They are differentiable with respect to `parts`, and NaN if the search failed.
@@ -220,7 +220,7 @@ def at_equilibrium(found: Minimum, parts: Condensed) -> tuple[Array, *Supported]
         parts: Condensed rotor, or several.
     """
     solved = found.result == Result.CONVERGED
-    y = attach_by(_balance, found.x, parts, _undone)
+    y = attach_by(_balance, found.x, parts, _correction)
     known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)
     states = recall(lambda parts, y: parts.of_supports(y), known, (parts, y))
     return jnp.where(solved, y, jnp.nan), *states
@@ -240,10 +240,10 @@ def equilibrium_at(
     found = search_equilibrium(stop_gradient(parts), stop_gradient(length))
     solved = found.result == Result.CONVERGED
 
-    def there(*given):
+    def recompute(*given):
         return _equilibrium(found, *given)
 
-    equilibrium = unless_failed(there, (rotor, parts, speed), solved)
+    equilibrium = unless_failed(recompute, (rotor, parts, speed), solved)
     return equilibrium, stop_gradient(parts).motion(found.x)
 
 
@@ -272,7 +272,7 @@ def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
     )
 
 
-def softest(parts: Condensed, slope: Array) -> Motions:
+def softest(parts: CondensedRotor, slope: Array) -> Motions:
     """Return the softest of all motions if it is free, else zeros.
 
     Args:

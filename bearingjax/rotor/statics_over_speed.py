@@ -143,15 +143,15 @@ def static_equilibrium_over(
 def _at_each(rotor, loads, speeds) -> StaticEquilibrium:
     """Return equilibria at all speeds, without `rotor`; first axis `place`."""
 
-    def one(speed):
+    def equilibrium_of(speed):
         found = equilibrium_at(rotor, loads, speed)[0]
         return eqx.tree_at(lambda f: f.rotor, found, None)
 
     if any(is_traced(leaf) for leaf in jax.tree.leaves((rotor, loads, speeds))):
-        return lax.map(one, speeds)
+        return lax.map(equilibrium_of, speeds)
     # One after the other by the program of `static_equilibrium`, which is often there
     # already.
-    return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(one, speeds))
+    return jax.tree.map(lambda *leaf: jnp.stack(leaf), *map(equilibrium_of, speeds))
 
 
 @program(quick=True)

@@ -74,7 +74,7 @@ def _lost_preload(found) -> str:
         return ""
     rest = jnp.zeros(N_STATION, found.motion.dtype)
     asked = {
-        k: float(_at(rotor.supports[k].anywhere(), rest, found.speed)[2])
+        k: float(_static_force(rotor.supports[k].without_place(), rest, found.speed)[2])
         for k in preloaded
     }
     lost = {
@@ -101,7 +101,7 @@ def _lost_preload(found) -> str:
 
 
 @program(quick=True)
-def _at(support, motion, speed):
+def _static_force(support, motion, speed):
     """Return the force of a support at zero velocity."""
     return support.force(motion, jnp.zeros_like(motion), speed)
 

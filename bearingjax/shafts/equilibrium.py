@@ -18,7 +18,7 @@ from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..rotor import Rotor
-from ..rotor.condensed import Condensed, condense
+from ..rotor.condensed import CondensedRotor, condense
 from ..rotor.loads import acceleration_load
 from ..rotor.rotor import N_STATION
 from ..rotor.statics import search_equilibrium
@@ -205,7 +205,7 @@ def _points(system, power, index, beam) -> Float[Array, "node 5"]:
     return nodes
 
 
-def _couple(system, rotors, points, power) -> Condensed:
+def _couple(system, rotors, points, power) -> CondensedRotor:
     """Return all shafts on their bearings, with seats and floating rings, as one."""
     parts, order, turns = [], [], []
     for index, rotor in enumerate(rotors):
@@ -250,7 +250,7 @@ def _couple(system, rotors, points, power) -> Condensed:
     back_at = np.argsort(order)
     supports = [support for rotor in rotors for support in rotor.supports]
     still = jnp.zeros(n_more, rows.dtype)
-    return Condensed(
+    return CondensedRotor(
         stiffness=jsp.linalg.block_diag(*stiffness),
         force=jnp.concatenate([*(part.force for part in parts), still]),
         rows=jnp.concatenate([rows, more], axis=2)[back_at],

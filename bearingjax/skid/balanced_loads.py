@@ -59,7 +59,7 @@ class BalancedLoads(eqx.Module):
         bearing = self.skid.bearing
         return ball_mass(bearing.ball_diameter, bearing.material.density)[0]
 
-    def at(
+    def ball_at(
         self,
         azimuth: Scalar,
         speed: Speed,

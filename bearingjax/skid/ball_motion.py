@@ -129,7 +129,7 @@ class Tractions(NamedTuple):
         return self.resultants.heat
 
 
-def rolling(ball: LoadedBall, speed: Speed) -> BallState:
+def pure_rolling(ball: LoadedBall, speed: Speed) -> BallState:
     """Return the motion without slip, and without spin at the outer raceway.
 
     Args:
@@ -179,14 +179,14 @@ def tractions(ball: LoadedBall, law: AbstractTraction, moving: Sliding) -> Tract
         moving: From `sliding`.
     """
 
-    def one(patch, film, slip, spin, speed):
+    def contact_traction(patch, film, slip, spin, speed):
         thickness = film.central(speed)
         if ball.inlet is not None:
             thickness *= ball.inlet.factor(patch, slip[0], speed)
         thickness = at_least(thickness, ball.least_film)
         return thickness, law.resultants(patch, thickness, slip, spin)
 
-    film, found = jax.vmap(one)(ball.patch, ball.film, *moving)
+    film, found = jax.vmap(contact_traction)(ball.patch, ball.film, *moving)
     cos, sin = jnp.cos(ball.angle), jnp.sin(ball.angle)
     along, across = found.force[:, 0], found.force[:, 1]
     arm = 0.5 * ball.diameter * ball.side

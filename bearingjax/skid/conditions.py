@@ -60,7 +60,7 @@ def conditions_of(
     if slip.ndim == 1:
         slip = jnp.stack([slip, jnp.zeros_like(slip)], axis=1)
 
-    def one(patch, film, load, thickness, slip, spin, speed):
+    def contact_conditions(patch, film, load, thickness, slip, spin, speed):
         least = film.minimum(speed)
         if body.inlet is not None:
             least = least * body.inlet.factor(patch, slip[0], speed)
@@ -75,7 +75,7 @@ def conditions_of(
         return Conditions(patch.peak, least, film.regime(speed), outside, shear)
 
     given = body.patch, body.film, body.load, film, slip, spin, moving.entrainment
-    return jax.vmap(one)(*given)
+    return jax.vmap(contact_conditions)(*given)
 
 
 def conditions(model: SkidModel, found: Any, speed: Speed | SpeedTable) -> Conditions:
@@ -131,7 +131,7 @@ def by_raceway(values: ArrayLike, load: ArrayLike) -> np.ndarray:
 def _conditions(model, load, angle, spin, orbit, inner, outer):
     bearing, law = model.bearing, model.element.point_law
 
-    def one(load, angle, spin, orbit, inner, outer):
+    def ball_conditions(load, angle, spin, orbit, inner, outer):
         ball = loaded_ball(bearing, law, model.oil, load, angle)
         turning = Speed(inner=inner, outer=outer)
         moving = sliding(ball, BallState(spin, orbit), turning)
@@ -141,4 +141,4 @@ def _conditions(model, load, angle, spin, orbit, inner, outer):
         found = conditions_of(model, ball, moving, film)
         return found._replace(semi_axes=jnp.stack(axes, axis=-1))
 
-    return jax.vmap(one)(load, angle, spin, orbit, inner, outer)
+    return jax.vmap(ball_conditions)(load, angle, spin, orbit, inner, outer)

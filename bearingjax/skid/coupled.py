@@ -72,7 +72,7 @@ class AbstractSystem(eqx.Module):
         """
 
     @abc.abstractmethod
-    def rest(
+    def shared_rates(
         self, time: Scalar, shared: Float[Array, " m"]
     ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
         """Return contributions to shared rates and sums that come from no body."""
@@ -92,7 +92,7 @@ class AbstractSystem(eqx.Module):
         rates, shared, sums = jax.vmap(self.body, (0, None, 0, None))(
             self.bodies, time, state.own, state.shared
         )
-        of_shared, of_sums = self.rest(time, state.shared)
+        of_shared, of_sums = self.shared_rates(time, state.shared)
         return Coupled(
             rates, of_shared + jnp.sum(shared, axis=0), of_sums + jnp.sum(sums, axis=0)
         )
@@ -106,7 +106,7 @@ class AbstractSystem(eqx.Module):
             return jnp.concatenate(self.body(which, time[0], own, shared))
 
         def of_rest(unknowns):
-            return jnp.concatenate(self.rest(unknowns[-1], unknowns[:-1]))
+            return jnp.concatenate(self.shared_rates(unknowns[-1], unknowns[:-1]))
 
         common = jnp.append(state.shared, time)
         whole = jax.vmap(lambda own: jnp.concatenate([own, common]))(state.own)
@@ -151,7 +151,7 @@ class Slopes(NamedTuple):
         border = jnp.sum(jax.vmap(_product)(self.down[:, :m], follow), axis=0)
         shared = _inverse(jnp.diag(masses.shared * scale) - self.shared[:m] - border)
 
-        def solved(right):
+        def solve(right):
             alone = jax.vmap(_times)(own, right.own)
             pulls = jax.vmap(_times)(self.down[:, :m], alone)
             of_shared = _times(shared, right.shared + jnp.sum(pulls, axis=0))
@@ -160,7 +160,7 @@ class Slopes(NamedTuple):
             sums = right.sums + sums + _times(self.shared[m:], of_shared)
             return Coupled(of_own, of_shared, sums / scale)
 
-        return solved
+        return solve
 
 
 _WRITTEN_OUT = 5

@@ -74,10 +74,10 @@ class LoadTable(eqx.Module):
         """Return an empty load: a table has no unknowns to balance (0,) [N]."""
         return jnp.zeros_like(ring)
 
-    def at(
+    def ball_at(
         self, azimuth: Scalar, speed: Speed, centre: Array, ring: Array
     ) -> tuple[LoadedBall | LoadedRoller, Array, Array]:
-        """Return the same as `BalancedLoads.at`; only `azimuth` is used."""
+        """Return the same as `BalancedLoads.ball_at`; only `azimuth` is used."""
         return self.ball(azimuth), jnp.zeros_like(centre), jnp.zeros_like(ring)
 
     def ball(self, azimuth: Scalar) -> LoadedBall | LoadedRoller:

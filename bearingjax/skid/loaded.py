@@ -38,7 +38,7 @@ _SLICES = 16
 """Slices of a roller, at Gauss-Legendre nodes."""
 
 
-def orbiting(
+def orbiting_model(
     element: BearingElement, speed: Speed, excess: Float[Array, "..."]
 ) -> BearingModel:
     """Return the bearing with orbits faster than in pure rolling.
@@ -54,13 +54,13 @@ def orbiting(
             that of all () [rad/s].
     """
 
-    def one(excess):
+    def model_at(excess):
         return element.model(Speed(speed.inner + excess, speed.outer + excess))
 
     if not excess.ndim:
-        return one(excess)
+        return model_at(excess)
     row, each = (
-        model.rows[0] for model in (element.model(speed), jax.vmap(one)(excess))
+        model.rows[0] for model in (element.model(speed), jax.vmap(model_at)(excess))
     )
     rows = (dataclasses.replace(row, element=each.element, per_element=True),)
     return BearingModel(RowGroup.group(rows), element.equilibrium, element.cage_torque)
@@ -82,16 +82,18 @@ def ring_forces(
         Forces and moments [N, N m], with derivatives.
     """
 
-    def seen(q):
+    def in_axes(q):
         return row.in_element_axes(row.local(q), azimuth)
 
     def energy(rings):
-        def one(solved_element, rings, energies):
+        def condensed_energy(solved_element, rings, energies):
             return expand(condense, rings, solved_element, energies)
 
-        return jnp.sum(solved.map(row, one, rings))
+        return jnp.sum(solved.map(row, condensed_energy, rings))
 
-    return jnp.einsum("kr,krq->kq", jax.grad(energy)(seen(q)), jax.jacfwd(seen)(q))
+    return jnp.einsum(
+        "kr,krq->kq", jax.grad(energy)(in_axes(q)), jax.jacfwd(in_axes)(q)
+    )
 
 
 def contact_loads(

@@ -164,7 +164,7 @@ def one_ball(
     model, azimuth = environment.model, place + state.cage_turn + state.lead
     speed = environment.speed.at(time)
     here = azimuth, speed, state.centre, state.ring
-    ball, unbalanced, on_ring = environment.loads.at(*here)
+    ball, unbalanced, on_ring = environment.loads.ball_at(*here)
     equations, motion = equations_of_motion(ball), BallState(state.spin, state.orbit)
     if isinstance(ball, LoadedRoller):
         motion = RollerState(state.spin[0], state.orbit)
@@ -193,10 +193,10 @@ def each_ball(
 ) -> ElementState:
     """Return all balls at an instant, leading axis ball; arguments as in `one_ball`."""
 
-    def one(place, state):
+    def rates_of(place, state):
         return one_ball(environment, time, place, state)
 
-    return jax.vmap(one, in_axes=(0, SkidState(*_AXES)))(environment.place, state)
+    return jax.vmap(rates_of, in_axes=(0, SkidState(*_AXES)))(environment.place, state)
 
 
 def power(environment: Surroundings, time: Scalar, ball: ElementState) -> Work:
@@ -258,7 +258,7 @@ class SkidSystem(AbstractSystem):
         shared = [self.speed, one] + [loads.unit * one] * loads.n_shared
         return jnp.stack(own), jnp.stack(shared)
 
-    def packed(self, state: SkidState) -> Coupled:
+    def pack(self, state: SkidState) -> Coupled:
         """Return the unknowns of a motion, with zero work."""
         of_balls = state.orbit[:, None], state.lead[:, None]
         own = jnp.concatenate([state.spin, *of_balls, state.centre], axis=1)
@@ -268,7 +268,7 @@ class SkidSystem(AbstractSystem):
         own = own / units[0][None, :]
         return Coupled(own, shared / units[1], jnp.zeros(3, own.dtype))
 
-    def unpacked(self, packed: Coupled) -> tuple[SkidState, Work]:
+    def unpack(self, packed: Coupled) -> tuple[SkidState, Work]:
         """Return the motion and the work done."""
         work = Work(*(packed.sums * self.energy))
         return self._state(packed.own, packed.shared), work
@@ -308,7 +308,7 @@ class SkidSystem(AbstractSystem):
         units = self._units
         return own / units[0], shared / units[1], work / self.energy
 
-    def rest(
+    def shared_rates(
         self, time: Scalar, shared: Float[Array, " m"]
     ) -> tuple[Float[Array, " m"], Float[Array, " w"]]:
         """Return rates from cage rotation and ring load, as `AbstractSystem`."""

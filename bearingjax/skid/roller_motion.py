@@ -111,7 +111,7 @@ class RollerTractions(NamedTuple):
     ring_torque: Annotated[Float[Array, "2"], unit("N m")]
 
 
-def rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
+def pure_rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
     """Return the motion without slip at both raceways.
 
     Args:
@@ -151,7 +151,7 @@ def tractions(
         moving: From `sliding`.
     """
 
-    def one(patch, film, slip, speed):
+    def contact_traction(patch, film, slip, speed):
         thickness = film.central(speed)
         if roller.inlet is not None:
             thickness *= roller.inlet.factor(patch, slip, speed)
@@ -160,7 +160,7 @@ def tractions(
         found = law.resultants(patch, thickness, jnp.stack([slip, none]), none)
         return thickness, found.force[0], found.heat
 
-    film, force, heat = jax.vmap(one)(roller.patch, roller.film, *moving)
+    film, force, heat = jax.vmap(contact_traction)(roller.patch, roller.film, *moving)
     moment = -0.5 * roller.diameter * roller.side * force
     # The ring feels the opposite force, at its lever.
     return RollerTractions(film, force, heat, moment, force * roller.lever)

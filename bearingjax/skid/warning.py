@@ -68,7 +68,7 @@ def _doubts(model, found, state):
     turning &= rolling > 0
     loaded &= turning[..., None]
     return (
-        _wander(model, found),
+        _wander_warning(model, found),
         _slip(found, turning, loaded.all(axis=-1)),
         _sheared_films(model, state, found.contact_load, loaded),
         _glass(model, state, loaded),
@@ -93,7 +93,7 @@ def _pockets(model):
     )
 
 
-def _wander(model, found):
+def _wander_warning(model, found):
     wander = getattr(found, "wander", None)
     play = float(model.cage.pocket_clearance)
     if wander is None or not wander > play:

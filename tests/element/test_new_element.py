@@ -124,7 +124,7 @@ class TorusChoices(AbstractChoices):
     names = ("kinematics",)
 
     @classmethod
-    def of(cls, rows, kinematics=None):
+    def from_rows(cls, rows, kinematics=None):
         return cls(kinematics=kinematics or bj.element.Linearised())
 
     def rolling_element(self, part, speed, deviation):
@@ -231,7 +231,7 @@ class FixedAngleBall(AbstractRollingElement):
         return shift @ section_matrix(azimuth)
 
     def coordinates(self, rings, x):
-        z, r, tilt = rings.between
+        z, r, tilt = rings.difference
         moved = jnp.stack([z, r]) + self.lever * tilt
         return -(self.direction @ moved)[None, None]
 

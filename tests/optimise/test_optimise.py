@@ -119,7 +119,7 @@ def test_gradients_of_all_measures_are_those_of_differences(fujiwara, cases):
     constraints = tuple(bj.optimise.Constraint(m, upper=1.0) for m in measures[1:])
     options = SolveOptions(points=POINTS)
     problem = Problem(fujiwara, cases, variables, measures[0], constraints, options)
-    start = problem.scaled([v.start_in(fujiwara) for v in variables])
+    start = problem.to_unit_box([v.start_in(fujiwara) for v in variables])
     found = problem.run(start, True)
     assert np.all(np.asarray(found.solution.result) == bj.Result.CONVERGED)
     got, step = np.asarray(found.jacobian), 1e-5

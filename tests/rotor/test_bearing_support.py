@@ -25,7 +25,7 @@ PAPER = {
 def held(support, motion, speed):
     """Force and stiffness of a support."""
     rest = jnp.zeros(5)
-    return support.force(motion, rest, speed), support.linearised(motion, speed)[0]
+    return support.force(motion, rest, speed), support.linearise(motion, speed)[0]
 
 
 def preloaded(angle, **choices):
@@ -72,7 +72,7 @@ def test_bearing_support_stiffness_and_damping():
     """The stiffness is that of differences; damping adds to force and linear part."""
     support = preloaded(12, damping=[10.0, 20.0, 30.0, 0.1, 0.2])
     motion = jnp.array([3e-6, -2e-6, 1e-6, 2e-5, -1e-5])
-    stiffness, damping = support.linearised(motion, jnp.asarray(0.0))
+    stiffness, damping = support.linearise(motion, jnp.asarray(0.0))
     np.testing.assert_array_equal(damping, np.diag([10.0, 20.0, 30.0, 0.1, 0.2]))
     steps = 1e-9 * np.diag([1.0, 1.0, 1.0, 30.0, 30.0])
     ends = [

@@ -153,7 +153,7 @@ def test_campbell_lines_independent_of_speed_count():
     rotor, top = veering(), 6283.0
 
     def values(speed) -> Any:
-        at = rotor.linearised(speed)
+        at = rotor.linearise(speed)
         n = at.mass.shape[0]
         lower = np.linalg.solve(at.mass, np.hstack([at.stiffness, at.rates]))
         state = np.block([[np.zeros((n, n)), np.eye(n)], [-lower]])

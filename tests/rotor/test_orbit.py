@@ -42,9 +42,9 @@ def of_hill(method, system, z, ratio):
     at = method._basis(z.dtype)
     _, (*parts, _) = method.slopes(system, z, ratio)
     _, damping, inertia = parts
-    still = method.projected(parts, (at.value, at.rate, at.second))
-    first = method.projected((damping, inertia), (at.value, 2.0 * at.rate))
-    square = method.projected((inertia,), (at.value,))
+    still = method.project(parts, (at.value, at.rate, at.second))
+    first = method.project((damping, inertia), (at.value, 2.0 * at.rate))
+    square = method.project((inertia,), (at.value,))
     unit = jnp.eye(z.size, dtype=z.dtype)
     below = -solve_any(square, jnp.concatenate([still, first], 1))
     above = jnp.concatenate([jnp.zeros_like(unit), unit], 1)
@@ -118,7 +118,7 @@ def test_mathieu():
         # y'' + (a - 2 q cos 2τ) y = 0 with φ = 2τ: frequency² 4/a.
         ratio = 2.0 / jnp.sqrt(stiffness)
         none = jnp.zeros(2)
-        _, jacobian, _ = SHOOTING.linearised(system, none, ratio)
+        _, jacobian, _ = SHOOTING.linearise(system, none, ratio)
         return jnp.trace(SHOOTING.monodromy(system, ratio, jacobian, ()))
 
     for q in (0.5, 2.0):
@@ -179,7 +179,7 @@ def test_gradients_against_differences(name):
 def test_harmonic_balance_jacobian():
     system, z = rotor(36, base_acceleration=5.0), 0.3 * jnp.sin(jnp.arange(25.0))
     balance, ratio = HarmonicBalance(2, 12), jnp.asarray(0.9)
-    left, jacobian, _ = eqx.filter_jit(balance.linearised)(system, z, ratio)
+    left, jacobian, _ = eqx.filter_jit(balance.linearise)(system, z, ratio)
 
     @jax.jit
     def change(step):

@@ -95,7 +95,7 @@ def test_hertz_constant_is_the_printed_one():
 
 def test_the_cubic_expansion():
     law = LAWS[12]
-    cubic, z0 = CubicExpansion.of(law), law.preload_displacement
+    cubic, z0 = CubicExpansion.from_law(law), law.preload_displacement
 
     @jax.jit
     def orders(law):
@@ -126,7 +126,7 @@ def test_the_cubic_expansion():
 @pytest.mark.parametrize("angle", (12, 40))
 def test_cubic_expansion_error_over_displacement(angle):
     law = LAWS[angle]
-    cubic, z0 = CubicExpansion.of(law), float(law.preload_displacement)
+    cubic, z0 = CubicExpansion.from_law(law), float(law.preload_displacement)
     reach = z0 * np.tan(np.radians(angle))
     assert np.isclose(1e6 * reach, {12: 5.38, 40: 10.37}[angle], rtol=PUBLISHED)
 
@@ -162,7 +162,7 @@ def test_fixed_angle_derivatives_are_finite_at_lift_off():
         slope = jax.hessian(law.potential)(motion)
         assert np.isfinite(law.force(motion)).all() and np.isfinite(slope).all()
     with pytest.raises(ValueError, match="n_balls"):
-        CubicExpansion.of(FixedAngle(1e10, 0.4, 1e-5, 4))
+        CubicExpansion.from_law(FixedAngle(1e10, 0.4, 1e-5, 4))
 
 
 def test_small_vibration_is_linear_and_axial_motion_of_second_order():
@@ -201,7 +201,7 @@ def test_laws_of_bearing_from_design_and_preload(angle):
     moving = MovingAngle.of_bearing(element, offset)
     assert np.isclose(moving.force(jnp.zeros(3))[2], preload, rtol=SOLVER)
     cubic = CubicExpansion.of_bearing(element, offset)
-    assert cubic.radial_stiffness == CubicExpansion.of(law).radial_stiffness
+    assert cubic.radial_stiffness == CubicExpansion.from_law(law).radial_stiffness
 
 
 def test_laws_of_bearing_reject_unloaded_and_roller_bearings():

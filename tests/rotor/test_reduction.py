@@ -29,11 +29,11 @@ def frequencies(matrices, count=6):
 def test_frequencies():
     """From above, nearer with each mode, exact with all; housings are kept."""
     rotor = stepped()
-    whole = rotor.linearised()
+    whole = rotor.linearise()
     wanted, last = frequencies(whole), np.inf
     for modes in (0, 2, 6, 1000):
         basis = craig_bampton(rotor, modes)
-        found = frequencies(whole.projected(basis))
+        found = frequencies(whole.project(basis))
         error = (found / wanted - 1.0).max()
         assert (found >= wanted * (1.0 - 1e-9)).all() and error < last + 1e-9
         last = error
@@ -45,9 +45,9 @@ def test_error_of_a_linear_response():
     """Against NumPy, of an unbalance between the supports."""
     rotor, omega = stepped(), 700.0
     loads = bj.rotor.RotorLoads(unbalances=bj.rotor.Unbalance(1, 1e-4, 0.3))
-    cosine, sine = map(np.asarray, loads.unbalanced(rotor))
+    cosine, sine = map(np.asarray, loads.unbalance_forces(rotor))
     force = omega**2 * (cosine - 1j * sine)
-    whole = rotor.linearised(omega)
+    whole = rotor.linearise(omega)
 
     def moved(matrices):
         mass, rates, stiffness, motions = (
@@ -65,7 +65,7 @@ def test_error_of_a_linear_response():
 
     exact = moved(whole)
     for modes in (0, 4):
-        reduced = moved(whole.projected(craig_bampton(rotor, modes)))
+        reduced = moved(whole.project(craig_bampton(rotor, modes)))
         wanted = np.abs(reduced - exact).max() / np.abs(exact).max()
         at = jnp.asarray(omega)
         found = reduction_error(rotor, loads, at, at, modes)

@@ -12,7 +12,7 @@ from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
 
-linearised = eqx.filter_jit(lambda rotor, speed: rotor.linearised(speed))
+linearised = eqx.filter_jit(lambda rotor, speed: rotor.linearise(speed))
 
 
 def test_the_rigid_rotor_of_the_paper():
@@ -34,7 +34,7 @@ def test_the_rigid_rotor_of_the_paper():
     to[0, 0] = to[1, 2] = to[2, 4] = 1.0
     to[4, :2] = [-1 / length, 1 / length]
     to[3, 2:4] = [1 / length, -1 / length]
-    got = linearised(paper(cr, ca), 1.0).projected(jnp.asarray(to))
+    got = linearised(paper(cr, ca), 1.0).project(jnp.asarray(to))
     zero = np.zeros((2, 2))
     expected = {
         "mass": np.block(

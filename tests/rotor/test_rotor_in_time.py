@@ -101,7 +101,7 @@ def turning(stiffness, unbalance):
     skew[2, 3], skew[3, 2] = POLAR, -POLAR
     load = eqx.tree_at(
         lambda load: (load.unbalance_cosine, load.unbalance_sine),
-        HarmonicLoad.none(4),
+        HarmonicLoad.zero(4),
         (
             unbalance * jnp.array([1.0, 0.0, 0.0, 1.5]),
             unbalance * jnp.array([0.0, 1.0, -1.5, 0.0]),

@@ -74,7 +74,7 @@ def test_vibrating_rotor_modal_damping_with_speed_supports():
         system = vibrating_rotor(
             whole, unbalance, scale=1e-5, reference_frequency=1e3, speed=speed
         )
-        wanted = whole.linearised(speed or 0.0).damping
+        wanted = whole.linearise(speed or 0.0).damping
         largest = float(np.abs(wanted).max())
         assert np.allclose(system.damping, wanted, rtol=0, atol=ROUNDING * largest)
     # About an equilibrium at speed: the stiffness of the supports there.
@@ -118,7 +118,7 @@ def test_harmonic_load_of_accelerating_unbalance():
     """The force is less the second derivative of its moment in time."""
     load = eqx.tree_at(
         lambda load: (load.unbalance_cosine, load.unbalance_sine),
-        HarmonicLoad.none(2),
+        HarmonicLoad.zero(2),
         (jnp.array([2.0, 0.5]), jnp.array([-1.0, 3.0])),
     )
 

@@ -36,7 +36,7 @@ def test_static_equilibrium_on_springs():
         gravity=(1.0, -9.8, 2.0), forces=bj.rotor.StationForce(1, [10, 20, 5, 0.1, 0.2])
     )
     found = bj.rotor.static_equilibrium(rotor, loads)
-    wanted = np.linalg.solve(rotor.linearised().stiffness, loads.constant(rotor))
+    wanted = np.linalg.solve(rotor.linearise().stiffness, loads.constant(rotor))
     np.testing.assert_allclose(found.motion, wanted, atol=1e-11 * np.abs(wanted).max())
     assert not np.asarray(found.free).any()
     total = 9.8 * (rotor.mass + 4.0) - 20.0
@@ -56,8 +56,8 @@ def test_weight_and_preload():
     np.testing.assert_allclose(moments, arm, rtol=1e-9)
     assert 400.0 < load[0, 2] < 600.0
     # The linear rotor stands for the true one there.
-    matrices = found.rotor.linearised()
-    wanted = rotor.linearised(0.0, found.motion)
+    matrices = found.rotor.linearise()
+    wanted = rotor.linearise(0.0, found.motion)
     scale = np.abs(wanted.stiffness).max()
     np.testing.assert_allclose(matrices.stiffness, wanted.stiffness, atol=1e-12 * scale)
 
@@ -101,11 +101,11 @@ def test_static_equilibrium_over_speed():
     there, rest = (
         bj.rotor.static_equilibrium(rotor, loads, speed) for speed in (800.0, 0.0)
     )
-    wanted = there.rotor.linearised().stiffness
+    wanted = there.rotor.linearise().stiffness
     scale = np.abs(wanted).max()
-    found = over.rotor.linearised(800.0).stiffness
+    found = over.rotor.linearise(800.0).stiffness
     np.testing.assert_allclose(found, wanted, atol=1e-8 * scale)
-    other = rest.rotor.linearised().stiffness
+    other = rest.rotor.linearise().stiffness
     assert np.abs(other - wanted).max() > 1e-5 * scale
     # The same number under trace, where all places go through one program.
     error = jax.jit(
@@ -115,7 +115,7 @@ def test_static_equilibrium_over_speed():
     )
     np.testing.assert_allclose(error(1000.0), over.error, rtol=1e-3)
     # Outside, the ends hold.
-    ends = [over.rotor.linearised(speed).stiffness for speed in (1000.0, 2000.0)]
+    ends = [over.rotor.linearise(speed).stiffness for speed in (1000.0, 2000.0)]
     np.testing.assert_array_equal(*ends)
 
 
@@ -234,7 +234,7 @@ def test_polynomials_of_the_speed():
     known = jnp.array([True, True, True])
 
     def stiffness(speed):
-        return support.linearised(jnp.zeros(5), speed)[0]
+        return support.linearise(jnp.zeros(5), speed)[0]
 
     @jax.jit
     def both(speeds, known):

@@ -74,7 +74,7 @@ def problem():
 def test_gradients(problem):
     """Derivatives of every measure by positions, clearances, diameters and a helix
     equal differences of fourth order."""
-    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+    start = problem.to_unit_box([v.start_in(problem.element) for v in FREE])
 
     def values(unit):
         found = problem.run(jnp.asarray(unit), True)
@@ -118,7 +118,7 @@ def test_measures(problem):
     """Are those of `solve_duty`, with the powers given one by one."""
     designs = [powered(p) for p in POWERS]
     duty = solve_duty([d.system for d in designs], [d.lives for d in designs])
-    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+    start = problem.to_unit_box([v.start_in(problem.element) for v in FREE])
     found = problem.run(jnp.asarray(start), True)
     system = designs[0].system
     hours = bearing_hours(
@@ -149,7 +149,7 @@ def test_case_without_equilibrium(problem):
     other, power = copy.copy(problem), problem.cases.values[0]
     lost = power.at[1].set(jnp.nan)
     other.cases = eqx.tree_at(lambda c: c.values, problem.cases, (lost,))
-    start = problem.scaled([v.start_in(problem.element) for v in FREE])
+    start = problem.to_unit_box([v.start_in(problem.element) for v in FREE])
     trial = other.evaluate(start, True)
     assert trial.fault.startswith("case 1: non_finite: the shafts find no equilibrium")
 

@@ -19,9 +19,9 @@ from bearingjax.skid.model import Oil
 from bearingjax.skid.roller_motion import (
     RollerState,
     kinetic_energy,
+    pure_rolling,
     rates,
     residual_moments,
-    rolling,
     sliding,
     tractions,
 )
@@ -100,7 +100,7 @@ def test_moves_as_a_ball_without_contact_angle(roller):
 def test_pure_rolling(roller):
     """As of the bearing at speed; there is no slip."""
     for _, speed in motions():
-        free = rolling(roller, speed)
+        free = pure_rolling(roller, speed)
         orbit, spin = roller_speeds(CONSTANTS, speed)
         np.testing.assert_allclose(free.orbit, orbit, rtol=ROUNDING)
         np.testing.assert_allclose(free.spin, spin, rtol=ROUNDING)

@@ -82,7 +82,7 @@ def evaluated():
 
     def one(start, cases, unit=None):
         problem = problem_of(start, cases)
-        begin = problem.scaled([v.start_in(start) for v in VARIABLES])
+        begin = problem.to_unit_box([v.start_in(start) for v in VARIABLES])
         return problem.run(begin if unit is None else begin + unit, True)
 
     return one
@@ -186,7 +186,7 @@ def test_optimise_warnings_of_end_states():
     cold = eqx.tree_at(lambda d: d.model.temperature, design(), np.float64(290.0))
     cases = spectrum(axial=[0.0, 480.0])
     problem = problem_of(cold, cases)
-    begin = problem.scaled([v.start_in(cold) for v in VARIABLES])
+    begin = problem.to_unit_box([v.start_in(cold) for v in VARIABLES])
     element, outcome = problem.outcome(problem.evaluate(begin, True))
     (text,) = (text for text in outcome.warnings if "times the pressure" in text)
     words, counts = text.split(", in ")

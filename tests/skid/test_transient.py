@@ -305,7 +305,7 @@ def test_momentum(prepared):
     def both(state):
         one, time = jnp.ones(()), jnp.zeros(())
         system = SkidSystem(around, one, one)
-        change, _ = system.unpacked(system.rates(time, system.packed(state)))
+        change, _ = system.unpack(system.rates(time, system.pack(state)))
         return change, each_ball(around, time, state)
 
     change, balls = both(state)

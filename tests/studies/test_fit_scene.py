@@ -584,7 +584,7 @@ def test_slopes_by_temperature_interference_and_clearance(scene):
     )
     start = np.array([v.start_in(problem.element) for v in task.variables])
     np.testing.assert_allclose(start, [323.15, 293.15, 11.5e-6, 32.5e-6])
-    middle = problem.scaled(start)
+    middle = problem.to_unit_box(start)
 
     def tried(unit):
         return problem.evaluate(unit, True)

@@ -105,11 +105,11 @@ def stiffness_warnings(
 def _sweep(element, speeds, load, tilts, fixed_ring):
     """Return stiffness (speed, 3, 3) and result code (speed,)."""
 
-    def one(speed, load):
+    def coefficients_at(speed, load):
         point = _point(element, speed, load, tilts, fixed_ring)
         return point.condense(), point.solution.result
 
-    return jax.vmap(one)(speeds, load)
+    return jax.vmap(coefficients_at)(speeds, load)
 
 
 def _point(element, speed, load, tilts, fixed_ring) -> OperatingPoint:

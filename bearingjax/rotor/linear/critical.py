@@ -76,7 +76,7 @@ class CriticalSpeeds(eqx.Module):
         of one of forward whirl; empty where numbers are traced."""
         if any(is_traced(leaf) for leaf in jax.tree.leaves(self)):
             return ()
-        return (*_missing(self), *_near(self))
+        return (*_missing(self), *_resonance_warning(self))
 
     to_xarray = to_xarray
 
@@ -127,7 +127,7 @@ def _missing(found) -> Iterator[Warning]:
         )
 
 
-def _near(found) -> Iterator[Warning]:
+def _resonance_warning(found) -> Iterator[Warning]:
     """Yield a warning of a forward critical speed close to that of the rotor."""
     if found.operating_speed is None:
         return
@@ -148,7 +148,7 @@ def _near(found) -> Iterator[Warning]:
 def _critical(rotor, count):
     fixed = stop_gradient(rotor)
     found, point, right, left = _search(fixed, count + _SPARE)
-    found = _once(found, point, right)
+    found = _keep_distinct(found, point, right)
     sort = jnp.argsort(jnp.where(found, point[:, 1], jnp.inf))[:count]
     found, point, right, left = (part[sort] for part in (found, point, right, left))
     # A mode that was not found must not spoil the derivatives of the others.
@@ -158,7 +158,7 @@ def _critical(rotor, count):
     at = jax.vmap(lambda *at: _newton(rotor, *at))(point, right, left)
     rate, speed = jnp.where(found[:, None], at, jnp.nan).T
     size = jnp.where(found, jnp.hypot(*jnp.where(found[:, None], at, 1.0).T), jnp.nan)
-    matrices = stop_gradient(fixed.linearised(0.0))
+    matrices = stop_gradient(fixed.linearise(0.0))
     nodes, _ = matrices.split(right @ to_complex(matrices.motions).T)
     whirl = jnp.where(found, direction(nodes, matrices.length), 0)
     _, nodes = largest_real(nodes, matrices.length)
@@ -174,12 +174,12 @@ def _critical(rotor, count):
 
 def _search(rotor, count):
     """Run Newton's method from two sets of starts."""
-    rest = rotor.linearised(0.0)
+    rest = rotor.linearise(0.0)
     speed, shape = _undamped_speeds(rest, count)
     there = speed > 0
     # Damped modes at a speed in the middle of these: forward and backward stand apart.
     middle = jnp.where(jnp.any(there), jnp.mean(speed, where=there), 1.0)
-    pairs = eigenpairs(rotor.linearised(middle), count)
+    pairs = eigenpairs(rotor.linearise(middle), count)
     speed = jnp.concatenate([speed, pairs.value.imag])
     start = jnp.stack([jnp.zeros_like(speed), speed], axis=1)
     start = start.at[there.shape[0] :, 0].set(pairs.value.real)
@@ -198,13 +198,13 @@ def _count_missed(rotor, found, point):
     rate, speed = point.T
     last = (1.0 - 1e-6) * jnp.max(jnp.where(found, speed, 0.0))
     first = 1e-3 * jnp.min(jnp.where(found, speed, jnp.maximum(last, 1.0)))
-    counts = [resonances_above(rotor.linearised(at), at) for at in (first, last)]
+    counts = [resonances_above(rotor.linearise(at), at) for at in (first, last)]
     below = jnp.sum(found & (speed < last) & resonates(lax.complex(rate, speed)))
     missed = jnp.maximum(counts[0] - counts[1] - below, 0)
     return jnp.where(jnp.any(found), missed, 0)
 
 
-def _once(found, point, right):
+def _keep_distinct(found, point, right):
     """Return which results to keep, each once: two searches may end at the same one.
 
     Of several at one speed, as many as there are independent motions are kept.
@@ -212,7 +212,7 @@ def _once(found, point, right):
     near = jnp.max(jnp.abs(point[:, None] - point[None, :]), axis=-1)
     near = near <= _SAME * jnp.abs(point[:, 1])[:, None]
 
-    def take(k, state):
+    def keep_new(k, state):
         kept, directions = state
         own = jnp.where(found[k], right[k], 0.0)
         shares = jnp.where(near[k] & kept, directions.conj() @ own, 0.0)
@@ -223,7 +223,7 @@ def _once(found, point, right):
         return kept.at[k].set(new), directions.at[k].set(rest)
 
     state = jnp.zeros_like(found), jnp.zeros_like(right)
-    return lax.fori_loop(0, found.shape[0], take, state)[0]
+    return lax.fori_loop(0, found.shape[0], keep_new, state)[0]
 
 
 def _undamped_speeds(matrices: RotorMatrices, count):
@@ -281,7 +281,7 @@ def _follow(rotor, point, right, left, least):
         share = jnp.clip(((k + 1.0) / _RISING) ** 3, least, 1.0)
         new = _newton(rotor, point, right, left, share)
         change = jnp.max(jnp.abs(new - point)) / jnp.abs(new[1])
-        matrices = _with_damping(rotor.linearised(new[1]), share)
+        matrices = _with_damping(rotor.linearise(new[1]), share)
         right, left = _vectors(matrices, new, right, left)
         return new, right, left, change
 
@@ -298,7 +298,7 @@ def _newton(rotor, point, right, left, share: Any = 1.0):
     """Make a Newton step of (Re λ, Ω) for wᵀP(λ, Ω)v = 0, λ = Re λ + iΩ."""
 
     def residual(point):
-        matrices = _with_damping(rotor.linearised(point[1]), share)
+        matrices = _with_damping(rotor.linearise(point[1]), share)
         value = left.conj() @ (matrices.dynamic_stiffness(lax.complex(*point)) @ right)
         return jnp.stack([value.real, value.imag])
 

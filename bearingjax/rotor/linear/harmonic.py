@@ -58,8 +58,8 @@ def _response(rotor, loads, frequencies, speeds) -> UnbalanceResponse:
 
 def _forces(rotor, loads):
     """Return the unbalance moments and the forces of base excitation, complex."""
-    cosine, sine = loads.unbalanced(rotor)
-    return lax.complex(cosine, -sine), to_complex(loads.shaken(rotor))
+    cosine, sine = loads.unbalance_forces(rotor)
+    return lax.complex(cosine, -sine), to_complex(loads.base_force(rotor))
 
 
 @program(quick=True)
@@ -77,7 +77,7 @@ def reduction_error(
     """
     moments, shaken = _forces(rotor, loads)
     force = to_complex(frequency**2) * moments + shaken
-    whole = rotor.linearised(speed)
+    whole = rotor.linearise(speed)
 
     def nodes(matrices):
         motions = to_complex(matrices.motions)
@@ -87,7 +87,7 @@ def reduction_error(
         return matrices.split(moved)[0][..., :3]
 
     exact = nodes(whole)
-    change = nodes(whole.projected(craig_bampton(rotor, modes))) - exact
+    change = nodes(whole.project(craig_bampton(rotor, modes))) - exact
     return jnp.max(jnp.abs(change)) / jnp.max(jnp.abs(exact))
 
 

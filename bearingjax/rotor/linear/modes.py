@@ -124,7 +124,7 @@ class Modes(eqx.Module):
         followed for certain, of `campbell`; empty where numbers are traced."""
         if any(is_traced(leaf) for leaf in jax.tree.leaves(self)):
             return ()
-        return (*_growing(self), *_swapping(self))
+        return (*_instability_warning(self), *_following_warning(self))
 
     @property
     def oscillates(self) -> Any:
@@ -178,7 +178,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
 @program(quick=True)
 def _modes(rotor, speed, count):
     """Return modes, and the part of unsymmetric stiffness in Re λ of each [rad/s]."""
-    matrices = rotor.linearised(speed)
+    matrices = rotor.linearise(speed)
     pairs = eigenpairs(matrices, count)
     fixed, known = stop_gradient(matrices), stop_gradient(pairs)
     own = jnp.diagonal(_products(known, known, fixed))
@@ -188,7 +188,7 @@ def _modes(rotor, speed, count):
     return modes_of(pairs, matrices, speed), driven
 
 
-def _growing(found) -> Iterator[Warning]:
+def _instability_warning(found) -> Iterator[Warning]:
     """Yield a warning of the first unstable mode."""
     if found.driven is None:
         return
@@ -241,7 +241,7 @@ def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
     return dataclasses.replace(found, speed=speeds, overlap=overlap)
 
 
-def _swapping(found) -> Iterator[Warning]:
+def _following_warning(found) -> Iterator[Warning]:
     """Yield a warning of modes that were not followed reliably."""
     if found.overlap is None:
         return
@@ -275,7 +275,7 @@ def follow_modes(
     Args:
         rotor, speeds, count: As in `campbell`.
     """
-    matrices = rotor.linearised(speeds[0])
+    matrices = rotor.linearise(speeds[0])
     n = matrices.mass.shape[0]
     count = n if count is None else min(n, count)
     fixed = stop_gradient(rotor)
@@ -283,7 +283,7 @@ def follow_modes(
 
     def at_speed(speed, before):
         """Return eigenpairs, their order by those before, and the overlaps."""
-        there = fixed.linearised(speed)
+        there = fixed.linearise(speed)
         now = _biorthogonal(eigenpairs(there, None), there)
         return now, *_match(before, now, there)
 
@@ -323,7 +323,7 @@ def follow_modes(
 
     def show(pairs, speed):
         # Vectors have no derivative; eigenvalues have that of one Newton step.
-        own = rotor.linearised(speed)
+        own = rotor.linearise(speed)
         value = jax.vmap(lambda *pair: _refine(own, *pair))(
             pairs.value, pairs.right, pairs.left
         )
@@ -342,7 +342,7 @@ def _products(left, right, matrices):
     return sums * (w @ mass @ v) + w @ rates @ v
 
 
-def _same(pairs):
+def _coincide(pairs):
     """Return which modes have coincident eigenvalues (mode, mode)."""
     apart = jnp.abs(pairs.value[:, None] - pairs.value[None, :])
     return apart <= _COINCIDENT * jnp.abs(pairs.value)[:, None]
@@ -352,7 +352,7 @@ def _biorthogonal(pairs, matrices):
     """Combine left vectors so that `_products` is the unit matrix, also for coincident
     modes; modes that do not oscillate are unchanged."""
     swings = pairs.value.imag > 0
-    own = _same(pairs) & swings[:, None] & swings[None, :]
+    own = _coincide(pairs) & swings[:, None] & swings[None, :]
     products = jnp.where(own, _products(pairs, pairs, matrices), 0.0)
     products = products + jnp.diag(to_complex(jnp.where(swings, 0.0, 1.0)))
     left = solve_any(products, pairs.left.conj()).conj()
@@ -364,7 +364,7 @@ def _match(before, now, matrices):
     coincident modes those of their subspaces [1]."""
     shares = _products(before, now, matrices) * _products(now, before, matrices).T
     order = _pairing(jnp.where(jnp.isfinite(shares), jnp.abs(shares), 0.0))
-    one, other = _same(before), _same(now)
+    one, other = _coincide(before), _coincide(now)
     one, other = (same.astype(before.value.real.dtype) for same in (one, other))
     together = jnp.abs(to_complex(one) @ shares @ to_complex(other).T)
     sizes = jnp.minimum(jnp.sum(one, 1)[:, None], jnp.sum(other, 1)[None, :])
@@ -378,7 +378,7 @@ def _has_crossed(before, now, count):
     one, other = before.value.imag, now.value.imag
     gaps = (x[:count, None] - x[None, :] for x in (one, other))
     swing = (one > 0) & (other > 0)
-    alike = (_same(before) | _same(now))[:count]
+    alike = (_coincide(before) | _coincide(now))[:count]
     turned = jnp.prod(jnp.stack([jnp.sign(gap) for gap in gaps]), axis=0) < 0
     return jnp.any(turned & swing[:count, None] & swing[None, :] & ~alike)
 

@@ -81,14 +81,16 @@ def _crossing(rotor, ends, before):
 
     level = 0.0 if _ratio(before) > 0 else _UNSTABLE
 
-    def at(speed):
+    def eigenvalue_at(speed):
         way, _ = follow_modes(rotor, as_real(jnp.asarray([ends[0], speed])), None)
         value = np.asarray(way.eigenvalue)
         return value[1, np.argmin(np.abs(value[0] - before))]
 
     speed: Any = brentq(
-        lambda speed: _ratio(before if speed == ends[0] else at(speed)) + level,
+        lambda speed: (
+            _ratio(before if speed == ends[0] else eigenvalue_at(speed)) + level
+        ),
         *ends,
         xtol=_LOCATED * np.abs(ends).max(),
     )
-    return speed, at(speed)
+    return speed, eigenvalue_at(speed)

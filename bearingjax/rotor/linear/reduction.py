@@ -16,7 +16,7 @@ Basis = Float[Array, "motion fewer"]
 
 
 def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
-    """Return the reduced basis, for `rotor.linearised(...).projected(basis)`.
+    """Return the reduced basis, for `rotor.linearise(...).project(basis)`.
 
     The motions of supported stations and of housings stay freedoms as they are; each
     takes the rest of the shaft along as without inertia. To these come the slowest
@@ -52,7 +52,7 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
 
 @program(quick=True)
 def _basis(rotor, modes):
-    own = rotor.unsupported()
+    own = rotor.unsupported_matrices()
     kept, rest = held_motions(rotor)
     inner = np.ix_(rest, rest)
     shapes = jnp.eye(own.mass.shape[0], dtype=own.mass.dtype)[:, kept]
@@ -89,7 +89,9 @@ def held_motions(rotor: Rotor) -> tuple[np.ndarray, np.ndarray]:
         rotor: The rotor.
     """
     n = rotor.at_supports().shape[-1]
-    places = [np.arange(n)[rotor.at(support.station)] for support in rotor.supports]
+    places = [
+        np.arange(n)[rotor.slice_at(support.station)] for support in rotor.supports
+    ]
     housings = np.arange(N_STATION * rotor.shaft.n_nodes, n)
     kept = np.unique(np.concatenate([*places, housings]))
     return kept, np.setdiff1d(np.arange(n), kept)

@@ -119,7 +119,7 @@ def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
     moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
     for one in unbalances:
         x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
-        at = rotor.at(one.station).start
+        at = rotor.slice_at(one.station).start
         moments = moments.at[at].add(lax.complex(x, y))
         moments = moments.at[at + 1].add(lax.complex(y, -x))
     return moments
@@ -150,7 +150,7 @@ def steady(
     def at_frequency(given):
         frequency, speed = given
         force = to_complex(frequency**2) * moments + forces
-        matrices = rotor.linearised(speed)
+        matrices = rotor.linearise(speed)
         stiffness = matrices.dynamic_stiffness(lax.complex(0.0 * frequency, frequency))
         # Motions without stiffness would make it singular at rest.
         little = jnp.where(frequency == 0, _HELD, 0.0) * matrices.mass
@@ -158,5 +158,5 @@ def steady(
         return motions @ solve_any(stiffness, force)
 
     motion = lax.map(at_frequency, (frequencies, speeds), batch_size=_BATCH)
-    nodes, housing = rotor.linearised(0.0).split(motion)
+    nodes, housing = rotor.linearise(0.0).split(motion)
     return UnbalanceResponse(frequencies, nodes, housing)

@@ -92,7 +92,7 @@ class _Free(AbstractVibratingSystem):
         return self.constant
 
 
-def _free(system, damping_ratio):
+def _free_system(system, damping_ratio):
     """Return the free system, loaded by the mean excitation at zero frequency."""
     phases = as_real(2.0 * np.pi * np.arange(_PHASES) / _PHASES)
     none = jnp.zeros_like(damping_ratio)
@@ -168,29 +168,29 @@ def _equations(method, given, freedom):
     """Return (z, ζ, ν) -> residual: the method's, and that of a peak at phase 0."""
     system, peak, rest = given
 
-    def left(x):
+    def residual(x):
         z, damping_ratio, ratio = x[:-2], x[-2], x[-1]
         u, rate = method.state(z)
         risen = u[freedom] - rest[freedom] - peak / system.scale[freedom]
         held = jnp.stack([risen, rate[freedom]])
-        free = _free(system, damping_ratio)
+        free = _free_system(system, damping_ratio)
         return jnp.concatenate([method.residual(free, z, ratio), held])
 
-    return left
+    return residual
 
 
 def _at_rest(system):
     """Return the equilibrium over `scale` (n,); NaN if Newton's method fails."""
 
-    def left(u, system):
+    def residual(u, system):
         one = jnp.ones_like(system.reference_frequency)
         none, still = jnp.zeros_like(one), jnp.zeros_like(u)
-        return out_of_balance(_free(system, none), none, one, u, still, still)
+        return out_of_balance(_free_system(system, none), none, one, u, still, still)
 
-    def linearised(u):
+    def linearise(u):
         return (
-            left(u, stop_gradient(system)),
-            jax.jacfwd(left)(u, stop_gradient(system)),
+            residual(u, stop_gradient(system)),
+            jax.jacfwd(residual)(u, stop_gradient(system)),
             (),
         )
 
@@ -198,15 +198,15 @@ def _at_rest(system):
         # Motions without stiffness stay where they are.
         return -pseudoinverse(jax.jacfwd(of_u)(u)) @ change
 
-    found = newton(linearised, jnp.zeros_like(system.scale), _STEPS)
+    found = newton(linearise, jnp.zeros_like(system.scale), _STEPS)
     solved = found.result == int(Result.CONVERGED)
     rest = jnp.where(solved, found.x, jnp.nan)
-    return attach_by(left, rest, system, correction)
+    return attach_by(residual, rest, system, correction)
 
 
 def _linear(system, rest, freedom, method, mode):
     """Return unknowns at rest, and their derivative by the scaled peak."""
-    free = _free(system, jnp.zeros_like(system.reference_frequency))
+    free = _free_system(system, jnp.zeros_like(system.reference_frequency))
     count = system.scale.shape[0]
     one = jnp.ones_like(free.damping_ratio)
     change = rates(free, one)
@@ -238,24 +238,24 @@ def _follow(system, peaks, freedom, method, mode):
     where = _at_rest(system)
     rest, growth = _linear(fixed, stop_gradient(where), freedom, method, mode)
 
-    def linearised(x, height):
-        def both(x):
+    def linearise(x, height):
+        def with_value(x):
             value = _equations(
                 method, (fixed, height * size, stop_gradient(where)), freedom
             )(x)
             return value, value
 
-        jacobian, value = jax.jacfwd(both, has_aux=True)(x)
+        jacobian, value = jax.jacfwd(with_value, has_aux=True)(x)
         return value, jacobian, ()
 
-    def one(carry, wanted):
+    def follow_to(carry, wanted):
         def attempt(state):
             (x, height, slope), step, tries, _ = state
             left = wanted - height
             move = jnp.where(jnp.abs(step) < jnp.abs(left), step, left)
             guess = x + slope * move
             goal = jnp.where(move == left, wanted, height + move)
-            found = newton(lambda x: linearised(x, goal), guess, _STEPS)
+            found = newton(lambda x: linearise(x, goal), guess, _STEPS)
             # A period of nothing, at an endless frequency, would solve them too. At
             # rest the frequency is another if the speed is not the reference.
             at_rest = height == 0
@@ -275,21 +275,21 @@ def _follow(system, peaks, freedom, method, mode):
             step = jnp.where(good, 2.0 * move, 0.5 * move)
             return kept, step, tries + 1, found
 
-        def going(state):
+        def continues(state):
             (_, height, _), _, tries, _ = state
             return (height != wanted) & (tries < _TRIES)
 
         first = carry, wanted - carry[1], jnp.int32(0), None
-        last, _, _, found = lax.while_loop(going, attempt, attempt(first))
+        last, _, _, found = lax.while_loop(continues, attempt, attempt(first))
         return last, found
 
     begin = rest, jnp.zeros_like(size), growth
     heights = stop_gradient(peaks / system.scale[freedom])
     heights = jnp.concatenate([_SMALL * heights[:1], heights])
-    _, every = lax.scan(one, begin, heights)
+    _, every = lax.scan(follow_to, begin, heights)
     every = jax.tree.map(lambda x: x[1:], every)
 
-    def reported(found, *given):
+    def report(found, *given):
         system, *_ = given
 
         def residual(x, given):
@@ -300,7 +300,7 @@ def _follow(system, peaks, freedom, method, mode):
 
         x = attach_by(residual, found.x, given, correction)
         ratio, frequency = x[-1], x[-1] * system.reference_frequency
-        u, rate = method.motion(_free(system, x[-2]), x[:-2], ratio)
+        u, rate = method.motion(_free_system(system, x[-2]), x[:-2], ratio)
         return dict(
             frequency=frequency,
             damping_ratio=x[-2],
@@ -312,8 +312,8 @@ def _follow(system, peaks, freedom, method, mode):
             result=found.result,
         )
 
-    def known(found, peak):
+    def attach_point(found, peak):
         given, solved = (system, peak, where), found.result == int(Result.CONVERGED)
-        return unless_failed(partial(reported, found), given, solved)
+        return unless_failed(partial(report, found), given, solved)
 
-    return Backbone(**jax.vmap(known)(every, peaks))
+    return Backbone(**jax.vmap(attach_point)(every, peaks))

@@ -168,23 +168,23 @@ def _trace(system, method, motion, begin, end, parameter, steps) -> Traced:
 
 
 @program(quick=True, level=1)
-def _along(system, method, x, tangent, length):
+def _correct_at(system, method, x, tangent, length):
     """Return the point of the branch at a length along its tangent from `x`."""
     return place(system, method, x + length * tangent, tangent, tangent)
 
 
-def _flip(point: BranchPoint) -> float:
-    return _least(np.linalg.eigvals(point.monodromy) + 1.0)
+def _flip_test(point: BranchPoint) -> float:
+    return _signed_least(np.linalg.eigvals(point.monodromy) + 1.0)
 
 
 def _pairs(point: BranchPoint) -> float:
     """Return a function that is zero if two multipliers have the product one."""
     k = np.linalg.eigvals(point.monodromy)
     i, j = np.triu_indices(len(k), 1)
-    return _least(k[i] * k[j] - 1.0)
+    return _signed_least(k[i] * k[j] - 1.0)
 
 
-def _least(factors: np.ndarray) -> float:
+def _signed_least(factors: np.ndarray) -> float:
     """Return the least of some factors with the sign of their real product.
 
     It changes sign where the product does, which would underflow for many factors.
@@ -200,7 +200,7 @@ def _side(point: BranchPoint) -> float:
 
 _TESTS: dict[str, Callable[[BranchPoint], float]] = {
     "fold": lambda point: float(point.tangent[-1]),
-    "flip": _flip,
+    "flip": _flip_test,
     "neimark_sacker": _pairs,
     "branch_point": _side,
 }
@@ -225,12 +225,12 @@ def _locate(system, method, every, k, kind, test):
     from scipy.optimize import brentq
 
     here, there = every[k], every[k + 1]
-    if kind == "neimark_sacker" and _beyond(here) == _beyond(there):
+    if kind == "neimark_sacker" and _count_unstable(here) == _count_unstable(there):
         # Two real multipliers with the product one, or a system without damping.
         return None
 
-    def at(length):
-        found, result = _along(
+    def point_at(length):
+        found, result = _correct_at(
             system, method, here.x, here.tangent, jnp.asarray(length, here.x.dtype)
         )
         return jax.tree.map(np.asarray, found), int(result) == Result.CONVERGED
@@ -238,12 +238,12 @@ def _locate(system, method, every, k, kind, test):
     span = float(here.tangent @ (there.x - here.x))
     ends = {0.0: here, span: there}
     length = brentq(
-        lambda length: test(ends[length] if length in ends else at(length)[0]),
+        lambda length: test(ends[length] if length in ends else point_at(length)[0]),
         0.0,
         span,
         xtol=_LOCATED * abs(float(here.x[-1])),
     )
-    point, solved = at(length)
+    point, solved = point_at(length)
     event = Event(
         kind,
         float(point.x[-1]) * float(system.reference_frequency),
@@ -256,6 +256,6 @@ def _locate(system, method, every, k, kind, test):
     return k + float(here.tangent @ (point.x - here.x)) / span, event
 
 
-def _beyond(point: BranchPoint) -> int:
+def _count_unstable(point: BranchPoint) -> int:
     """Return the number of multipliers outside the unit circle."""
     return int(np.sum(np.abs(np.linalg.eigvals(point.monodromy)) > 1.0 + STABLE))

@@ -239,10 +239,10 @@ def trace(
     low, high = jnp.minimum(start, end), jnp.maximum(start, end)
 
     @jax.jit  # traced once, for the shapes and in the loop
-    def placed(*given):
+    def place_jitted(*given):
         return place(system, method, *given)
 
-    def predicted(state):
+    def predict(state):
         """Return prediction, correction plane, step, and whether it is at a limit."""
         guess, normal = parameter.direction(state.last.tangent, state.before)
         x = state.last.x
@@ -261,10 +261,10 @@ def trace(
 
     def attempt(state):
         first = state.n_points == 0
-        x, normal, length, at_limit = predicted(state)
+        x, normal, length, at_limit = predict(state)
         limit = jnp.where(first, _FIRST_NEWTON, _NEWTON)
         towards = jnp.where(first, forward, state.last.tangent)
-        new, result = placed(x, normal, towards, limit)
+        new, result = place_jitted(x, normal, towards, limit)
         near = jnp.linalg.norm(new.x - x) <= 0.5 * length
         straight = new.tangent @ state.last.tangent >= jnp.cos(steps.turn)
         finite = jnp.all(jnp.isfinite(new.monodromy)) & jnp.all(
@@ -320,7 +320,7 @@ def trace(
         )
 
     none = jnp.int32(0)
-    shapes, _ = jax.eval_shape(placed, begin, along, along, none)
+    shapes, _ = jax.eval_shape(place_jitted, begin, along, along, none)
     blank = jax.tree.map(lambda one: jnp.zeros(one.shape, one.dtype), shapes)
     room = jax.tree.map(lambda one: jnp.zeros((points, *one.shape), one.dtype), blank)
     state = _State(

@@ -68,7 +68,7 @@ def _stages_of(steps: int, dtype) -> _Stages:
     return _Stages(*(np.asarray(part, dtype) for part in parts))
 
 
-def _begins(steps, dtype):
+def _step_phases(steps, dtype):
     """Return the phases at which steps begin [rad]."""
     return jnp.asarray(2.0 * np.pi / steps * np.arange(steps), dtype)
 
@@ -109,16 +109,16 @@ def _slopes(at, begin, second):
     (stage, n, 2n + 1)."""
     n = begin.u.shape[0]
 
-    def one(phase, u, rate, second):
-        def both(x):
+    def slopes_at(phase, u, rate, second):
+        def with_value(x):
             u, rate = jnp.split(x[:-1], 2)
             left = out_of_balance(begin.system, phase, x[-1], u, rate, second)
             return left, left
 
         here = jnp.concatenate([u, rate, begin.ratio[None]])
-        return jax.jacfwd(both, has_aux=True)(here)
+        return jax.jacfwd(with_value, has_aux=True)(here)
 
-    slopes, left = jax.vmap(one)(*_stage_motion(at, begin, second), second)
+    slopes, left = jax.vmap(slopes_at)(*_stage_motion(at, begin, second), second)
     return left, (slopes[..., :n], slopes[..., n:-1], slopes[..., -1:])
 
 
@@ -221,7 +221,7 @@ def integrate(
 
     u, rate = jnp.split(start, 2)
     guess = jnp.zeros((_STAGES, *u.shape), u.dtype)
-    (*end, _), states = lax.scan(step, (u, rate, guess), _begins(steps, u.dtype))
+    (*end, _), states = lax.scan(step, (u, rate, guess), _step_phases(steps, u.dtype))
     return jnp.concatenate(end), states
 
 
@@ -253,7 +253,7 @@ def flow_slopes(
     unit = jnp.eye(len(start), len(start) + 1, dtype=start.dtype)
     du, drate = jnp.split(unit, 2)
     guess = jnp.zeros((_STAGES, *u.shape), u.dtype)
-    begins = _begins(steps, u.dtype)
+    begins = _step_phases(steps, u.dtype)
     (u, rate, du, drate, _), _ = lax.scan(step, (u, rate, du, drate, guess), begins)
     return jnp.concatenate([u, rate]), jnp.concatenate([du, drate])
 

@@ -143,17 +143,17 @@ class HarmonicBalance(AbstractMethod):
         """Return the residual of the equations of motion (sample, n), and its Jacobians
         in u, u', u'' (sample, n, n) and ν (sample, n)."""
 
-        def one(phase, *motion):
-            def both(*given):
+        def slopes_at(phase, *motion):
+            def with_value(*given):
                 left = out_of_balance(system, phase, given[-1], *given[:-1])
                 return left, left
 
-            return jax.jacfwd(both, (0, 1, 2, 3), has_aux=True)(*motion, ratio)
+            return jax.jacfwd(with_value, (0, 1, 2, 3), has_aux=True)(*motion, ratio)
 
-        slopes, left = jax.vmap(one)(self._basis(z.dtype).phase, *self._motion(z))
+        slopes, left = jax.vmap(slopes_at)(self._basis(z.dtype).phase, *self._motion(z))
         return left, slopes
 
-    def projected(self, slopes: Any, bases: Any) -> Float[Array, "m m"]:
+    def project(self, slopes: Any, bases: Any) -> Float[Array, "m m"]:
         """Return the Jacobian in the coefficients, from slopes in values of `bases`."""
         pairs = zip(slopes, bases, strict=True)
         terms = [jnp.einsum("tij,tb->tibj", slope, base) for slope, base in pairs]
@@ -162,12 +162,12 @@ class HarmonicBalance(AbstractMethod):
         size = terms.shape[1] * terms.shape[2]
         return jnp.tensordot(analysis, terms, 1).reshape(size, size)
 
-    def linearised(
+    def linearise(
         self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
     ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
         at = self._basis(z.dtype)
         left, (*slopes, speed) = self.slopes(system, z, ratio)
-        columns = self.projected(slopes, (at.value, at.rate, at.second))
+        columns = self.project(slopes, (at.value, at.rate, at.second))
         both = (at.analysis @ jnp.stack([left, speed])).reshape(2, -1)
         jacobian = jnp.concatenate([columns, both[1][:, None]], axis=1)
         return both[0], jacobian, jnp.stack(slopes[:2])

@@ -45,7 +45,7 @@ class AbstractMethod(eqx.Module):
         """
 
     @abc.abstractmethod
-    def linearised(
+    def linearise(
         self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
     ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
         """`residual`, its Jacobian in (z, ν), and what `monodromy` makes use of."""
@@ -69,5 +69,5 @@ class AbstractMethod(eqx.Module):
         Args:
             system: The system.
             ratio: ν [1].
-            jacobian, slopes: From `linearised` at the orbit.
+            jacobian, slopes: From `linearise` at the orbit.
         """

@@ -105,14 +105,14 @@ def correct(
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
 
-    def evaluated(x):
-        left, jacobian, slopes = method.linearised(system, x[:-1], x[-1])
+    def evaluate(x):
+        left, jacobian, slopes = method.linearise(system, x[:-1], x[-1])
         # Every step stays in the plane.
         within = jnp.zeros_like(left[:1])
         whole = jnp.concatenate([jacobian, direction[None]])
         return jnp.concatenate([left, within]), whole, slopes
 
-    found = newton(evaluated, x, limit)
+    found = newton(evaluate, x, limit)
     return found._replace(left=found.left[:-1], jacobian=found.jacobian[:-1])
 
 
@@ -139,12 +139,12 @@ def newton(
 
     linearised = jax.jit(linearised)  # traced once, for the shapes and in the loop
 
-    def evaluated(x):
+    def evaluate(x):
         left, jacobian, slopes = linearised(x)
         step = -solve_any(jacobian, left)
         return x, left, jacobian, jnp.max(jnp.abs(left)), step, slopes
 
-    def solved(here):
+    def is_solved(here):
         # Forces of a stiff shaft cancel to more than the tolerance of round-off; the
         # step shows how far that is from the orbit.
         x, _, jacobian, size, step, _ = here
@@ -152,14 +152,14 @@ def newton(
         near = (size <= cancels) & (jnp.max(jnp.abs(step)) <= tolerance)
         return (size <= tolerance) | near
 
-    def going(state):
+    def continues(state):
         here, _, steps = state
-        on = ~solved(here) & jnp.isfinite(here[3]) & (steps < limit)
+        on = ~is_solved(here) & jnp.isfinite(here[3]) & (steps < limit)
         return on | (steps < 0)
 
     def step(state):
         here, move, steps = state
-        there = evaluated(here[0] + move)
+        there = evaluate(here[0] + move)
         # Half a step where a whole one leads away or to NaN.
         better = (there[3] <= 2.0 * here[3]) | (steps < 0)
         kept = jax.tree.map(lambda a, b: jnp.where(better, a, b), there, here)
@@ -170,10 +170,10 @@ def newton(
     shapes = jax.eval_shape(linearised, x)
     slopes = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes[2])
     blank = x, none, jnp.zeros((x.size, x.size), x.dtype), none[0], none, slopes
-    here, _, steps = lax.while_loop(going, step, (blank, none, jnp.int32(-1)))
+    here, _, steps = lax.while_loop(continues, step, (blank, none, jnp.int32(-1)))
     x, left, jacobian, size, _, slopes = here
     codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
-    result = jnp.where(solved(here), *codes)
+    result = jnp.where(is_solved(here), *codes)
     result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
     return Corrected(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
 
@@ -253,19 +253,19 @@ def _solve(system, frequency, method, motion, max_steps):
         return method.residual(given[0], z, given[1])
 
     def correction(of_z, z, change, given):
-        _, jacobian, _ = method.linearised(given[0], z, given[1])
+        _, jacobian, _ = method.linearise(given[0], z, given[1])
         return -solve_any(jacobian[:, :-1], change)
 
     def orbit(system, ratio):
         z = attach_by(residual, found.x[:-1], (system, ratio), correction)
         left = jnp.max(jnp.abs(found.left))
         x = jnp.append(z, ratio)
-        return reported(system, method, x, left, found.steps, found.result)
+        return describe_orbit(system, method, x, left, found.steps, found.result)
 
     return unless_failed(orbit, (system, ratio), found.result == int(Result.CONVERGED))
 
 
-def reported(
+def describe_orbit(
     system: AbstractVibratingSystem,
     method: AbstractMethod,
     x: Float[Array, " x"],
@@ -283,7 +283,7 @@ def reported(
     """
     z, ratio = x[:-1], x[-1]
     frequency = frequency_of(system, ratio)
-    _, jacobian, slopes = method.linearised(system, z, ratio)
+    _, jacobian, slopes = method.linearise(system, z, ratio)
     multipliers = eigvals(method.monodromy(system, ratio, jacobian, slopes))
     u, rate = method.motion(system, z, ratio)
     solved = result == int(Result.CONVERGED)
@@ -334,12 +334,12 @@ def _extreme(samples, phase, reach):
 
     slope = jax.grad(value)
 
-    def nearer(phase):
+    def newton_step(phase):
         rise, bend = jax.value_and_grad(slope)(phase)
         flat = bend == 0
         move = jnp.where(flat, 0.0, -rise / jnp.where(flat, 1.0, bend))
         return phase + jnp.clip(move, -reach, reach)
 
     for _ in range(_NEARER):
-        phase = nearer(lax.stop_gradient(phase))
+        phase = newton_step(lax.stop_gradient(phase))
     return value(phase)

@@ -12,7 +12,7 @@ from ...numerics.result import Result, raise_unless_converged
 from .branch import Branch
 from .continuation import place
 from .method import AbstractMethod
-from .orbit import PeriodicOrbit, amplitudes, reported
+from .orbit import PeriodicOrbit, amplitudes, describe_orbit
 from .system import AbstractVibratingSystem
 
 _SPLITS = 50
@@ -90,10 +90,10 @@ def peak(
 def _size(system, freedom, method):
     """Return (unknowns, frequency ratio) -> amplitude over the scale [1]."""
 
-    def of(x):
+    def amplitude(x):
         return amplitudes(method.motion(system, x[:-1], x[-1])[0])[freedom]
 
-    return of
+    return amplitude
 
 
 @program
@@ -113,7 +113,7 @@ def _find(system, points, freedom, method):
     there, fall, second = on_branch(far, across)
     span = across @ (there.x - here.x)
 
-    def going(state):
+    def continues(state):
         (a, _), (b, _), _, _, slope, _, count = state
         return (jnp.abs(b - a) > _CLOSE) & (slope != 0) & (count < _SPLITS)
 
@@ -137,7 +137,7 @@ def _find(system, points, freedom, method):
     nothing = jnp.zeros_like(span)
     none = jnp.int32(0)
     begin = (nothing, rise), (span, fall), none, here, rise, first, none
-    *_, point, slope, last, count = lax.while_loop(going, split, begin)
+    *_, point, slope, last, count = lax.while_loop(continues, split, begin)
     worst = jnp.maximum(jnp.maximum(first, second), last)
     smooth = jnp.abs(slope) <= _SMOOTH * (jnp.abs(rise) + jnp.abs(fall))
     bracketed = rise * fall <= 0
@@ -166,6 +166,6 @@ def _find(system, points, freedom, method):
 
     def orbit(system):
         x, _ = split_up(attach_by(residual, y, (system, point.tangent), correction))
-        return reported(system, method, x, point.residual, count, result)
+        return describe_orbit(system, method, x, point.residual, count, result)
 
     return unless_failed(orbit, (system,), result == int(Result.CONVERGED))

@@ -42,7 +42,7 @@ class Shooting(AbstractMethod):
     ) -> Float[Array, " m"]:
         return integrate(system, z, ratio, self.steps)[0] - z
 
-    def linearised(
+    def linearise(
         self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
     ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
         end, jacobian = flow_slopes(system, z, ratio, self.steps)

@@ -48,7 +48,7 @@ class AbstractSupportLaw(eqx.Module):
         return jax.hessian(self.potential)(jnp.zeros(3))
 
 
-def _around(count: int):
+def _directions(count: int):
     """Return cosines and sines of the azimuths of the balls."""
     azimuth = 2.0 * np.pi * np.arange(count) / count
     return np.cos(azimuth), np.sin(azimuth)
@@ -137,7 +137,7 @@ class FixedAngle(AbstractSupportLaw):
         cosine, sine = jnp.cos(self.contact_angle), jnp.sin(self.contact_angle)
         radial = sum(
             a * jnp.asarray(b)
-            for a, b in zip((x, y), _around(self.n_balls), strict=True)
+            for a, b in zip((x, y), _directions(self.n_balls), strict=True)
         )
         axial = z + self.preload_displacement
         return _hertz_energy(self.constant, radial * cosine + axial * sine)
@@ -180,7 +180,7 @@ class MovingAngle(AbstractSupportLaw):
         apart = self.centre_distance + self.preload_approach
         radial = sum(
             a * jnp.asarray(b)
-            for a, b in zip((x, y), _around(self.n_balls), strict=True)
+            for a, b in zip((x, y), _directions(self.n_balls), strict=True)
         )
         radial = radial + apart * jnp.cos(self.contact_angle)
         axial = z + apart * jnp.sin(self.contact_angle)
@@ -206,7 +206,7 @@ class CubicExpansion(AbstractSupportLaw):
     preload_displacement: Real = eqx.field(**real("m"))
 
     @classmethod
-    def of(cls, law: FixedAngle) -> "CubicExpansion":
+    def from_law(cls, law: FixedAngle) -> "CubicExpansion":
         """Create the expansion of a law with five balls or more."""
         if law.n_balls < 5:
             raise ValueError(
@@ -221,7 +221,7 @@ class CubicExpansion(AbstractSupportLaw):
     @classmethod
     def of_bearing(cls, element: BearingElement, offset: Any) -> "CubicExpansion":
         """Create the law of a ball bearing; arguments as in `FixedAngle.of_bearing`."""
-        return cls.of(FixedAngle.of_bearing(element, offset))
+        return cls.from_law(FixedAngle.of_bearing(element, offset))
 
     def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion

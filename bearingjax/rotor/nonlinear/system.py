@@ -157,7 +157,7 @@ class HarmonicLoad(eqx.Module):
     unbalance_sine: Float[Array, " n"]
 
     @classmethod
-    def none(cls, size: int) -> "HarmonicLoad":
+    def zero(cls, size: int) -> "HarmonicLoad":
         """No load on `size` freedoms."""
         return cls(*(5 * (jnp.zeros(size),)))
 

@@ -128,10 +128,10 @@ def simulate(
         rising = bool(np.all(np.diff(each) > 0)) and each[0] >= 0.0 and each[-1] > 0
         check("simulate", "times", rising, "rising from 0 on", each, "s")
     table = as_frequency_table("simulate", frequency, end, end_frequency)
-    return _integrated(system, table, start, force, as_real(times), end, options, throw)
+    return _integrate(system, table, start, force, as_real(times), end, options, throw)
 
 
-def _integrated(system, table, start, force, times, duration, options, throw):
+def _integrate(system, table, start, force, times, duration, options, throw):
     options = IntegrationOptions() if options is None else options
     integration("simulate", options)
     begin = beginning("simulate", system, start)
@@ -185,7 +185,7 @@ def poincare(
         )
     # A little longer than the last, that is at zero where there is one point.
     duration = times[-1] + jnp.where(times[-1] > 0, 0.0, table.time_at(as_real(1.0)))
-    return _integrated(system, table, start, force, times, duration, options, throw)
+    return _integrate(system, table, start, force, times, duration, options, throw)
 
 
 def beginning(

@@ -174,7 +174,7 @@ def _assemble(rotor, scale, speed, modes, about, loads) -> tuple[Any, ...]:
     if modes is not None:
         basis = craig_bampton(rotor, modes)
         kept, _ = held_motions(rotor)
-        own, rows = own.projected(basis), rows @ basis
+        own, rows = own.project(basis), rows @ basis
         more = jnp.broadcast_to(scale, (basis.shape[1] - len(kept),))
         sizes = jnp.concatenate([sizes[kept], more])
     load = None if loads is None else _harmonic(rotor, loads, own.motions.T)
@@ -234,10 +234,10 @@ class _Reduced(eqx.Module):
 
 def _harmonic(rotor, loads, turned):
     """Return the load on the freedoms, to which `turned` takes that on all motions."""
-    cosine, sine = loads.unbalanced(rotor)
+    cosine, sine = loads.unbalance_forces(rotor)
     return HarmonicLoad(
         constant=turned @ loads.constant(rotor),
-        cosine=turned @ loads.shaken(rotor),
+        cosine=turned @ loads.base_force(rotor),
         sine=jnp.zeros_like(turned[:, 0]),
         unbalance_cosine=turned @ cosine,
         unbalance_sine=turned @ sine,

@@ -91,7 +91,7 @@ def _spectra(system, frequencies, start, options, numbers):
         weight[-1] = 1.0 / total
     weight = as_real(weight)[:, None]
 
-    def one(frequency):
+    def spectrum_at(frequency):
         table = as_frequency_table("waterfall", frequency)
         times = phases / frequency
         found = simulate_traced(
@@ -100,7 +100,7 @@ def _spectra(system, frequencies, start, options, numbers):
         lines = jnp.fft.rfft(found.displacement, axis=0)
         return weight * jnp.abs(lines), found.result
 
-    amplitude, result = jax.vmap(one)(frequencies)
+    amplitude, result = jax.vmap(spectrum_at)(frequencies)
     order = as_real(np.arange(total // 2 + 1) / periods)
     return Waterfall(frequencies, order, amplitude, result)
 

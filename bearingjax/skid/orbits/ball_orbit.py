@@ -18,8 +18,8 @@ from ...numerics.types import Scalar
 from ..ball_motion import (
     LEAST_LOAD,
     BallState,
+    pure_rolling,
     residual_moments,
-    rolling,
     sliding,
     tractions,
 )
@@ -46,11 +46,11 @@ class BallOrbit(AbstractOrbit):
     ) -> Float[Array, "..."]:
         return own[:, 3]
 
-    def loaded(self, row: RowResults) -> tuple[Any, Array]:
+    def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
         of, law = self.model.bearing, self.model.point_law
         make = partial(loaded_ball, of, law, self.model.oil)
         ball = jax.vmap(make)(*contact_loads(row, of, law))
-        rolls = jax.vmap(partial(rolling, speed=self.speed))(ball)
+        rolls = jax.vmap(partial(pure_rolling, speed=self.speed))(ball)
         return ball, jnp.concatenate([rolls.spin, rolls.orbit[:, None]], axis=1)
 
     def motion(
@@ -135,17 +135,17 @@ class BallOrbit(AbstractOrbit):
         whole = jnp.kron(jnp.eye(places, dtype=own.dtype), own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(
+    def describe(
         self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
     ) -> SteadyMotion:
         speed, (own, _, _) = self.speed, self.parts(y)
         ball, rolls = self.bodies(y, solved)
 
-        def one(ball, rolls, own):
+        def describe_ball(ball, rolls, own):
             state, moving, pulls, drag = self.forces(ball, rolls, own)
             return state, moving, pulls, -drag * ball.pitch_radius * state.orbit
 
-        state, moving, pulls, lost = jax.vmap(one)(ball, rolls, own)
+        state, moving, pulls, lost = jax.vmap(describe_ball)(ball, rolls, own)
         around = state.orbit
         # Means over time, not along the orbit: a ball spends longer where it is slow.
         still = around == 0
@@ -160,7 +160,7 @@ class BallOrbit(AbstractOrbit):
         outer = ball.side > 0
         on_inner = mean(jnp.sum(jnp.where(outer, 0.0, pulls.ring_torque), axis=1))
         on_outer = mean(jnp.sum(jnp.where(outer, pulls.ring_torque, 0.0), axis=1))
-        ahead = _ahead(share) * ball.pitch_radius[0]
+        ahead = _lead(share) * ball.pitch_radius[0]
         return SteadySkid(
             contact_load=ball.load,
             contact_angle=ball.angle,
@@ -199,7 +199,7 @@ def _axes(ball):
     return jnp.stack([none, cos, sin]), jnp.stack([none, sin, -cos])
 
 
-def _ahead(share):
+def _lead(share):
     """Return the lead of a ball over uniform motion, at the places [rad]."""
     count = share.shape[0]
     late = jnp.cumsum(share - 1.0 / count)

@@ -25,7 +25,7 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar
 from ...numerics.units import unit, units
 from ...statics.balance import Balance
-from ..loaded import orbiting, ring_forces
+from ..loaded import orbiting_model, ring_forces
 from ..model import SkidModel
 from .steady_results import SteadyMotion
 
@@ -92,7 +92,7 @@ class AbstractOrbit(eqx.Module):
         """Return orbital speeds relative to pure rolling (place,) or () [rad/s]."""
 
     @abc.abstractmethod
-    def loaded(self, row: RowResults) -> tuple[Any, Array]:
+    def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
         """Return the balls or rollers of a solved row, and the values of the unknowns
         in pure rolling (element, k) [rad/s].
 
@@ -106,7 +106,7 @@ class AbstractOrbit(eqx.Module):
         """Return the speeds at one place, whose derivatives `local` takes [rad/s].
 
         Args:
-            body, rolls: From `loaded`.
+            body, rolls: From `bodies_of`.
             own: Unknowns [rad/s].
         """
         return rolls + own
@@ -123,7 +123,7 @@ class AbstractOrbit(eqx.Module):
         """Return residual forces of one place [N], and the size of those that cancel.
 
         Args:
-            body, rolls: From `loaded`.
+            body, rolls: From `bodies_of`.
             own, common: Unknowns [rad/s].
             slope: Derivative of the motion along the orbit.
         """
@@ -133,7 +133,7 @@ class AbstractOrbit(eqx.Module):
         """Return the mass matrix of the forces; the ring has no mass [kg m]."""
 
     @abc.abstractmethod
-    def described(
+    def describe(
         self, y: Float[Array, " unknown"], solved: SolvedRow, **fields: Any
     ) -> SteadyMotion:
         """Return the results of the steady motion.
@@ -163,43 +163,43 @@ class AbstractOrbit(eqx.Module):
         turn = jnp.asarray(2.0 * np.pi * np.arange(balls) / balls, self.azimuth.dtype)
         return self.azimuth + turn, np.arange(balls), np.zeros(balls, int)
 
-    def _turning(self, own, common, ring):
+    def _orbiting_model(self, own, common, ring):
         """Return the bearing at its orbital speed, and its ring freedoms."""
         excess = jnp.zeros_like(own[0, 0])
         if self.follows:
             excess = self.pressed * self.excess(own, common)
         if excess.ndim:
             excess = jnp.broadcast_to(excess, self.solved_at[0].shape)
-        bearing = orbiting(self.model.element, self.carried, excess)
+        bearing = orbiting_model(self.model.element, self.carried, excess)
         return bearing, self.balance.ring_freedoms(ring)
 
-    def _found(self, row, q, solved):
-        """Return the balls or rollers from `loaded`, and the row at its equilibrium."""
+    def _bodies_at(self, row, q, solved):
+        """Return balls or rollers from `bodies_of`, and the row at its equilibrium."""
         found = row.results(q, self.solved_at[0], solved)
         places = self.azimuth.size
-        return jax.tree.map(lambda a: a[:places], self.loaded(found)), found
+        return jax.tree.map(lambda a: a[:places], self.bodies_of(found)), found
 
     def bodies(
         self, y: Float[Array, " unknown"], solved: SolvedRow
     ) -> tuple[Any, Array]:
-        """Return balls or rollers at all places, and their pure rolling, from `loaded`.
+        """Return balls or rollers at all places, and pure rolling, from `bodies_of`.
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
             solved: Their row, solved there.
         """
-        bearing, q = self._turning(*self.parts(y))
-        return self._found(bearing.rows[0], q, solved)[0]
+        bearing, q = self._orbiting_model(*self.parts(y))
+        return self._bodies_at(bearing.rows[0], q, solved)[0]
 
     def _forces(self, own, common, ring, sloped=None):
         """Return residual forces of all places, forces on the ring, and the motion;
         then the sizes of forces at the places and on the ring [N], and the row."""
-        bearing, q = self._turning(own, common, ring)
+        bearing, q = self._orbiting_model(own, common, ring)
         (row,), (azimuth, stand, _) = bearing.rows, self.solved_at
         solved = row.solve(q, azimuth, bearing.equilibrium, None)
         pulls = ring_forces(row, q, azimuth, solved)[stand, self.balance.moving_slice]
         pulls = jax.vmap(self.balance.free_part)(pulls)
-        (bodies, rolls), found = self._found(row, q, solved)
+        (bodies, rolls), found = self._bodies_at(row, q, solved)
         motion = jax.vmap(self.motion)(bodies, rolls, own)
         slope = self.along @ (motion if sloped is None else stop_gradient(motion))
         slope = slope if sloped is None else slope + sloped[None]
@@ -208,7 +208,7 @@ class AbstractOrbit(eqx.Module):
         loads = jnp.sum(found.contact_load[stand])
         return (out, pulls, motion), ((jnp.max(sizes), loads), solved)
 
-    def _assembled(self, out, pulls, ring):
+    def _assemble(self, out, pulls, ring):
         k, balance = self.n_own, self.balance
         held = (1.0 - balance.free) * ring - balance.held_values
         left = balance.free_part(balance.load) - jnp.sum(pulls, axis=0) - held
@@ -216,7 +216,7 @@ class AbstractOrbit(eqx.Module):
             [out[:, :k].reshape(-1), jnp.mean(out[:, k:], axis=0), left]
         )
 
-    def unbalanced(self, y: Float[Array, " unknown"]) -> Float[Array, " unknown"]:
+    def residual(self, y: Float[Array, " unknown"]) -> Float[Array, " unknown"]:
         """Return the residual forces [N].
 
         Args:
@@ -224,10 +224,10 @@ class AbstractOrbit(eqx.Module):
         """
         own, common, ring = self.parts(y)
         (out, pulls, _), _ = self._forces(own, common, ring)
-        return self._assembled(out, pulls, ring)
+        return self._assemble(out, pulls, ring)
 
-    def evaluated(self, y: Float[Array, " unknown"]) -> "Evaluated":
-        """Return `unbalanced` with its Jacobian.
+    def evaluate(self, y: Float[Array, " unknown"]) -> "ResidualSlopes":
+        """Return `residual` with its Jacobian.
 
         Args:
             y: Unknowns (unknown,) [rad/s, m].
@@ -237,14 +237,14 @@ class AbstractOrbit(eqx.Module):
 
         # Forces at a place depend on its own unknowns and on the shared ones:
         # all places are moved at once.
-        def moved(way):
+        def derivatives_along(way):
             here, sloped, shared, turned = jnp.split(way, [k, 2 * k, 2 * k + c])
             now = own + here[None], common + shared, ring + turned
             forces, other = self._forces(*now, sloped)
             return forces, (forces, other)
 
         way = jnp.zeros(2 * k + c + _RING, y.dtype)
-        slopes, (forces, other) = jax.jacfwd(moved, has_aux=True)(way)
+        slopes, (forces, other) = jax.jacfwd(derivatives_along, has_aux=True)(way)
         (out, pulls, _), (sizes, solved) = forces, other
         of_places, of_ring, motion = slopes
         here, sloped, shared = jnp.split(of_places, [k, 2 * k], axis=2)
@@ -271,15 +271,15 @@ class AbstractOrbit(eqx.Module):
         most = jnp.maximum(sizes[0], NO_TRACTION * loads)
         largest = jnp.full(y.size - _RING, most)
         largest = jnp.concatenate([largest, jnp.full(_RING, loads)])
-        return Evaluated(
-            self._assembled(out, pulls, ring),
+        return ResidualSlopes(
+            self._assemble(out, pulls, ring),
             jnp.maximum(largest, jnp.finfo(y.dtype).tiny),
             jnp.concatenate([rows[:, :k].reshape(-1, y.size), means, last]),
             solved,
         )
 
 
-class Evaluated(NamedTuple):
+class ResidualSlopes(NamedTuple):
     """Equations of an orbit at a motion.
 
     Attributes:
@@ -364,7 +364,7 @@ def derivatives(count: int) -> np.ndarray:
 
 class _State(NamedTuple):
     y: Float[Array, " unknown"]
-    at: Evaluated
+    at: ResidualSlopes
     step: Scalar
     steps: Int[Array, ""]
 
@@ -386,7 +386,7 @@ def _solve(matrix, right):
 def _init(orbit):
     y, n = orbit.start, orbit.start.size
     none = jnp.zeros_like(y), jnp.ones_like(y), jnp.zeros((n, n), y.dtype)
-    nothing = Evaluated(*none, _unsolved_motion(orbit))
+    nothing = ResidualSlopes(*none, _unsolved_motion(orbit))
     return _State(y, nothing, jnp.full_like(y[0], _FIRST), jnp.full((), -1, jnp.int32))
 
 
@@ -399,7 +399,7 @@ def _step(orbit, state):
     inertia = orbit.inertia().at[ring, ring].add(slow)
     move = _solve(inertia / state.step - slopes, state.at.out)
     y = jnp.where(first, state.y, state.y + move)
-    at = orbit.evaluated(y)
+    at = orbit.evaluate(y)
     # Relative, or round-off of large tractions would hide a ring out of its place.
     before, after = (_size(each.out / state.at.sizes) for each in (state.at, at))
     ratio = before / jnp.maximum(after, jnp.finfo(y.dtype).tiny)
@@ -415,7 +415,7 @@ def _size(out):
     return jnp.max(jnp.abs(out))
 
 
-def _done(state):
+def _is_done(state):
     at, dtype = state.at, state.y.dtype
     goal = _TOLERANCE[str(dtype)] * at.sizes
     # Round-off of the unknowns, in the stiffness of the films, and of the loads.
@@ -426,13 +426,13 @@ def _done(state):
 
 def _terminate(orbit, state):
     finite = jnp.isfinite(state.step) & jnp.all(jnp.isfinite(state.y))
-    going = ~_done(state) & finite & (state.steps < _STEPS)
+    going = ~_is_done(state) & finite & (state.steps < _STEPS)
     return (state.steps >= 0) & ~going
 
 
 def _finish(orbit, state):
     finite = jnp.all(jnp.isfinite(state.y)) & jnp.isfinite(_size(state.at.out))
-    result = jnp.where(_done(state), int(Result.CONVERGED), int(Result.STEP_LIMIT))
+    result = jnp.where(_is_done(state), int(Result.CONVERGED), int(Result.STEP_LIMIT))
     result = jnp.where(finite, result, int(Result.NON_FINITE)).astype(jnp.int32)
     at = state.at
     return state.y, _size(at.out / at.sizes), state.steps, result, at.solved
@@ -449,9 +449,9 @@ def _unsolved_motion(orbit):
 
 
 def _residual(y, orbit):
-    return orbit.unbalanced(y)
+    return orbit.residual(y)
 
 
 def _correction(of_y, y, change, orbit):
     # Traction resists: it is the negative Jacobian whose diagonal is positive.
-    return _solve(-orbit.evaluated(y).jacobian, change)
+    return _solve(-orbit.evaluate(y).jacobian, change)

@@ -24,8 +24,8 @@ from ..loaded import loaded_rollers
 from ..roller_motion import (
     LoadedRoller,
     RollerState,
+    pure_rolling,
     residual_moments,
-    rolling,
     sliding,
     tractions,
 )
@@ -44,13 +44,13 @@ class RollerOrbit(AbstractOrbit):
     ) -> Float[Array, "..."]:
         return common[0]
 
-    def loaded(self, row: RowResults) -> tuple[Any, Array]:
+    def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
         roller = loaded_rollers(row, self.model.oil)
         return roller, jax.vmap(self.rolls)(roller).spin[:, None]
 
     def rolls(self, roller: LoadedRoller) -> RollerState:
         """Motion of a roller in pure rolling."""
-        return rolling(roller, self.speed)
+        return pure_rolling(roller, self.speed)
 
     def local(
         self,
@@ -91,20 +91,20 @@ class RollerOrbit(AbstractOrbit):
         whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def described(
+    def describe(
         self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
     ) -> SteadyMotion:
         speed, (own, common, _) = self.speed, self.parts(y)
         roller, _ = self.bodies(y, solved)
 
-        def one(roller, spin):
+        def describe_roller(roller, spin):
             state, moving, pulls, drag = self.forces(roller, spin, common[0])
             push = jnp.sum(pulls.force) - drag
             lost = -drag * roller.pitch_radius * state.orbit
             conditions = conditions_of(self.model, roller, moving, pulls.film)
             return state, self.rolls(roller), moving, pulls, push, lost, conditions
 
-        found = jax.vmap(one)(roller, own[:, 0])
+        found = jax.vmap(describe_roller)(roller, own[:, 0])
         state, rolls, moving, pulls, push, lost, conditions = found
         rollers = self.model.bearing.n_elements
 

@@ -123,7 +123,7 @@ def check_places(owner: str, bearing: Any, places: int | None) -> None:
 def _places(bearing, solution, places):
     number, kind = bearing.n_elements, f"{bearing.noun}s"
     known = not is_traced(solution.roller_load)
-    alike = known and not bool(_unlike(solution))
+    alike = known and not bool(_loads_differ(solution))
     if places is None:
         return 1 if alike else enough_places(bearing)
     if known and places == 1 and not alike:
@@ -144,7 +144,7 @@ def enough_places(bearing: Any) -> int:
     return number * -(-_PLACES // number)
 
 
-def _unlike(solution):
+def _loads_differ(solution):
     """Return whether the loads of balls or rollers differ."""
     loads = solution.roller_load
     spread = jnp.max(loads, axis=0) - jnp.min(loads, axis=0)
@@ -189,7 +189,7 @@ def end_state(
     balance = balance_of(case, pitch_radius(bearing))
     kind = nearest_entry(_ORBITS, bearing)
     solved = solution.result == int(Result.CONVERGED)
-    ring = solution.displacement[balance.moving] / balance.scale
+    ring = solution.displacement[balance.moving_slice] / balance.scale
     rolling = jnp.zeros(count * kind.n_own + kind.n_common, ring.dtype)
     orbit = kind(
         model=model,
@@ -209,10 +209,10 @@ def end_state(
     result = jnp.where(solved, found.result, solution.result)
     if count == 1:
         # One place does not stand for all.
-        misfit = _unlike(solution) & (result == int(Result.CONVERGED))
+        misfit = _loads_differ(solution) & (result == int(Result.CONVERGED))
         result = jnp.where(misfit, int(Result.GRID_MISFIT), result)
     y = with_derivatives(orbit, found.y, result)
-    end = orbit.described(
+    end = orbit.describe(
         y,
         found.solved,
         solution=solution,

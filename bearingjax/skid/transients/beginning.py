@@ -96,7 +96,7 @@ def balanced_surroundings(
     now = model.element.model(speed.at(zero))
     row, prepared = now.rows[0], now if speed.time.shape[0] == 1 else None
     solved = row.solve(q, solution.azimuth, now.equilibrium, None)
-    ring, centre = q[balance.moving] / balance.scale, solved.state.x
+    ring, centre = q[balance.moving_slice] / balance.scale, solved.state.x
     size = 1.0 + jnp.max(jnp.abs(solution.contact_load))
     unit = 1e-3 * model.bearing.ball_diameter
     law, ellipses = model.point_law, None
@@ -126,10 +126,12 @@ def rolling_start(
         centre, ring: As in `SkidState` [m].
     """
     speed = environment.speed.at(environment.speed.time[0] * 0.0)
-    ball, _, _ = jax.vmap(lambda at, c: environment.loads.at(at, speed, c, ring))(
+    ball, _, _ = jax.vmap(lambda at, c: environment.loads.ball_at(at, speed, c, ring))(
         environment.place, centre
     )
-    rolling = jax.vmap(partial(equations_of_motion(ball).rolling, speed=speed))(ball)
+    rolling = jax.vmap(partial(equations_of_motion(ball).pure_rolling, speed=speed))(
+        ball
+    )
     spin = rolling.spin.reshape(*rolling.orbit.shape, -1)
     none, turning = jnp.zeros_like(rolling.orbit), jnp.mean(rolling.orbit)
     return SkidState(spin, rolling.orbit, none, turning, none[0], centre, ring)

@@ -60,13 +60,13 @@ def integrate_motion(
     found = in_time.integrate(
         lambda time, y, system: system.rates(time, y),
         system,
-        system.packed(start),
+        system.pack(start),
         times,
         duration,
         options,
         in_time.Stepping(Rodas(), _STEP, _FIRST * duration, _knots(environment)),
     )
-    state, work = jax.vmap(system.unpacked)(found.state)
+    state, work = jax.vmap(system.unpack)(found.state)
     return Integrated(state, work, found.steps, found.rejected, found.result)
 
 

@@ -68,10 +68,10 @@ class Cubic(diffrax.AbstractLocalInterpolation):
             return jax.tree.map(jnp.subtract, self.evaluate(t1), self.evaluate(t0))
         x = (t0 - self.t0) / jnp.where(self.t1 == self.t0, 1.0, self.t1 - self.t0)
 
-        def at(begin, end, bend):
+        def interpolate(begin, end, bend):
             return (1.0 - x) * begin + x * (end + (1.0 - x) * (bend[0] + x * bend[1]))
 
-        return jax.tree.map(at, self.y0, self.y1, self.bend)
+        return jax.tree.map(interpolate, self.y0, self.y1, self.bend)
 
 
 class Rodas(diffrax.AbstractAdaptiveSolver):
@@ -118,13 +118,13 @@ class Rodas(diffrax.AbstractAdaptiveSolver):
         slopes, masses = args.slopes(t0, y0), args.masses
         solve = slopes.solver(masses, 1.0 / (h * _GAMMA))
 
-        def combined(weights, stages):
+        def combine(weights, stages):
             return jax.tree.map(lambda s: jnp.tensordot(weights, s, axes=1), stages)
 
         def stage(stages, row):
             index, a, c, time, slope = row
-            moved = jax.tree.map(jnp.add, y0, combined(a, stages))
-            before = masses.times(combined(c / h, stages))
+            moved = jax.tree.map(jnp.add, y0, combine(a, stages))
+            before = masses.times(combine(c / h, stages))
             right = jax.tree.map(
                 lambda r, b, t: r + b + (h * slope) * t,
                 args.rates(t0 + time * h, moved),
@@ -140,7 +140,7 @@ class Rodas(diffrax.AbstractAdaptiveSolver):
         rows = [jnp.asarray(v, real) for v in (_A, _C, _TIME, _SLOPE)]
         stages, _ = jax.lax.scan(stage, none, (np.arange(count), *rows))
         error = jax.tree.map(lambda s: s[-1], stages)
-        end = combined(rows[0][-1], stages)
+        end = combine(rows[0][-1], stages)
         y1 = jax.tree.map(lambda y, x, e: y + x + e, y0, end, error)
         dense = jnp.asarray(_DENSE, real)
         bend = jax.tree.map(lambda s: jnp.tensordot(dense, s, axes=1), stages)

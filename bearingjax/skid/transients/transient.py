@@ -196,7 +196,7 @@ def simulate(
         )
     else:
         if places is None:
-            places = 1 if _alike(solution.roller_load) else _PLACES
+            places = 1 if _loads_equal(solution.roller_load) else _PLACES
         environment, rolling = surroundings(model, solution, at, table, gravity, places)
     start = rolling if start is None else _taken_up(start, rolling)
     steps = options.integration()
@@ -208,7 +208,7 @@ def simulate(
     )
 
 
-def _alike(loads):
+def _loads_equal(loads):
     """Return whether all balls are known to carry equal loads."""
     if is_traced(loads):
         return False
@@ -280,9 +280,9 @@ def _report(environment, time, state):
     kinetic, potential = energy
     speed = environment.speed.at(time)
     inner, outer = (-jnp.sum(torque) for torque in balls.ring_torque)
-    rolling = jax.vmap(partial(equations_of_motion(balls.ball).rolling, speed=speed))(
-        balls.ball
-    )
+    rolling = jax.vmap(
+        partial(equations_of_motion(balls.ball).pure_rolling, speed=speed)
+    )(balls.ball)
     _, more = nearest_entry(_HISTORIES, environment.model.bearing)
     return dict(
         **more(environment, balls),
