@@ -227,7 +227,7 @@ def main(smoke, turns=8, batch=[16, 64], bearings=64):  # noqa: B006
         each[size], found = many(turns, needed, size, bearings)
         print(
             f"ours, {bearings} random bearings, {size} in one call: {each[size]:.3f}"
-            f" s each, {found.failed} failed",
+            f" s each, {found.n_failed} failed",
             flush=True,
         )
     best = np.nan  # which misses the goal, if no run of SciPy is as near

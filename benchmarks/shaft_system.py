@@ -166,7 +166,7 @@ class Peer:
                 for m in flow.meshes
             ]
             acting.append(("belt", np.asarray(force), np.zeros(3)))
-            for part in system.on(system.shafts[index].name):
+            for part in system.parts_on(system.shafts[index].name):
                 node = beam.node(system.station(part)[1])
                 for name, push, moment in acting:
                     if name == part.name:

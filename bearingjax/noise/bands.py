@@ -104,7 +104,7 @@ def band_root_mean_square(
         nothing in it is 0, with a derivative of 0.
     """
     lower, upper = _edges(spectrum, bands)
-    return _by_band(spectrum, lower, upper, _highest(spectrum, highest))
+    return _by_band(spectrum, lower, upper, _highest_frequency(spectrum, highest))
 
 
 def band_levels(
@@ -139,7 +139,7 @@ def is_held(
 ) -> Bool[Array, "band ..."]:
     """Return which bands a record covers, see `band_root_mean_square` (band, ...)."""
     lower, upper = _edges(spectrum, bands)
-    return _hold(spectrum, lower, upper, _highest(spectrum, highest))
+    return _are_valid(spectrum, lower, upper, _highest_frequency(spectrum, highest))
 
 
 class Leakage(NamedTuple):
@@ -183,7 +183,7 @@ def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
     left, middle, right = (amplitude[jnp.clip(bins + k, 0, last)] for k in (-1, 0, 1))
     axes = [1] * (amplitude.ndim - 1)
     inside = ((bins > 0) & (bins < last)).reshape(*bins.shape, *axes)
-    strong = _strong(amplitude)[jnp.clip(bins, 0, last)]
+    strong = _strong_lines(amplitude)[jnp.clip(bins, 0, last)]
     line = inside & strong & (middle > left) & (middle >= right)
     away, gain = window.peak(left, middle, right)
     place = bins.astype(edge.dtype).reshape(*bins.shape, *axes) + away
@@ -191,14 +191,14 @@ def leakage(spectrum: Spectrum, edges: Any) -> Leakage:
     edge, first = (one.reshape(-1, 1, *axes) for one in (edge, first))
     below = place < edge
     apart = jnp.where(below, first - place, place - (first - 1))
-    spread = power * window.beyond(jnp.where(line, apart, 1.0))
+    spread = power * window.power_beyond(jnp.where(line, apart, 1.0))
     most = jnp.argmax(spread, axis=1, keepdims=True)
     need = jnp.abs(jnp.take_along_axis(place - edge, most, axis=1))[:, 0]
     up, down = (jnp.sum(jnp.where(k, spread, 0.0), axis=1) for k in (below, ~below))
     return Leakage(up, down, need * spectrum.resolution)
 
 
-def _strong(amplitude):
+def _strong_lines(amplitude):
     """Return which lines are strong against their neighbours (line, ...)."""
     tiny = jnp.finfo(amplitude.dtype).tiny
     logs = jnp.log(jnp.maximum(amplitude, tiny))
@@ -265,7 +265,7 @@ def _powers(spectrum, lower, upper):
 
 @program(quick=True)
 def _by_band(spectrum, lower, upper, highest):
-    held = _hold(spectrum, lower, upper, highest)
+    held = _are_valid(spectrum, lower, upper, highest)
     return jnp.where(held, _root(_sums(spectrum, lower, upper)), jnp.nan)
 
 
@@ -282,7 +282,7 @@ def covers(spectrum: Spectrum, bands: Bands, highest: Any = None) -> tuple[Any, 
     Arguments as in `band_root_mean_square`.
     """
     lower, upper = _edges(spectrum, bands)
-    return _covers(spectrum, lower, upper, _highest(spectrum, highest))
+    return _covers(spectrum, lower, upper, _highest_frequency(spectrum, highest))
 
 
 def _covers(spectrum, lower, upper, highest):
@@ -290,7 +290,7 @@ def _covers(spectrum, lower, upper, highest):
 
 
 @program(quick=True)
-def _hold(spectrum, lower, upper, highest):
+def _are_valid(spectrum, lower, upper, highest):
     wide, within = _covers(spectrum, lower, upper, highest)
     *powers, _ = _powers(stop_gradient(spectrum), lower, upper)
     changed = shift(*powers)
@@ -298,7 +298,7 @@ def _hold(spectrum, lower, upper, highest):
     return (wide & within).reshape(-1, *axes) & (jnp.abs(changed) < LEAST_SHIFT)
 
 
-def _highest(spectrum, highest):
+def _highest_frequency(spectrum, highest):
     half = spectrum.frequency[-1]
     return half if highest is None else jnp.minimum(half, as_real(highest))
 

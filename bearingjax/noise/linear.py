@@ -73,14 +73,14 @@ class Transfer(NamedTuple):
     @property
     def accelerance(self) -> Complex[Array, "line k k"]:
         """Acceleration for loads, as in `by_force` [1/kg, rad/(kg m), rad/(kg m²)]."""
-        return self._accelerated(self.by_force)
+        return self._accelerate(self.by_force)
 
     @property
     def acceleration_by_errors(self) -> Complex[Array, "line k element 2 3"]:
         """Acceleration for deviations, as in `by_errors` [1/s², rad/(m s²)]."""
-        return self._accelerated(self.by_errors)
+        return self._accelerate(self.by_errors)
 
-    def _accelerated(self, motion):
+    def _accelerate(self, motion):
         square = -((2.0 * jnp.pi * self.frequency) ** 2)
         return motion * square.reshape(-1, *(1,) * (motion.ndim - 1)).astype(
             motion.dtype
@@ -153,7 +153,7 @@ def _transfer(model, frequency, orbits) -> Transfer:
     ring = jnp.eye(n, k, dtype=linear.mass.dtype)
     push = linear.push.reshape(n, -1)
 
-    def at(frequency):
+    def response_at(frequency):
         omega = 2.0 * jnp.pi * frequency
         real = linear.stiffness - jnp.diag(omega**2 * linear.mass)
         dynamic = lax.complex(real, omega * linear.damping)
@@ -163,6 +163,6 @@ def _transfer(model, frequency, orbits) -> Transfer:
         by_push = rows @ push.astype(rows.dtype)
         return rows[:, :k], by_push * lax.complex(one, omega * linear.retardation)
 
-    by_force, by_errors = lax.map(at, frequency)
+    by_force, by_errors = lax.map(response_at, frequency)
     by_errors = by_errors.reshape(*by_errors.shape[:2], *linear.push.shape[1:])
     return Transfer(frequency, by_force, by_errors, linear.result)

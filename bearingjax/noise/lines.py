@@ -146,7 +146,8 @@ def name_lines(
     names = NameRule() if names is None else names
     peaks = PeakRule() if peaks is None else peaks
     kinematic = [
-        kinematic_frequencies(one, speed, contact_angle) for one in _single(bearing)
+        kinematic_frequencies(one, speed, contact_angle)
+        for one in _single_rows(bearing)
     ]
     tolerance = names.tolerance
     if tolerance is None:
@@ -190,7 +191,7 @@ def _peaks(spectrum: Spectrum, rule: PeakRule) -> Iterator[tuple[float, float]]:
     yield from zip(frequencies.tolist(), (gain * size[at]).tolist(), strict=True)
 
 
-def _single(bearing):
+def _single_rows(bearing):
     """Return the rows of a set; anything else unchanged, for later checks."""
     if not isinstance(bearing, BearingSet):
         return [bearing]

@@ -174,7 +174,7 @@ class NoiseModel(eqx.Module):
         return (self.errors,) * len(rows_of(self.element.bearing))
 
     @property
-    def small(self) -> BearingElement:
+    def small_motions(self) -> BearingElement:
         """Bearing with linearised kinematics and the freedoms of the ring here."""
         return of_small_motions(self.element)
 
@@ -279,7 +279,7 @@ def _surfaces(model: NoiseModel, found: DynamicRow) -> tuple[Surfaces, ...]:
 
 @program(quick=True)
 def _system(model, points) -> NoiseSystem:
-    found = DynamicRow.of(model.small, model.speed)
+    found = DynamicRow.from_element(model.small_motions, model.speed)
     some = jax.tree.leaves(model.errors)
     mass = jnp.repeat(model.mass, 3)
     if (inertia := model.inertia) is not None:

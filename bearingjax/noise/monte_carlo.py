@@ -57,7 +57,7 @@ class MonteCarlo(eqx.Module):
     to_xarray = to_xarray
 
     @property
-    def failed(self) -> int:
+    def n_failed(self) -> int:
         """Number of bearings without levels."""
         return int(np.sum(np.asarray(self.result) != Result.CONVERGED))
 
@@ -86,9 +86,9 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
         sample_errors(tolerances, row.bearing, k)
         for row, k in zip(parts, keys, strict=True)
     ]
-    rows = [_with(row.bearing, one) for row, one in zip(parts, found, strict=True)]
+    rows = [_deviate(row.bearing, one) for row, one in zip(parts, found, strict=True)]
     errors = tuple(
-        _together(own, one.errors)
+        _add(own, one.errors)
         for own, one in zip(model.errors_of_rows, found, strict=True)
     )
     errors = errors if len(parts) > 1 else errors[0]
@@ -194,7 +194,7 @@ def monte_carlo(
     return MonteCarlo(total, each, jnp.asarray(bands.centre), result, keys)
 
 
-def _with(bearing: Any, found: SampledErrors) -> Any:
+def _deviate(bearing: Any, found: SampledErrors) -> Any:
     """Return a single row with deviations of its elements added to its own."""
     name = f"{bearing.noun}_deviation"
     for field, value in ((name, found.diameter), ("azimuth_deviation", found.azimuth)):
@@ -210,7 +210,7 @@ def _with(bearing: Any, found: SampledErrors) -> Any:
     return bearing
 
 
-def _together(one: FormErrors, other: FormErrors) -> FormErrors:
+def _add(one: FormErrors, other: FormErrors) -> FormErrors:
     def ring(a, b):
         return RacewayErrors(
             a.axial + b.axial, a.outwards + b.outwards, a.raised + b.raised
@@ -264,20 +264,20 @@ class Records:
         names, given = self.given[1].sources, factors or {}
         factors = {name: jnp.asarray(given.get(name, 1.0)) for name in names}
         for part, at in self.parts(len(keys)):
-            yield part, *_records(*self.given, factors, *raw(keys[at]), self.counts)
+            yield part, *_records(*self.given, factors, *unwrap(keys[at]), self.counts)
             if progress is not None:
                 progress(int(at[-1]) + 1, len(keys))
 
 
-def raw(keys: Array) -> tuple[Array, str | None]:
+def unwrap(keys: Array) -> tuple[Array, str | None]:
     """Return plain numbers of typed keys, which kept programs take, and their kind."""
     if not jnp.issubdtype(keys.dtype, jax.dtypes.prng_key):
         return keys, None
     return jax.random.key_data(keys), str(jax.random.key_impl(keys))
 
 
-def typed(numbers: Array, kind: str | None) -> Array:
-    """Return the keys from `raw`."""
+def wrap(numbers: Array, kind: str | None) -> Array:
+    """Return the keys from `unwrap`."""
     return numbers if kind is None else jax.random.wrap_key_data(numbers, impl=kind)
 
 
@@ -285,9 +285,9 @@ def typed(numbers: Array, kind: str | None) -> Array:
 def _records(model, tolerances, factors, numbers, kind, counts):
     """Return accelerations (bearing, time, 3) and result codes of a batch."""
     turns, settle, samples, steps = counts
-    tolerances = tolerances.scaled(factors)
+    tolerances = tolerances.scale(factors)
 
-    def one(key):
+    def record(key):
         found = vibration(
             sampled_model(model, tolerances, key),
             turns=turns,
@@ -298,4 +298,4 @@ def _records(model, tolerances, factors, numbers, kind, counts):
         )
         return found.acceleration[:, :_DIRECTIONS], found.result
 
-    return jax.vmap(one)(typed(numbers, kind))
+    return jax.vmap(record)(wrap(numbers, kind))

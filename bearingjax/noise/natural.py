@@ -124,7 +124,7 @@ def _natural_modes(model, orbits) -> NaturalModes:
     positive = square > 0.0
     angular = jnp.where(positive, jnp.sqrt(jnp.where(positive, square, 1.0)), 0.0)
     share = jnp.sum(vectors[: system.mass.shape[0]] ** 2, axis=0)
-    ring, places = jax.vmap(system.parted)(vectors.T / stop_gradient(root)[None])
+    ring, places = jax.vmap(system.split)(vectors.T / stop_gradient(root)[None])
     return NaturalModes(angular / (2.0 * jnp.pi), ring, places, share, result)
 
 

@@ -143,13 +143,13 @@ def at_instant(
 @program(quick=True)
 def _excitation(model, turns, samples, held) -> Excitation:
     system = dataclasses.replace(model, cage=None).system()
-    whole = model.small
+    whole = model.small_motions
     standing = model.solve(whole)
     start = split_rings(standing.displacement)[system.moving]
     frequency = model.shaft_speed / (2.0 * jnp.pi)
     time = jnp.arange(turns * samples, dtype=frequency.dtype) / (frequency * samples)
 
-    def instant(time):
+    def force_at(time):
         element = at_instant(whole, system, time)
         if held:
             found = element.evaluate(standing.displacement)
@@ -164,5 +164,5 @@ def _excitation(model, turns, samples, held) -> Excitation:
         return pushed, moved, system.azimuth(time), result
 
     lanes = min(turns * samples, _LANES)
-    force, moved, azimuth, result = jax.lax.map(instant, time, batch_size=lanes)
+    force, moved, azimuth, result = jax.lax.map(force_at, time, batch_size=lanes)
     return Excitation(time, force, moved, azimuth, frequency, result.astype(jnp.int32))

@@ -112,7 +112,7 @@ class RandomWaves(eqx.Module):
             amplitude = amplitude * jnp.sqrt(square)
         return Harmonics(range(self.low, self.high + 1), amplitude, phase)
 
-    def scaled(self, factor: Any) -> "RandomWaves":
+    def scale(self, factor: Any) -> "RandomWaves":
         """Return a copy with `factor` times the amplitudes [1]."""
         return eqx.tree_at(lambda w: w.amplitude, self, factor * self.amplitude)
 
@@ -243,7 +243,7 @@ class Tolerances(eqx.Module):
         names = (field.name for field in dataclasses.fields(self))
         return tuple(name for name in names if getattr(self, name) is not None)
 
-    def scaled(self, factors: Mapping[str, Any]) -> "Tolerances":
+    def scale(self, factors: Mapping[str, Any]) -> "Tolerances":
         """Return a copy with some sources scaled.
 
         Args:
@@ -256,7 +256,7 @@ class Tolerances(eqx.Module):
         for name in factors:
             if name not in self.sources:
                 raise ValueError(
-                    f"Tolerances.scaled: there is no source {name!r}; sources are"
+                    f"Tolerances.scale: there is no source {name!r}; sources are"
                     f" {', '.join(self.sources) or 'none'}."
                 )
         names = tuple(factors)
@@ -264,7 +264,7 @@ class Tolerances(eqx.Module):
         def one(name):
             value, factor = getattr(self, name), factors[name]
             waves = isinstance(value, RandomWaves)
-            return value.scaled(factor) if waves else factor * value
+            return value.scale(factor) if waves else factor * value
 
         return eqx.tree_at(
             lambda t: [getattr(t, name) for name in names],
@@ -313,7 +313,7 @@ def sample_errors(
     names = [field.name for field in dataclasses.fields(tolerances)]
     keys = {name: jax.random.fold_in(key, k) for k, name in enumerate(names)}
 
-    def even(name):
+    def sample(name):
         width = getattr(tolerances, name)
         if width is None:
             return None
@@ -331,4 +331,4 @@ def sample_errors(
         return RacewayErrors(waves(f"{ring}_axial"), outwards)
 
     errors = FormErrors(raceway("outer"), raceway("inner"), waves("elements", (count,)))
-    return SampledErrors(even("diameter"), even("spacing"), errors)
+    return SampledErrors(sample("diameter"), sample("spacing"), errors)

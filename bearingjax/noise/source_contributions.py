@@ -10,7 +10,7 @@ smaller or switched off, and from the derivative, P = (s/2) ∂/∂s.
 Where sources act through each other, as two that only beat together or that open
 contacts, the mean square has products of them. Both ways then count a product for each
 of its sources: shares sum to more than the mean square
-    (`SourceContributions.together`).
+    (`SourceContributions.total_share`).
 """
 
 import dataclasses
@@ -31,7 +31,7 @@ from ..numerics.units import unit
 from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .monte_carlo import Progress, RecordOptions, Records, raw, sampled_model, typed
+from .monte_carlo import Progress, RecordOptions, Records, sampled_model, unwrap, wrap
 from .scatter import Tolerances
 from .spectrum import Hann, spectrum
 from .vibration import bandwidth, vibration
@@ -73,7 +73,7 @@ class SourceContributions(eqx.Module):
         return (self.mean_square - self.smaller) / (1.0 - self.factor**2)
 
     @property
-    def together(self) -> Scalar:
+    def total_share(self) -> Scalar:
         """Sum of all shares over the mean square [1].
 
         Products of sources, which count for each of them, raise it above 1; vibration
@@ -84,14 +84,14 @@ class SourceContributions(eqx.Module):
     @property
     def ranking(self) -> tuple[str, ...]:
         """Sources in order of decreasing share."""
-        return self._ranked(self.share)
+        return self._rank(self.share)
 
     @property
     def ranking_by_gradient(self) -> tuple[str, ...]:
         """Sources ranked by the derivatives."""
         if self.by_gradient is None:
             raise ValueError("SourceContributions: the derivatives were not asked for.")
-        return self._ranked(self.by_gradient)
+        return self._rank(self.by_gradient)
 
     def gain(self, factor: Any = 0.5) -> Float[Array, " source"]:
         """Return the reduction of the level if one source is tightened (source,) [dB].
@@ -116,7 +116,7 @@ class SourceContributions(eqx.Module):
         one = REFERENCE_ACCELERATION
         return level(jnp.sqrt(self.mean_square), one) - level(root, one)
 
-    def _ranked(self, values):
+    def _rank(self, values):
         return tuple(self.sources[k] for k in np.argsort(-np.asarray(values)))
 
 
@@ -215,7 +215,7 @@ def source_contributions(
         *powers, _ = band_power(lines, bands)
         return np.asarray(jnp.sum(jnp.stack(powers), axis=-1).T.swapaxes(1, 2))
 
-    def summarised(batches):
+    def collect(batches):
         """Return mean squares, those of bands, and whether each bearing is solved."""
         found = [
             (np.asarray(_mean_square(a, along)), of_bands(a, r), np.asarray(r))
@@ -224,7 +224,7 @@ def source_contributions(
         square, each, result = (np.concatenate(a)[:n] for a in zip(*found, strict=True))
         return square, each, result == int(Result.CONVERGED)
 
-    runs = [] if unchanged is None else [summarised(unchanged)]
+    runs = [] if unchanged is None else [collect(unchanged)]
     if runs and len(runs[0][0]) < n:
         raise ValueError(
             f"source_contributions: `unchanged` has {len(runs[0][0])} records; it needs"
@@ -232,14 +232,14 @@ def source_contributions(
         )
     for change in changes:
         made = drawn.batches(keys, report_progress, change)
-        runs.append(summarised((a[:part], r[:part]) for part, a, r in made))
+        runs.append(collect((a[:part], r[:part]) for part, a, r in made))
         done += n
     squares, in_bands, solved = (np.array(a) for a in zip(*runs, strict=True))
     fine = np.all(solved, axis=0)
     slopes = []
     if gradient:
         for part, at in drawn.parts(n):
-            slope = _slopes(*drawn.given, *raw(keys[at]), drawn.counts, along)
+            slope = _slopes(*drawn.given, *unwrap(keys[at]), drawn.counts, along)
             slopes.append([slope[name][:part] for name in sources])
             report_progress(min(len(slopes) * given.batch, n), n)
     if not fine.any():
@@ -318,7 +318,7 @@ def _slopes(model, tolerances, numbers, kind, counts, along):
 
     def square(factors, key):
         found = vibration(
-            sampled_model(model, tolerances.scaled(factors), key),
+            sampled_model(model, tolerances.scale(factors), key),
             turns=turns,
             settle=settle,
             samples=samples,
@@ -327,4 +327,4 @@ def _slopes(model, tolerances, numbers, kind, counts, along):
         )
         return _mean_square(found.acceleration[:, :3], along)
 
-    return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, typed(numbers, kind))
+    return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, wrap(numbers, kind))

@@ -53,7 +53,7 @@ class AbstractWindow(eqx.Module):
         """The weights (count,) [1]."""
 
     @abc.abstractmethod
-    def beyond(self, distance: Any) -> Any:
+    def power_beyond(self, distance: Any) -> Any:
         """Return the share of the power of a single line beyond a distance in bins [1].
 
         Args:
@@ -86,7 +86,7 @@ class Rectangular(AbstractWindow):
     def weights(self, count: int) -> np.ndarray:
         return np.ones(count)
 
-    def beyond(self, distance: Any) -> Any:
+    def power_beyond(self, distance: Any) -> Any:
         return jnp.zeros_like(distance)
 
     def peak(self, left: Any, middle: Any, right: Any) -> tuple[Any, Any]:
@@ -109,7 +109,7 @@ class Hann(AbstractWindow):
     def weights(self, count: int) -> np.ndarray:
         return 1.0 - np.cos(2.0 * np.pi * np.arange(count) / count)
 
-    def beyond(self, distance: Any) -> Any:
+    def power_beyond(self, distance: Any) -> Any:
         # The first bins one by one, the others by an integral over their middles.
         near = jnp.stack([distance + k for k in range(4)])
         size = jnp.sinc(near) + 0.5 * (jnp.sinc(near - 1.0) + jnp.sinc(near + 1.0))

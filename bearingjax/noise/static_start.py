@@ -38,7 +38,7 @@ def static_start(
     Fails: as `solve_load`; `NO_LOAD_PATH` too where no rolling element is pressed
     between both rings: the moving one then lies anywhere.
     """
-    element = model.small
+    element = model.small_motions
     if orbits and element.raceway_control is not None:
         # As here, where balls roll at the free contact angle whatever the load.
         choices = dataclasses.replace(
@@ -57,10 +57,10 @@ def static_start(
             placements.sign * tilt,
         )
 
-    def place(element, *motion):
+    def places_of(element, *motion):
         return combine_rows(element.own.T, jnp.stack(motion))[: element.mass.shape[0]]
 
-    places = system.row.map(place, u, v, tilt)
+    places = system.row.map(places_of, u, v, tilt)
     ring = (q[6:] if system.moving else q[:6])[: system.mass.shape[0]]
     motion = jnp.concatenate([ring, places.T.ravel()])
     between, most = _carried_loads(system, motion)
@@ -72,9 +72,9 @@ def static_start(
 def _carried_loads(system, motion) -> tuple[Scalar, Scalar]:
     """Return the largest load through an element, and the largest of all [N]."""
     motion = stop_gradient(motion)
-    found = ElementPositions.at(system.azimuth(jnp.zeros((), motion.dtype)))
+    found = ElementPositions.from_azimuth(system.azimuth(jnp.zeros((), motion.dtype)))
     outer, inner = (
-        jnp.linalg.norm(force.stacked[:, :2], axis=1)
+        jnp.linalg.norm(force.components[:, :2], axis=1)
         for force in system.on_raceways(motion, found)
     )
     return jnp.max(jnp.minimum(outer, inner)), jnp.max(jnp.maximum(outer, inner))
@@ -86,7 +86,7 @@ def describe_failure(model: NoiseModel) -> str:
     Args:
         model: The bearing; concrete.
     """
-    solution = model.solve(model.small)
+    solution = model.solve(model.small_motions)
     if int(solution.result) == Result.CONVERGED:
         return (
             "nothing presses the rolling elements between the rings, and the"

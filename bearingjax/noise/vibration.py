@@ -273,16 +273,16 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
         time, course = known
         return system.forces(motion, velocity, time, start, course) / masses
 
-    def known(time):
+    def course_at(time):
         return time, system.course(time)
 
     number = (settle + turns) * samples
     begin = start, jnp.zeros_like(start)
 
-    def kept(acceleration):
+    def select(acceleration):
         return acceleration[:k], None if model.cage is None else acceleration[-3:]
 
-    moved = step_motion(acceleration, begin, h, steps, number, kept, known)
+    moved = step_motion(acceleration, begin, h, steps, number, select, course_at)
     motion, (seen, of_cage) = jax.tree.map(lambda r: r[settle * samples :], moved[:2])
     numbers = jnp.arange(settle * samples, number, dtype=start.dtype)
     time = numbers * (h * steps)
@@ -295,7 +295,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     )
     ended = jnp.all(jnp.isfinite(moved.end[0])) & jnp.all(jnp.isfinite(moved.end[1]))
     peak = jnp.argmax(jnp.max(loads, axis=(1, 2)))
-    rate = _fastest(system, motion[peak], time[peak])
+    rate = _rate_bound(system, motion[peak], time[peak])
     short = jnp.where(h * rate < _STABLE, int(Result.CONVERGED), int(Result.STEP_LIMIT))
     lost = jnp.where(ended, short, int(Result.NON_FINITE))
     standing_failed = result != int(Result.CONVERGED)
@@ -313,7 +313,7 @@ def _vibration(model, turns, settle, samples, steps) -> Vibration:
     )
 
 
-def _fastest(system, motion, time) -> Scalar:
+def _rate_bound(system, motion, time) -> Scalar:
     """Return a bound of all frequencies at a place, from rows of M^-½ K M^-½ [rad/s].
 
     Source: Gershgorin.

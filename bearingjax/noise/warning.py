@@ -62,7 +62,7 @@ def model_warnings(
     return [
         *_few_steps(model, samples, steps),
         *_wandering_modes(model),
-        *_above(model, band_limit, tolerances),
+        *_bandwidth_warnings(model, band_limit, tolerances),
     ]
 
 
@@ -86,7 +86,7 @@ def record_warnings(
         Warnings; empty if there are none.
     """
     return [
-        *_silent(model, record, found),
+        *_silence_warning(model, record, found),
         *_bands(record, found, bands),
         *_total(model, record, found),
         *_short_waves(model, np.asarray(record.contact_load), tolerances),
@@ -105,7 +105,7 @@ def contribution_warnings(found: SourceContributions) -> list[Warning]:
     Returns:
         A warning, or none.
     """
-    together = float(found.together)
+    together = float(found.total_share)
     error = float(np.linalg.norm(found.error) / found.mean_square)
     # A single bearing has no standard error.
     limit = 1.0 + max(_OVERLAP, 2.0 * error if error > 0.0 else 0.0)
@@ -157,7 +157,7 @@ def _wandering_modes(model: NoiseModel) -> Iterator[Warning]:
         )
 
 
-def _above(model, band_limit, tolerances) -> Iterator[Warning]:
+def _bandwidth_warnings(model, band_limit, tolerances) -> Iterator[Warning]:
     """Warn of modes and waves above the bandwidth of the samples."""
     cut = (
         f"above {band_limit:.5g} Hz, up to which the samples tell the vibration; raise"
@@ -177,7 +177,7 @@ def _above(model, band_limit, tolerances) -> Iterator[Warning]:
             "elements": float(rolling.rotation),
         }
         for part, given in _parts(errors).items():
-            highest = max(_highest(given), drawn[part])
+            highest = max(_highest_order(given), drawn[part])
             rate = highest * passing[part]
             if rate > band_limit:
                 yield Warning(
@@ -190,7 +190,7 @@ def _above(model, band_limit, tolerances) -> Iterator[Warning]:
                 )
 
 
-def _silent(model, record, found) -> Iterator[Warning]:
+def _silence_warning(model, record, found) -> Iterator[Warning]:
     """Warn of a record of round-off only."""
     size = np.sqrt(np.sum(np.asarray(found.power)[1:]))
     if not size > rounding(model, record):
@@ -275,7 +275,7 @@ def _short_waves(model, load, tolerances) -> Iterator[Warning]:
             "elements": surfaces.element,
         }
         for part, given in _parts(errors).items():
-            highest = max(_highest(given), drawn[part])
+            highest = max(_highest_order(given), drawn[part])
             most = int(float(around[part].radius) / half) if half > 0.0 else highest
             if highest > most:
                 yield Warning(
@@ -382,7 +382,7 @@ def _highest_drawn(tolerances: Tolerances | None) -> dict[str, int]:
     return found
 
 
-def _highest(errors: Any) -> int:
+def _highest_order(errors: Any) -> int:
     """Return the highest order of waves."""
     shapes = jax.tree.leaves(errors, is_leaf=lambda x: isinstance(x, Harmonics))
     orders = [max(one.order) for one in shapes if isinstance(one, Harmonics)]

@@ -110,7 +110,7 @@ def solve_duty(
             f"solve_duty: {len(systems)} systems and {len(conditions)} conditions; give"
             " one case at least, and both for each."
         )
-    systems = alike(systems)
+    systems = align_systems(systems)
     for seat in systems[0].seats:
         if seat.installed is not None:
             check_alike(seat.installed.drawing.bearing)
@@ -152,7 +152,7 @@ def solve_duty(
     )
 
 
-def alike(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
+def align_systems(systems: Sequence[ShaftSystem]) -> list[ShaftSystem]:
     """Return systems of one structure: what is fast in one case feels the speed in all,
     and shafts are divided as in the first case.
 
@@ -217,11 +217,11 @@ def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
 
 @program
 def _map_cases(function, varying, shared, tree, static):
-    def one(mine):
+    def call_case(mine):
         leaves = [s if v is None else v for v, s in zip(mine, shared, strict=True)]
         return function(jax.tree.unflatten(tree, leaves), *static)
 
-    return lax.map(one, varying, batch_size=BATCH)
+    return lax.map(call_case, varying, batch_size=BATCH)
 
 
 def state_of(system: ShaftSystem) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from ..rotor.statics import search_equilibrium
 from ..statics.support import axial_senses
 from .power import PowerFlow, power_flow
 from .seats import supports_of, with_preload_offsets
-from .state import SystemSolution, describe_state, moving
+from .state import SystemSolution, describe_state, moving_part
 from .system import ShaftSystem
 
 _SLID = 1e-3
@@ -143,11 +143,11 @@ def system_state(
     )
     solved = found.result == Result.CONVERGED
 
-    def there(*given: Any) -> SystemSolution:
+    def describe(*given: Any) -> SystemSolution:
         return describe_state(found, *given)
 
     given = system, rotors, points, whole, power
-    return unless_failed(there, given, solved), stop_gradient(whole).motion(found.x)
+    return unless_failed(describe, given, solved), stop_gradient(whole).motion(found.x)
 
 
 def _name_end(system, found, whole):
@@ -273,8 +273,8 @@ def describe_failure(system: ShaftSystem, found: SystemSolution, place: Any) -> 
     start = f"solve_system: {result.label}:"
     if result is Result.NO_LOAD_PATH and not is_traced(place):
         return (
-            f"{start} nothing takes up the load along {moving(system, place)}; locate"
-            " the shaft there, turn a bearing round, or give less load."
+            f"{start} nothing takes up the load along {moving_part(system, place)};"
+            " locate the shaft there, turn a bearing round, or give less load."
         )
     if result is Result.NON_FINITE:
         return (

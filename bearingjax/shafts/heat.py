@@ -175,7 +175,7 @@ class HeatNetwork(eqx.Module):
                 matrix = matrix.at[i, i].set(1.0).at[o, o].set(1.0)
                 continue
             matrix = matrix.at[i, i].add(path.inner).at[o, o].add(path.outer)
-            matrix = _between(matrix, i, o, path.through)
+            matrix = _add_conductance(matrix, i, o, path.through)
             if self.housing is not None:
                 matrix = matrix.at[house, house].add(path.outer)
                 matrix = matrix.at[house, o].add(-path.outer)
@@ -199,7 +199,7 @@ class HeatNetwork(eqx.Module):
         return jnp.stack([*found, *more])
 
 
-def _between(matrix, i, j, conductance):
+def _add_conductance(matrix, i, j, conductance):
     matrix = matrix.at[i, i].add(conductance).at[j, j].add(conductance)
     return matrix.at[i, j].add(-conductance).at[j, i].add(-conductance)
 
@@ -279,19 +279,19 @@ def solve_heat(
     cold = with_preload_offsets(system)
     if _is_traced(cold, network):
         rise, slowest, residual, steps, solved = _steady(cold, network)
-        known = _within(rise)
+        known = _clip_rises(rise)
         solution, _ = system_state(with_temperatures(cold, network, known))
     else:
 
-        def evaluated(rise):
-            return _at(cold, network, rise)
+        def evaluate(rise):
+            return _evaluate_at_rest(cold, network, rise)
 
         given = [_conductance(network), _capacity(network)]
-        found, solution = search_temperatures(evaluated, given, None, stepped_while)
+        found, solution = search_temperatures(evaluate, given, None, stepped_while)
         rise, slowest, residual = found.rise, -found.fastest, found.residual
-        steps, solved, known = found.steps, found.solved, _within(rise)
+        steps, solved, known = found.steps, found.solved, _clip_rises(rise)
         if np.any(np.asarray(known) != np.asarray(rise)):
-            solution = evaluated(known)[2]
+            solution = evaluate(known)[2]
     flow = _conductance(network) @ rise
     warm = jnp.where(solved, rise, jnp.nan) + network.ambient
     rings = warm[: 2 * len(network.paths)].reshape(-1, 2)
@@ -335,15 +335,15 @@ def warm_up(
     if _is_traced(cold, network, times):
         return network.ambient + _transient(cold, network, times, steps)
 
-    def evaluated(rise):
-        return _at(cold, network, rise)[:2]
+    def evaluate(rise):
+        return _evaluate_at_rest(cold, network, rise)[:2]
 
-    def made(rise):
-        return evaluated(rise)[0]
+    def heat_at(rise):
+        return evaluate(rise)[0]
 
     given = [_conductance(network), _capacity(network)]
     return network.ambient + integrate_heat(
-        evaluated, made, given, times, steps, stepped_scan
+        evaluate, heat_at, given, times, steps, stepped_scan
     )
 
 
@@ -392,7 +392,7 @@ def _check(system, network) -> None:
             )
 
 
-def _at(system, network, rise):
+def _evaluate_at_rest(system, network, rise):
     """Return `_evaluate`; at rest nothing makes heat."""
     if system.turns:
         return _evaluate(system, network, rise)
@@ -404,7 +404,7 @@ def _is_traced(*trees: Any) -> bool:
     return any(is_traced(leaf) for leaf in jax.tree.leaves(trees))
 
 
-def _within(rise):
+def _clip_rises(rise):
     """Return rises at which materials have numbers, of what has run away."""
     return jnp.clip(rise, -HOTTEST / 3.0, HOTTEST)
 
@@ -516,7 +516,7 @@ def heat_and_state(
     speeds = [speed_of(warm, k, solution.power.speed)[0].inner for k in turning]
     oil = [network.ambient + 0.5 * (rises[2 * k] + rises[2 * k + 1]) for k in turning]
 
-    def lost(both, motion, turns, temperature):
+    def power_loss(both, motion, turns, temperature):
         installed, path = both
         given = motion, Speed(inner=turns), warm.inertia, 2
         return path.oil.power(in_place(installed, *given), temperature)
@@ -524,6 +524,6 @@ def heat_and_state(
     # Like bearings share one program.
     parts = [(warm.seats[k].installed, network.paths[k]) for k in turning]
     given = solution.motion[np.array(turning, int)], jnp.stack(speeds), jnp.stack(oil)
-    for k, power in zip(turning, map_parts(lost, parts, *given), strict=True):
+    for k, power in zip(turning, map_parts(power_loss, parts, *given), strict=True):
         made[2 * k] = made[2 * k + 1] = 0.5 * power
     return jnp.stack(made), solution

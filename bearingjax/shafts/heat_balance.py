@@ -52,20 +52,20 @@ def steady_rises(
     """
     still, *network = stop_gradient((args, conductance, capacity))
 
-    def evaluated(rise):
+    def evaluate(rise):
         return with_slope(lambda rise: (heat(rise, still), ()), rise)
 
-    found, _ = search_temperatures(evaluated, network, (), lax.while_loop)
+    found, _ = search_temperatures(evaluate, network, (), lax.while_loop)
 
     def balance(rise, args):
         heat_args, conductance = args
         return heat(rise, heat_args) - conductance @ rise
 
-    def undone(of_rise, rise, change, args):
+    def correct(of_rise, rise, change, args):
         matrix = jax.jacfwd(of_rise)(rise)
         return -solve_any(matrix, change)
 
-    rise = attach_by(balance, found.rise, (args, conductance), undone)
+    rise = attach_by(balance, found.rise, (args, conductance), correct)
     return rise, -found.fastest, found.residual, found.steps, found.solved
 
 
@@ -77,11 +77,11 @@ def with_slope(heat: Callable, rise: Float[Array, " node"]) -> tuple:
         rise: Rises (node,) [K].
     """
 
-    def both(rise):
+    def with_value(rise):
         made, more = heat(rise)
         return made, (made, more)
 
-    slope, (made, more) = jax.jacfwd(both, has_aux=True)(rise)
+    slope, (made, more) = jax.jacfwd(with_value, has_aux=True)(rise)
     return made, slope, more
 
 
@@ -130,7 +130,7 @@ def search_temperatures(
         made, slope, more = evaluated(carry[0].after)
         return _advance(carry[0], made, slope, network), more
 
-    begin = _beginning(network)
+    begin = _begin(network)
     return while_loop(lambda carry: carry[0].going, step, (begin, nothing))
 
 
@@ -142,7 +142,7 @@ def stepped_while(going: Callable, step: Callable, carry: T) -> T:
 
 
 @program(quick=True)
-def _beginning(network):
+def _begin(network):
     conductance, capacity = network
     zero, none = jnp.zeros_like(capacity), jnp.zeros((), capacity.dtype)
     shortest = jnp.min(capacity / jnp.diagonal(conductance))
@@ -188,13 +188,15 @@ def rises_over_time(
     Source: Verwer's ROS2, linearly implicit, of second order and L-stable.
     """
 
-    def evaluated(rise):
+    def evaluate(rise):
         return with_slope(lambda rise: (heat(rise, args), ()), rise)[:2]
 
-    def made(rise):
+    def heat_at(rise):
         return heat(rise, args)
 
-    return integrate_heat(evaluated, made, [conductance, capacity], times, n, lax.scan)
+    return integrate_heat(
+        evaluate, heat_at, [conductance, capacity], times, n, lax.scan
+    )
 
 
 _GAMMA = 1.0 - np.sqrt(0.5)

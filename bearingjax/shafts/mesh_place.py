@@ -55,8 +55,8 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
         apart = centres[1] - centres[0]
     radii, overlap = (one.radius, other.radius), None
     if isinstance(one, Gear) and one.pitch_angle is not None:
-        a, b = outward(one, shaft), outward(other, far)
-        first, second = unit_vector(across(b, a)), unit_vector(across(a, b))
+        a, b = outward_direction(one, shaft), outward_direction(other, far)
+        first, second = unit_vector(part_across(b, a)), unit_vector(part_across(a, b))
     elif apart is None:
         return None
     elif isinstance(one, Pulley):
@@ -65,7 +65,7 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
         size = jnp.sqrt(apart @ apart)
         return MeshPlace((first, -first), radii, (none, none), gap, size, None)
     else:
-        radial = across(apart, z)
+        radial = part_across(apart, z)
         distance, first = jnp.sqrt(radial @ radial), unit_vector(radial)
         second, share = -first, distance / (radii[0] + radii[1])
         radii = radii[0] * share, radii[1] * share
@@ -83,12 +83,12 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
     return MeshPlace((first, second), radii, points, gap, size, overlap)
 
 
-def outward(gear: Gear, shaft: Any) -> Array:
+def outward_direction(gear: Gear, shaft: Any) -> Array:
     """Return the direction along its shaft from the apex of a bevel gear to it."""
     return -APEXES[str(gear.apex)] * shaft.frame[2]
 
 
-def across(vector: Array, axis: Array) -> Array:
+def part_across(vector: Array, axis: Array) -> Array:
     """Return the part of a vector across an axis of length 1."""
     return vector - (vector @ axis) * axis
 

@@ -87,15 +87,15 @@ def contacts(system: ShaftSystem) -> list[tuple[Contact, Contact | None]]:
     taken = {wheel.name for pair in pairs for wheel in pair}
     for wheel in system.wheels:
         if wheel.name not in taken:
-            found.append((_alone(wheel, system.shaft(wheel.shaft)), None))
+            found.append((_single_contact(wheel, system.shaft(wheel.shaft)), None))
         for one, other in pairs:
             if one.name == wheel.name:
                 shafts = system.shaft(one.shaft), system.shaft(other.shaft)
-                found.append(_between(one, other, *shafts))
+                found.append(_pair_contacts(one, other, *shafts))
     return found
 
 
-def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
+def _single_contact(wheel: Any, shaft: ShaftLine) -> Contact:
     name = "mesh_angle" if isinstance(wheel, Gear) else "direction"
     angle = getattr(wheel, name)
     if angle is None:
@@ -107,7 +107,9 @@ def _alone(wheel: Any, shaft: ShaftLine) -> Contact:
     return Contact(wheel, None, radial, wheel.radius, wheel.radius * radial)
 
 
-def _between(one: Any, other: Any, shaft: Any, far: Any) -> tuple[Contact, Contact]:
+def _pair_contacts(
+    one: Any, other: Any, shaft: Any, far: Any
+) -> tuple[Contact, Contact]:
     """Return both contacts of a pair."""
     found = mesh_place(one, other, shaft, far)
     if found is not None:
@@ -162,7 +164,7 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
     torques: list[Any] = []
     free: list[tuple[str, int]] = []
 
-    def given(part, own):
+    def add_torque(part, own):
         shaft = names.index(part.shaft)
         if own is None:
             free.append((part.name, shaft))
@@ -179,12 +181,12 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
             torques.append(None)
         elif drive is not None and drive.into == one.wheel.name:
             torques.append(torque_of(drive, speed[shaft]))
-            given(one.wheel, torques[-1])
+            add_torque(one.wheel, torques[-1])
         else:
             torques.append(torque_of(one.wheel, speed[shaft]))
-            given(one.wheel, torques[-1])
+            add_torque(one.wheel, torques[-1])
     for coupling in system.couplings:
-        given(coupling, torque_of(coupling, speed[names.index(coupling.shaft)]))
+        add_torque(coupling, torque_of(coupling, speed[names.index(coupling.shaft)]))
     own = None
     if drive is not None:
         own = torque_of(drive, speed[root])
@@ -196,9 +198,9 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
     for load in system.loads:
         shaft = names.index(load.shaft)
         known[shaft] = known[shaft] + load.moment @ system.shafts[shaft].frame[2]
-    output = _closing(system, names, free, away, order)
+    output = _balancing_part(system, names, free, away, order)
 
-    def balanced(shares: list[Scalar]) -> Array:
+    def balance(shares: list[Scalar]) -> Array:
         matrix = jnp.zeros((len(names), len(pair_of) + 1)).at[output[1], -1].set(1.0)
         for k, (_, shaft, mate, _) in enumerate(pair_of):
             back = ratio[shaft] / ratio[mate] * shares[k]
@@ -206,7 +208,7 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
         return solve_any(matrix, -jnp.stack(known))
 
     # Power is lost in the direction in which it flows, known without the losses.
-    lossless = balanced([as_real(1.0) for _ in pair_of])
+    lossless = balance([as_real(1.0) for _ in pair_of])
     sense = jnp.where(speed[root] < 0, -1.0, 1.0)
     # Whether a pair feeds its first shaft.
     feeds = [
@@ -217,7 +219,7 @@ def power_flow(system: ShaftSystem) -> PowerFlow:
         jnp.where(fed, 1.0 / eta, eta)
         for fed, (*_, eta) in zip(feeds, pair_of, strict=True)
     ]
-    found = balanced(shares)
+    found = balance(shares)
     closing = found[-1]
     for (k, *_), value in zip(pair_of, found[:-1], strict=True):
         torques[k] = value
@@ -315,7 +317,7 @@ def _ratio(system, near: Contact, far: Contact):
     return near.wheel.teeth / far.wheel.teeth * jnp.sign(moves[0] @ moves[1])
 
 
-def _closing(system, names, free, away, order) -> tuple[str | None, int]:
+def _balancing_part(system, names, free, away, order) -> tuple[str | None, int]:
     """Return name and shaft of the part whose torque follows from the balance."""
     if len(free) > 1:
         raise ValueError(

@@ -32,7 +32,7 @@ from .doubts import load_doubts
 from .duty import (
     LIVES,
     DutyResult,
-    alike,
+    align_systems,
     bearing_hours,
     bearing_results,
     state_of,
@@ -125,9 +125,9 @@ class ShaftDesign(AbstractSystem):
         leaves, tree = jax.tree.flatten(self)
         for place, value in zip(case.places, case.values, strict=True):
             leaves[place] = value
-        return jax.tree.unflatten(tree, leaves).solved()
+        return jax.tree.unflatten(tree, leaves).solve()
 
-    def solved(self) -> DutyResult:
+    def solve(self) -> DutyResult:
         """Solve this design; nothing is raised for a failed solve.
 
         Returns:
@@ -211,7 +211,7 @@ def load_cases(
             " and hours for each or none."
         )
     check_hours(hours)
-    systems = alike([design.system for design in designs])
+    systems = align_systems([design.system for design in designs])
     whole = [
         eqx.tree_at(lambda d: d.system, design, system)
         for design, system in zip(designs, systems, strict=True)
@@ -333,7 +333,7 @@ class Worst(AbstractSmooth):
         Raises:
             ValueError: If the system has no such bearing or gear.
         """
-        at = np.array([*self._chosen(element)])
+        at = np.array([*self._select(element)])
         if not at.size:
             part = "gear" if self.kind == "misalignment" else "bearing"
             name = "" if self.of is None else f" {self.of!r}"
@@ -351,7 +351,7 @@ class Worst(AbstractSmooth):
         found = solution.peak_pressure if pressures else solution.lives[self.kind]
         return found[:, at].reshape(-1)
 
-    def _chosen(self, element: ShaftDesign) -> Iterable[int]:
+    def _select(self, element: ShaftDesign) -> Iterable[int]:
         """Return the numbers of the bearings, or meshes, that count."""
         system, of = element.system, element.bearings
         if self.kind != "misalignment":

@@ -219,7 +219,7 @@ def _misalignments(system, power, rotors, tilts):
     return jnp.stack(found) if found else jnp.zeros(0)
 
 
-def moving(system: ShaftSystem, motion: Any) -> str:
+def moving_part(system: ShaftSystem, motion: Any) -> str:
     """Name the largest of the motions of a system, in words.
 
     Args:

@@ -17,7 +17,7 @@ from ..numerics.units import unit
 from ..rotor import Shaft
 from ..rotor.rotor import as_parts
 from .line import Plan, ShaftLine
-from .mesh_place import mesh_place, outward
+from .mesh_place import mesh_place, outward_direction
 from .parts import (
     AbstractPlaced,
     Coupling,
@@ -183,7 +183,7 @@ class ShaftSystem(eqx.Module):
         self._check_kinds()
         self._check_names()
         self.plans = tuple(
-            shaft.plan({p.name: p.position for p in self.on(shaft.name)})
+            shaft.plan({p.name: p.position for p in self.parts_on(shaft.name)})
             for shaft in self.shafts
         )
         for pair in self.pairs():
@@ -326,7 +326,9 @@ class ShaftSystem(eqx.Module):
             raise ValueError(f"ShaftSystem: one of {pair} is bevel, one cylindrical.")
         if one.pitch_angle is None:
             return
-        a, b = (np.asarray(outward(g, self.shaft(g.shaft))) for g in (one, other))
+        a, b = (
+            np.asarray(outward_direction(g, self.shaft(g.shaft))) for g in (one, other)
+        )
         between = np.arccos(np.clip(a @ b, -1.0, 1.0))
         known = floats(one.pitch_angle, other.pitch_angle)
         if known and abs(between - sum(known)) > 1e-3:
@@ -476,7 +478,7 @@ class ShaftSystem(eqx.Module):
                 found.setdefault(frozenset((wheel.name, mate.name)), (wheel, mate))
         return list(found.values())
 
-    def on(self, shaft: str) -> list[AbstractPlaced]:
+    def parts_on(self, shaft: str) -> list[AbstractPlaced]:
         """Return bearings, wheels and loads of a shaft by its name."""
         placed = *self.seats, *self.wheels, *self.loads
         return [part for part in placed if part.shaft == shaft]
@@ -497,7 +499,7 @@ class ShaftSystem(eqx.Module):
             index: Number of the shaft.
         """
         line = self.shafts[index]
-        places = {part.name: part.position for part in self.on(line.name)}
+        places = {part.name: part.position for part in self.parts_on(line.name)}
         return line.shaft(self.plans[index], places)
 
     def station(self, part: AbstractPlaced) -> tuple[int, int]:

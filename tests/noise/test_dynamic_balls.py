@@ -44,7 +44,7 @@ def test_forces_of_balls_are_derivatives_of_their_energy(monkeypatch):
     def resistance(numbers, motion, azimuth, deviations):
         moved = eqx.tree_at(own, system, numbers)
         return moved.resistance(
-            motion, ElementPositions.at(azimuth).with_deviations(deviations)
+            motion, ElementPositions.from_azimuth(azimuth).with_deviations(deviations)
         )
 
     change = jax.tree.map(

@@ -111,7 +111,7 @@ def test_runout_of_a_class():
 def test_sample_errors_scales_each_source_alone():
     one = sample_errors(SMALL, BEARING, KEY)
     other = sample_errors(
-        SMALL.scaled({"diameter": 0.0, "outer_axial": 3.0}), BEARING, KEY
+        SMALL.scale({"diameter": 0.0, "outer_axial": 3.0}), BEARING, KEY
     )
     assert np.all(other.diameter == 0.0)
     diameter = np.asarray(one.diameter)
@@ -132,7 +132,7 @@ def test_levels_are_those_of_each_bearing_alone():
         MODEL, SMALL, 4, KEY, progress=lambda *a: seen.append(a), records=HOW
     )
     assert seen == [(3, 4), (4, 4)]
-    assert found.level.shape == (4, 3) and found.failed == 0
+    assert found.level.shape == (4, 3) and found.n_failed == 0
     assert found.bands.shape == (4, len(octave_bands().centre), 3)
     alone = vibration(
         sampled_model(MODEL, SMALL, found.keys[3]),
@@ -218,7 +218,7 @@ def test_contribution_warnings_for_products_of_sources():
         jnp.asarray(1.0), jnp.array([*parts.values()]), jnp.full(3, 0.01), None, None,
         jnp.asarray(0.0), 6, tuple(parts),
     )  # fmt: skip
-    assert found.together == 2.0
+    assert found.total_share == 2.0
     (told,) = contribution_warnings(found)
     assert told.startswith("parts of the sources sum to 200 % of the mean square")
     alone = dataclasses.replace(found, smaller=jnp.array([0.0, 1.0, 1.0]))
@@ -229,7 +229,7 @@ def test_monte_carlo_rejects_invalid_tolerances():
     with pytest.raises(ValueError, match="room between two neighbours"):
         monte_carlo(MODEL, Tolerances(spacing=1.0), 2, KEY, records=HOW)
     with pytest.raises(ValueError, match="no source 'elements'"):
-        SMALL.scaled({"elements": 0.0})
+        SMALL.scale({"elements": 0.0})
     with pytest.raises(ValueError, match="first order, or more"):
         RandomWaves(1e-6, 5, 4)
     with pytest.raises(ValueError, match="without a source"):

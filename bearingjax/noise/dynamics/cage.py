@@ -102,7 +102,7 @@ def cage_loads(
         pitch_radius: Radius of the circle of the rolling elements [m].
         azimuth: Azimuth of the rolling elements [rad].
     """
-    ahead = arcs - _along(azimuth, pitch_radius) @ place
+    ahead = arcs - _along_pitch(azimuth, pitch_radius) @ place
     half = 0.5 * cage.pocket_clearance
     pushed = cage.contact.force(ahead - half) - cage.contact.force(-ahead - half)
     distance = lengths(place[:2] - ring)
@@ -129,11 +129,11 @@ def cage_forces(
     centred = distance == 0.0
     towards = jnp.where(centred, 0.0, land / jnp.where(centred, 1.0, distance))
     on_ring = towards * off
-    on_cage = (-pockets @ _along(azimuth, pitch_radius)).at[:2].add(on_ring)
+    on_cage = (-pockets @ _along_pitch(azimuth, pitch_radius)).at[:2].add(on_ring)
     return CageForces(pockets, on_cage, -on_ring)
 
 
-def _along(azimuth, pitch_radius):
+def _along_pitch(azimuth, pitch_radius):
     """Return the pocket motion along the pitch circle, per freedom of the cage."""
     sine, cosine = jnp.sin(azimuth), jnp.cos(azimuth)
     return jnp.stack([-sine, cosine, jnp.full_like(sine, 1.0) * pitch_radius], axis=1)

@@ -58,12 +58,12 @@ def ball_forces(
     grooves, geometry = balls.element.grooves, balls.element.geometry
     of = [0 if on_outer else 1 for on_outer in grooves.on_outer]
 
-    def each(numbers):
+    def tile(numbers):
         """(contact,), or (element, contact), with the axes (contact, element)."""
         return numbers[:, None] if numbers.ndim == 1 else numbers.T
 
-    start_z, start_r = each(grooves.start[..., 0]), each(grooves.start[..., 1])
-    reach, constant = each(grooves.reach), each(balls.element.constant)
+    start_z, start_r = tile(grooves.start[..., 0]), tile(grooves.start[..., 1])
+    reach, constant = tile(grooves.reach), tile(balls.element.constant)
     if heights is not None:
         reach = reach - jnp.stack([heights[k] for k in of])
     z, r = [outer.axial, inner.axial], [outer.outwards, inner.outwards]
@@ -77,7 +77,7 @@ def ball_forces(
     moved_r = jnp.stack([places[:, 1] - r[k] for k in of])
     tilt_z = tilt_r = None
     if tilts != [None, None]:
-        tilt_z, tilt_r = each(geometry.tilted[..., 0]), each(geometry.tilted[..., 1])
+        tilt_z, tilt_r = tile(geometry.tilted[..., 0]), tile(geometry.tilted[..., 1])
         known = [jnp.zeros_like(z[0]) if t is None else t for t in tilts]
         tilt = (known[1] - known[0])[None]
         moved_z, moved_r = moved_z - tilt_z * tilt, moved_r - tilt_r * tilt
@@ -161,9 +161,9 @@ def _forces_jvp(walls, primals, tangents):
     z, r = _sum(moved[0], start[0]), _sum(moved[1], start[1])
     z, r = (jnp.zeros_like(nz) if x is None else x for x in (z, r))
     along = nz * z + nr * r
-    closing = along if _none(reach) else along - reach
+    closing = along if _is_zero(reach) else along - reach
     rate = (_N / _D) * at.root * closing
-    if not _none(constant):
+    if not _is_zero(constant):
         rate = rate + at.load / primals[3] * constant
     rate = rate - at.turn * along
     change = rate * nz + at.turn * mask_z * z, rate * nr + at.turn * mask_r * r
@@ -173,11 +173,11 @@ def _forces_jvp(walls, primals, tangents):
 _forces.defjvp(_forces_jvp, symbolic_zeros=True)
 
 
-def _none(change) -> bool:
+def _is_zero(change) -> bool:
     return isinstance(change, SymbolicZero)
 
 
 def _sum(one, other):
     """Return the sum of two changes, either of which may be absent."""
-    some = [x for x in (one, other) if not _none(x)]
+    some = [x for x in (one, other) if not _is_zero(x)]
     return sum(some[1:], start=some[0]) if some else None

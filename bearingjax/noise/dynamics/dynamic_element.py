@@ -87,7 +87,7 @@ class DynamicElement(eqx.Module):
         at = self.element.coordinates(rings, self.unknowns(rings, place))
         return self.element.respond(at).aux
 
-    def carried(
+    def load_and_cosine(
         self, rings: RingMotion, place: Float[Array, " n"]
     ) -> tuple[Scalar, Scalar]:
         """Return the sum of a ball's loads [N] and the cosine of its contact angle [1].
@@ -131,7 +131,9 @@ def _(element: Ball, material, pitch_radius, speed, orbit) -> DynamicElement:
     mass, _ = ball_mass(element.diameter, material.density)
     both, none = jnp.stack([mass, mass]), jnp.zeros_like(mass)
     force = jnp.stack([none, mass * pitch_radius * orbit**2])
-    return DynamicElement(element, both, force, jnp.ones_like(both), _own(element))
+    return DynamicElement(
+        element, both, force, jnp.ones_like(both), _own_freedoms(element)
+    )
 
 
 @dynamic_element.register
@@ -142,10 +144,10 @@ def _(element: Roller, material, pitch_radius, speed, orbit) -> DynamicElement:
     masses = jnp.stack([mass, mass, tilting])
     scale = jnp.stack([one, one, c.half_length])
     force = inertia_force(c, speed)
-    return DynamicElement(element, masses, force, scale, _own(element))
+    return DynamicElement(element, masses, force, scale, _own_freedoms(element))
 
 
-def _own(element):
+def _own_freedoms(element):
     """Return `own`: at azimuth 0 the section's (u, v, θ) are uz, ux and gy."""
     at_zero = element.axes(jnp.zeros_like(element.diameter))
     return jnp.stack([at_zero[:, FREEDOMS.index(k)] for k in ("uz", "ux", "gy")], 1)

@@ -65,7 +65,7 @@ class DynamicRow(NamedTuple):
     surfaces: tuple[Surfaces, ...]
 
     @classmethod
-    def of(cls, element: BearingElement, speed: Speed) -> "DynamicRow":
+    def from_element(cls, element: BearingElement, speed: Speed) -> "DynamicRow":
         """Create the row of a bearing at given ring speeds.
 
         Args:
@@ -83,7 +83,7 @@ class DynamicRow(NamedTuple):
         if len(found) == 1 and found[0].row.place is None:
             return found[0]
         counts = [one.row.azimuth.shape[0] for one in found]
-        rows = [_unlike(one.row) for one in found]
+        rows = [_per_element(one.row) for one in found]
         kinds = {_structure(row.element) for row in rows}
         if len(kinds) > 1:
             raise ValueError(
@@ -148,7 +148,7 @@ def _dynamic_row(row: Row, bearing: Any, speed: Speed) -> DynamicRow:
     return DynamicRow(row, None, carried, own, (surfaces,))
 
 
-def _unlike(row: Row) -> Row:
+def _per_element(row: Row) -> Row:
     """Return the row with a leading axis on its elements."""
     if row.per_element:
         return row

@@ -23,7 +23,7 @@ class Section(NamedTuple):
     tilt: Annotated[Float[Array, " element"] | None, units("rad", "N m")]
 
     @property
-    def stacked(self) -> Float[Array, "element 3"]:
+    def components(self) -> Float[Array, "element 3"]:
         """All three components."""
         tilt = jnp.zeros_like(self.axial) if self.tilt is None else self.tilt
         return jnp.stack([self.axial, self.outwards, tilt], axis=1)
@@ -52,7 +52,7 @@ class ElementPositions(NamedTuple):
     heights: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
 
     @classmethod
-    def at(cls, azimuth: Float[Array, " element"]) -> "ElementPositions":
+    def from_azimuth(cls, azimuth: Float[Array, " element"]) -> "ElementPositions":
         """Create positions on raceways without deviations."""
         return cls(azimuth, jnp.cos(azimuth), jnp.sin(azimuth))
 

@@ -100,7 +100,7 @@ def step_motion(
 
     weights = jnp.asarray(step_weights(steps), dtype)
 
-    def one(state, known):
+    def advance(state, known):
         x, v1 = state
         begin, middle, end = (unflatten(k) for k in known)
         a1 = acceleration(x, v1, begin)
@@ -114,7 +114,7 @@ def step_motion(
         velocity = v1 + step / 6.0 * (a1 + 2.0 * (a2 + a3) + a4)
         return (moved, velocity), kept(a1)
 
-    def weighted(seen):
+    def average(seen):
         return jnp.tensordot(weights, seen, axes=1)
 
     @jax.checkpoint
@@ -123,9 +123,9 @@ def step_motion(
         halves = 2 * steps * number + jnp.arange(2 * steps + 1, dtype=dtype)
         known = jax.vmap(flat)(half * halves)
         known = known[0:-1:2], known[1::2], known[2::2]
-        after, seen = lax.scan(one, state, known)
+        after, seen = lax.scan(advance, state, known)
         # Sums of the samples that these steps count for: the last one is then whole.
-        begun = jax.tree.map(lambda b, s: b + weighted(s), begun, seen)
+        begun = jax.tree.map(lambda b, s: b + average(s), begun, seen)
         whole = jax.tree.map(lambda b: b[-1], begun)
         begun = jax.tree.map(lambda b: jnp.roll(b, 1, axis=0).at[0].set(0.0), begun)
         return (after, begun), (state[0], whole)

@@ -98,7 +98,7 @@ class NoiseSystem(eqx.Module):
         """Return a property of the rolling elements, with leading axis element."""
         return self.row.map(lambda element, _: getattr(element, name), self.row.azimuth)
 
-    def parted(
+    def split(
         self, motion: Float[Array, " n"]
     ) -> tuple[Float[Array, " k"], Float[Array, "element m"]]:
         """Split coordinates into those of ring and rolling elements."""
@@ -107,7 +107,7 @@ class NoiseSystem(eqx.Module):
         end = k + count * self.row.element.mass.shape[-1]
         return motion[:k], motion[k:end].reshape(-1, count).T
 
-    def caged(
+    def cage_places(
         self, motion: Float[Array, " n"]
     ) -> tuple[Float[Array, " element"], Float[Array, "3"]]:
         """Return places along the pitch circle and the coordinates of the cage."""
@@ -127,7 +127,7 @@ class NoiseSystem(eqx.Module):
         even = self.row.azimuth + self.speeds[2] * time
         if self.cage is None or motion is None:
             return even
-        return even + self.caged(motion)[0] / self.row.pitch_radius
+        return even + self.cage_places(motion)[0] / self.row.pitch_radius
 
     def deviations(
         self, azimuth: Float[Array, " element"], time: Scalar
@@ -163,7 +163,7 @@ class NoiseSystem(eqx.Module):
         self, azimuth: Float[Array, " element"], time: Scalar
     ) -> ElementPositions:
         """Return positions with deviations; arguments as in `deviations`."""
-        found = ElementPositions.at(azimuth)
+        found = ElementPositions.from_azimuth(azimuth)
         deviations = self.deviations(azimuth, time)
         if deviations is None or self.errors is None:
             return found
@@ -183,12 +183,12 @@ class NoiseSystem(eqx.Module):
         if self.cage is not None:
             return None
 
-        def at(time):
+        def positions_at(time):
             return self.positions(self.azimuth(time), time)
 
-        return jax.jvp(at, (time,), (jnp.ones_like(time),))
+        return jax.jvp(positions_at, (time,), (jnp.ones_like(time),))
 
-    def _passing(self, motion, velocity, time):
+    def _cage_course(self, motion, velocity, time):
         """Return `course` of a motion with a cage."""
 
         def at(motion, time):
@@ -198,7 +198,7 @@ class NoiseSystem(eqx.Module):
 
     def _motions(self, motion, positions):
         """Return motions of both rings at the elements, and places of the elements."""
-        ring, places = self.parted(motion)
+        ring, places = self.split(motion)
         moved = (None, ring) if self.moving else (ring, None)
         outer, inner = (
             positions.motion(q, k, self.placements) for k, q in enumerate(moved)
@@ -208,7 +208,7 @@ class NoiseSystem(eqx.Module):
     def _each(self, function, motion, positions):
         """Map function(element, rings, place) over the elements at these positions."""
         outer, inner, places = self._motions(motion, positions)
-        rings = outer.stacked, inner.stacked
+        rings = outer.components, inner.components
         heights = positions.heights
         given = () if heights is None else (heights.T,)
 
@@ -225,11 +225,11 @@ class NoiseSystem(eqx.Module):
             given = self._motions(motion, positions)
             return ball_forces(self.row.element, *given, positions.heights)
 
-        def one(element, rings, place):
+        def element_forces(element, rings, place):
             on_rings, on_place = forces(element, rings, place)
             return [element.in_section(force) for force in on_rings], on_place
 
-        on_rings, on_places = self._each(one, motion, positions)
+        on_rings, on_places = self._each(element_forces, motion, positions)
         return [Section(*force.T) for force in on_rings], on_places
 
     def on_raceways(
@@ -259,7 +259,8 @@ class NoiseSystem(eqx.Module):
         azimuth = self.azimuth(time, motion)
         if deviations is not None:
             return self.resistance(
-                motion, ElementPositions.at(azimuth).with_deviations(deviations)
+                motion,
+                ElementPositions.from_azimuth(azimuth).with_deviations(deviations),
             )
         return self.resistance(motion, self.positions(azimuth, time))
 
@@ -301,7 +302,7 @@ class NoiseSystem(eqx.Module):
         """Places of the cage [m, rad], of the elements along the pitch circle [m]
         and of the guiding ring [m]; and the pitch radius [m]."""
         assert self.cage is not None  # callers check it
-        arcs, place = self.caged(motion)
+        arcs, place = self.cage_places(motion)
         guided = RINGS.index(self.cage.guiding_ring) == self.moving
         guide = motion[:2] if guided else jnp.zeros((2,), motion.dtype)
         return place, arcs, guide, self.row.pitch_radius
@@ -335,14 +336,14 @@ class NoiseSystem(eqx.Module):
         outer, inner, even, _ = self.speeds
         radius = self.row.pitch_radius
 
-        def one(element, rings, place):
-            load, cosine = element.carried(rings, place)
+        def element_traction(element, rings, place):
+            load, cosine = element.load_and_cosine(rings, place)
             diameter = element.element.diameter
             own = roll_ratio(diameter, 2.0 * radius, cosine)
             return load, radius * (orbit(own, outer, inner) - even)
 
-        load, ahead = self._each(one, motion, positions)
-        slip = ahead - self.caged(velocity)[0]
+        load, ahead = self._each(element_traction, motion, positions)
+        slip = ahead - self.cage_places(velocity)[0]
         return cage.friction * load * jnp.tanh(slip / cage.sliding_speed)
 
     def forces(
@@ -362,7 +363,7 @@ class NoiseSystem(eqx.Module):
             course: `course` at that time, if already known.
         """
         if course is None:
-            course = self._passing(motion, velocity, time)
+            course = self._cage_course(motion, velocity, time)
         positions, change = course
         given = (motion, positions), (velocity, change)
         pressed, rate = jax.jvp(self._pressed, *given)

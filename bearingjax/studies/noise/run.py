@@ -170,8 +170,8 @@ def run_noise(
     doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
     warned += tuple(doubtful)
     many = _many(task, steps, on_stage) if task.bearings else None
-    if many is not None and many.levels.failed:
-        failed = many.levels.failed
+    if many is not None and many.levels.n_failed:
+        failed = many.levels.n_failed
         words = f"{failed} of {task.bearings} random bearings were not solved"
         warned += (Warning("unsolved_bearings", words, failed, 0),)
     if many is not None and many.contributions is not None:

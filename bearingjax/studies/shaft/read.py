@@ -31,7 +31,7 @@ from ...shafts import (
     ShaftLoad,
     ShaftSystem,
 )
-from ...shafts.duty import alike
+from ...shafts.duty import align_systems
 from ..bearing.life_ratings import life_conditions
 from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
@@ -322,7 +322,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     try:
         given = [one.hours for one in cases]
         check_hours(None if None in given else given)
-        systems = alike([one.system for one in cases])
+        systems = align_systems([one.system for one in cases])
     except ValueError as error:
         where = "" if "Cases" not in str(error) else "`cases.hours`: "
         raise SceneError(f"{path.name}: {where}{error}") from error

@@ -36,7 +36,7 @@ from ...shafts.duty import case_damage
 from ...shafts.equilibrium import searched_system, system_state
 from ...shafts.heat import with_temperatures
 from ...shafts.seats import speed_of, with_preload_offsets
-from ...shafts.state import moving
+from ...shafts.state import moving_part
 from ...statics.solution import Solution
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
@@ -405,7 +405,7 @@ def _warnings(run: ShaftRun) -> Iterator[Warning]:
     if run.problem and run.duty is None:
         return
     if np.any(found.free):
-        where = moving(system, found.free)
+        where = moving_part(system, found.free)
         yield Warning(
             "free_motion",
             f"nothing holds {where}: it stays where it is; locate the shaft by a"
