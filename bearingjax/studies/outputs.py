@@ -18,7 +18,7 @@ _ENDINGS = {
 }
 
 
-def write_outputs(outputs: Iterable[tuple[Path | None, Callable]]) -> bool:
+def write_outputs(outputs: Iterable[tuple[Path | None, Callable | None]]) -> bool:
     """Write files, pairs of a path (`None`: not requested) and its writer.
 
     Reports which files of an earlier run were removed, and which failed: a failed

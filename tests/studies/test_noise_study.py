@@ -396,6 +396,10 @@ def test_a_model_by_hand_vibrates_alike(scene):
     task = read_noise(scene)
     found = run_noise(task)
     record, lines = found.analysis.record, found.analysis.spectrum
+    labelled = found.to_xarray()
+    assert labelled["band_level"].dims == ("band", "direction")
+    assert np.array_equal(labelled["frequency"], lines.frequency)
+    assert np.array_equal(labelled["mode_frequency"], found.modes.frequency)
     assert list(found.warnings) == [
         *model_warnings(task.model, task.samples, found.steps),
         *record_warnings(task.model, record, lines, task.bands),

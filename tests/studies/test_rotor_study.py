@@ -579,6 +579,10 @@ def test_run_rotor_linear_response_and_warnings(monkeypatch):
     moved = found.response.displacement
     half = 0.5 * (moved.max(axis=1) - moved.min(axis=1))
     largest = found.response.amplitude[:, 2, 1]
+    labelled = found.to_xarray()
+    amplitude = labelled["amplitude"].sel(station_freedom="uy").isel(node=2)
+    assert np.array_equal(amplitude, largest)
+    assert labelled["speed"] == found.settled.speed
     assert np.allclose(half[:, 2, 1], largest, rtol=0.01)
     text = str(rotor_report(found))
     assert "warning: static_equilibrium: the bearing on station 0 bears nothing" in text

@@ -337,6 +337,9 @@ def test_motion_in_time(written, history):
     done, numbers, _ = written("motion")
     assert done.out == f"{skid_report(history)}\n"
     assert "ring at the end, within the first orbit of the cage" in done.out
+    labelled = history.to_xarray()
+    assert labelled["peak_pressure"].dims == ("time", "ball", "contact")
+    assert labelled["contact_load"].attrs["units"] == "N"
     found = history.found
     assert numbers == skid_as_dict(history)
     assert numbers["cage_speed"][0] == 0.0 < numbers["cage_speed"][-1]

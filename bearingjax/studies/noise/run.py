@@ -3,9 +3,11 @@
 import contextlib
 import dataclasses
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import numpy as np
+from jaxtyping import Float
 
 from ...design import rows_of
 from ...noise import (
@@ -40,6 +42,7 @@ from ...noise import (
 )
 from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
+from ...numerics.labels import labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning
 from .scene import AXES, NoiseScene
@@ -69,8 +72,8 @@ class NoiseAnalysis:
 
     record: Vibration
     spectrum: Spectrum
-    level: np.ndarray
-    band_level: np.ndarray
+    level: Float[np.ndarray, " direction"]
+    band_level: Float[np.ndarray, "band direction"]
     lines: tuple[Line, ...]
     causes: tuple[tuple[str, ...], ...]
     states: ContactStates
@@ -123,6 +126,19 @@ class NoiseRun:
     def converged(self) -> bool:
         """Whether all parts were solved."""
         return self.result is Result.CONVERGED
+
+    def to_xarray(self) -> Any:
+        """Return spectrum and levels of the record and the natural modes, with "mode"
+        before their names, as an `xarray.Dataset`.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        arrays = {} if self.modes is None else labelled_fields(self.modes)
+        arrays = {f"mode_{name}": array for name, array in arrays.items()}
+        if self.analysis is not None:
+            arrays |= labelled_fields(self.analysis, "spectrum")
+        return make_dataset(arrays)
 
 
 def run_noise(

@@ -4,6 +4,7 @@ import dataclasses
 
 import jax
 import numpy as np
+from jaxtyping import Float
 
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
@@ -79,11 +80,11 @@ class RotorResponse:
     """
 
     method: str
-    frequency: np.ndarray
-    amplitude: np.ndarray
-    displacement: np.ndarray
+    frequency: Float[np.ndarray, " point"]
+    amplitude: Float[np.ndarray, "point node station_freedom"]
+    displacement: Float[np.ndarray, "point sample node station_freedom"]
     branch: Branch | None
-    event_amplitude: np.ndarray
+    event_amplitude: Float[np.ndarray, "event node station_freedom"]
     stopped: Stopped | None
     warnings: tuple[Warning, ...] = ()
 
@@ -102,10 +103,10 @@ class RotorTransient:
         stopped: Code and message, if it ends early.
     """
 
-    time: np.ndarray
-    speed: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
+    time: Float[np.ndarray, " time"]
+    speed: Float[np.ndarray, " time"]
+    displacement: Float[np.ndarray, "time node station_freedom"]
+    velocity: Float[np.ndarray, "time node station_freedom"]
     steps: int
     stopped: Stopped | None
 

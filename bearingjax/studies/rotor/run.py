@@ -13,6 +13,7 @@ from ...element import Speed
 from ...files.quantity import SceneError
 from ...life.life import Life, rating_life
 from ...life.life_warning import life_warnings
+from ...numerics.labels import to_xarray
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array
 from ...numerics.warning import Warning, warnings_of
@@ -91,6 +92,16 @@ class RotorRun:
     def converged(self) -> bool:
         """Whether all parts were solved."""
         return not self.failures
+
+    def to_xarray(self) -> Any:
+        """Return the arrays of all parts that were run as an `xarray.Dataset`; names
+        taken twice have the part before them.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        parts = "settled", "modes", "critical", "campbell", "response", "transient"
+        return to_xarray(self, *parts)
 
 
 _STAGES = {

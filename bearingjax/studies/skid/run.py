@@ -8,6 +8,7 @@ import numpy as np
 
 from ... import skid
 from ...files.quantity import SceneError
+from ...numerics.labels import Labelled, array_fields, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning
 from ...skid import conditions, rest_state, skid_warnings
@@ -56,6 +57,20 @@ class SkidRun:
     def loads_solved(self) -> bool:
         """Whether the load solve of the bearing converged."""
         return bool(self.found.solution.converged)
+
+    def to_xarray(self) -> Any:
+        """Return the motion, and of balls the state of their contacts, as an
+        `xarray.Dataset`.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        arrays = labelled_fields(self.found)
+        contacts = arrays["contact_load"].axes
+        state = {} if self.state is None else array_fields(self.state)
+        for name, values in state.items():
+            arrays[name] = Labelled.field(self.state, name, values, contacts)
+        return make_dataset(arrays)
 
 
 def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
