@@ -71,7 +71,7 @@ def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
         assert found.columns is not None
         write_table(found.columns(), path)
 
-    def sound(path):
+    def write_sound(path):
         assert found.sound is not None
         messages.append(found.sound(path))
 
@@ -81,7 +81,7 @@ def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     writers = {
         "json": lambda path: write_numbers(path, found.numbers()),
         "table": None if found.columns is None else tabulate,
-        "wav": None if found.sound is None else sound,
+        "wav": None if found.sound is None else write_sound,
         "plot": picture(next(iter(found.pictures.values()), None)),
         "drawing": picture(found.drawing),
         "report": None
@@ -102,7 +102,7 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
 
     missing: list[str] = []
 
-    def shown(name: str, draw: Draw) -> bytes | str:
+    def draw_picture(name: str, draw: Draw) -> bytes | str:
         try:
             picture = io.BytesIO()
             save(draw(), picture, format="png")
@@ -119,10 +119,10 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
         found.report if found.page is None else found.page(),
         found.inputs,
         origin,
-        {name: shown(name, draw) for name, draw in found.pictures.items()},
+        {name: draw_picture(name, draw) for name, draw in found.pictures.items()},
         found.columns() if found.table_on_page and found.columns else None,
         found.problems,
-        None if found.drawing is None else shown("Drawing", found.drawing),
+        None if found.drawing is None else draw_picture("Drawing", found.drawing),
     )
     path.write_text(page, encoding="utf-8")
     if missing:

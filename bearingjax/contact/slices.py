@@ -201,14 +201,14 @@ def compared_warnings(
             cure = f"give a larger `{narrowed}`, or none"
         words = "the contact reaches the sides of the grid; what it carries beyond them"
         one = Warning("narrow_grid", f"{words} is missing; {cure}")
-        found.append(one.of(_loads(narrow)))
+        found.append(one.about(_loads(narrow)))
     coarse = [case for case in solved if case.touches and _is_coarse(case.solution)]
     if coarse:
         words = (
             f"the contact is less than {FEW} cells wide or long; its pressures may be"
             " off by some hundredths: take more cells"
         )
-        found.append(Warning("coarse_grid", words, limit=FEW).of(_loads(coarse)))
+        found.append(Warning("coarse_grid", words, limit=FEW).about(_loads(coarse)))
     radius = 0.5 * float(contact.small_diameter)
     wide = [case for case in solved if case.half_width.max() > WIDE * radius]
     if wide:
@@ -217,7 +217,7 @@ def compared_warnings(
             " radius to each side, for both bodies to be half-spaces"
         )
         size = max(float(case.half_width.max()) for case in wide) / radius
-        found.append(Warning("wide_contact", words, size, WIDE).of(_loads(wide)))
+        found.append(Warning("wide_contact", words, size, WIDE).about(_loads(wide)))
     sharp = [case for case in solved if case.touches and case.peak_at_end]
     if sharp:
         length = 2e6 * float(sharp[0].solution.grid.half_y[0])
@@ -226,7 +226,7 @@ def compared_warnings(
             " sharp end it grows without limit as cells shrink: compare at fixed"
             " distances from the end"
         )
-        found.append(Warning("sharp_ends", words).of(_loads(sharp)))
+        found.append(Warning("sharp_ends", words).about(_loads(sharp)))
     return found
 
 

@@ -98,7 +98,7 @@ def _cells(table, name, key, kind, unit, values, lines):
         raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
     if unit is not None:
         return [f"{value.strip()} {unit}" for value in values]
-    return [_bare(value.strip()) for value in values]
+    return [_parse_value(value.strip()) for value in values]
 
 
 def _numbers(table, name, key, values, lines) -> list[float]:
@@ -117,7 +117,7 @@ def _numbers(table, name, key, values, lines) -> list[float]:
     return numbers
 
 
-def _bare(text):
+def _parse_value(text):
     for kind in (int, float):
         try:
             return as_written(kind(text), text)

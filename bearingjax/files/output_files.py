@@ -66,11 +66,11 @@ def check_outputs(
         if target.is_dir():
             raise SceneError(f"{path}: is a folder; name a file")
         for given in inputs:
-            if _same(target, given):
+            if _are_same(target, given):
                 problem = f"is read as {given.name} here; {option} would overwrite it"
                 raise SceneError(f"{path}: {problem}; name another file")
         for other, place in seen:
-            if _same(target, place):
+            if _are_same(target, place):
                 problem = f"is named by {other} and by {option}; name two files"
                 raise SceneError(f"{path}: {problem}")
         if target.exists() and not os.access(target, os.W_OK):
@@ -105,13 +105,13 @@ def write_outputs(outputs: Iterable[tuple[Path | None, Writer | None]]) -> Writt
             if not made and path.is_file():
                 stale.append(path)
         for path, temporary, target in moves:
-            with _naming(path):
+            with _name_in_errors(path):
                 os.replace(temporary, target)
     finally:
         for _, temporary, _ in moves:
             temporary.unlink(missing_ok=True)
     for path in stale:
-        with _naming(path):
+        with _name_in_errors(path):
             path.unlink()
         written.removed.append(path)
     return written
@@ -125,7 +125,7 @@ def _write_temporary(path: Path, writer: Writer, moves, written: Written) -> boo
     temporary = path if stream else target.with_name(name)
     if not stream:
         moves.append((path, temporary, target))
-    with _naming(path):
+    with _name_in_errors(path):
         try:
             writer(temporary)
         except Incomplete as error:
@@ -144,7 +144,7 @@ def _write_temporary(path: Path, writer: Writer, moves, written: Written) -> boo
 
 
 @contextlib.contextmanager
-def _naming(path: Path):
+def _name_in_errors(path: Path):
     """Add the file name to an OSError, which that of a full disk lacks."""
     try:
         yield
@@ -239,7 +239,7 @@ def _is_stream(path: Path) -> bool:
     )
 
 
-def _same(one: Path, other: Path) -> bool:
+def _are_same(one: Path, other: Path) -> bool:
     """Whether two paths are the same file, by name or by a hard link."""
     try:
         return os.path.samefile(one, other)

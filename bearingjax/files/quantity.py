@@ -169,7 +169,7 @@ def to_si(text: object, kind: str) -> float:
     if match is None:
         raise SceneError(f"{text!r} does not begin with a finite number; {wanted}")
     number, written = match[1].replace("−", "-"), match[2].strip()
-    name = _plain(written)
+    name = _plain_unit(written)
     if not name:
         raise SceneError(f"{text!r} has no unit; {wanted}")
     if re.match(r",\d", name):
@@ -182,7 +182,7 @@ def to_si(text: object, kind: str) -> float:
         if kind == "speed" and known and known[1] == {"[time]": -1}:
             raise SceneError(f"{text!r} is a frequency; give rpm, deg/s or rad/s")
         problem = f"is not {article} {kind}"
-        if known is None or known[1] == _si(kind)[1]:
+        if known is None or known[1] == _si_unit(kind)[1]:
             problem = f"has the unknown unit {written!r}"
             if kind in _UNITS:
                 wanted += f"; its units: {', '.join(_UNITS[kind].split())}"
@@ -195,7 +195,7 @@ def to_si(text: object, kind: str) -> float:
     return value
 
 
-def _plain(unit: str) -> str:
+def _plain_unit(unit: str) -> str:
     """Return a unit with one character for each of those that look alike: µ, blanks,
     dots, minus, raised digits."""
     unit = unicodedata.normalize("NFKC", unit.translate(_ALIKE)).translate(_PLAIN)
@@ -242,20 +242,22 @@ def _size(name: str, kind: str) -> float | None:
     if kind in ("moment", "tilting stiffness"):  # foot-pounds are those of force
         name = re.sub(r"\blbs?\b", "lbf", name)
     given = unit = _parse(name)
-    if given and given[1] != _si(kind)[1]:
+    if given and given[1] != _si_unit(kind)[1]:
         unit = _parse(_ANGLE.get(kind, "{}").format(name))
     is_name = re.fullmatch(f"{_LETTER}+", name)
-    listed = [_parse(_plain(known)) for known in _UNITS.get(kind, "").split()]
+    listed = [_parse(_plain_unit(known)) for known in _UNITS.get(kind, "").split()]
     if is_name and listed and given not in listed:
         return None
     if kind == "temperature" and not is_name:
         return None
-    return unit[0] / _si(kind)[0] if unit and unit[1] == _si(kind)[1] else None
+    return (
+        unit[0] / _si_unit(kind)[0] if unit and unit[1] == _si_unit(kind)[1] else None
+    )
 
 
-def _si(kind: str) -> tuple[float, dict[str, float]]:
+def _si_unit(kind: str) -> tuple[float, dict[str, float]]:
     """Return size and dimension of the unit in which a kind is counted."""
-    unit = _parse(_plain(KINDS[kind][0]))
+    unit = _parse(_plain_unit(KINDS[kind][0]))
     assert unit is not None
     return unit
 

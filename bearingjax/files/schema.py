@@ -106,7 +106,7 @@ class Key:
         return f"{value:.6g} {self.unit}".rstrip()
 
     @property
-    def allowed(self) -> str:
+    def range_words(self) -> str:
         """Range in words, such as "above 0 N"; empty without one."""
         low, high = ("least", self.least), ("most", self.most)
         if self.above is not None:
@@ -209,7 +209,7 @@ class Keys:
 
     numbers: ClassVar[Mapping[str, type]] = {}
     """Classes whose numbers may be given in the table under their field names, by the
-    key that requires them; read by `built`."""
+    key that requires them; read by `build_law`."""
 
     table: Table = dataclasses.field(repr=False, compare=False)
 
@@ -225,7 +225,7 @@ class Keys:
         }
         return {name: value for name, value in values.items() if value is not None}
 
-    def built(self, kind: type[Any]) -> Any:
+    def build_law(self, kind: type[Any]) -> Any:
         """Build an instance of a class from the numbers in the table.
 
         Args:
@@ -489,7 +489,7 @@ def _in_range(table: Table, name: str, value: Any, one: Key) -> Any:
     ):
         if not one.holds(number):
             hint = f" ({one.hint})" if one.hint else ""
-            problem = one.refusal or f"is not allowed; {one.allowed}{hint}"
+            problem = one.refusal or f"is not allowed; {one.range_words}{hint}"
             raise table.error(name, f"{one.shown_value(number)} {problem}")
     return value
 

@@ -64,7 +64,7 @@ def field_schema(field: Field) -> dict[str, Any]:
     """
     key, found = field.key, _bare_schema(field)
     goes_with = key.goes_with and f"with {key.goes_with}"
-    text = "; ".join(filter(None, (key.about, key.allowed, goes_with)))
+    text = "; ".join(filter(None, (key.about, key.range_words, goes_with)))
     found = {**found, "description": text}
     if isinstance(field.default, bool | int | str):
         found["default"] = field.default

@@ -266,7 +266,7 @@ class Table:
         """Return the table as parsed; no key is marked as read."""
         return dict(self._data)
 
-    def completed(self, values: Mapping[str, Any]) -> "Table":
+    def with_values(self, values: Mapping[str, Any]) -> "Table":
         """Return a table with other values that replaces this one for their keys."""
         self._asked += values
         child = Table(values, self._file, self._path)
@@ -323,14 +323,16 @@ class Table:
         """Return all values read here and below, as written in a scene: quantities in
         SI with their unit, defaults filled in, without skipped keys."""
 
-        def plain(value):
+        def to_plain(value):
             if isinstance(value, Table):
                 return value.echo()
             if isinstance(value, Mapping):
-                return {key: plain(inner) for key, inner in value.items()}
-            return [plain(one) for one in value] if isinstance(value, list) else value
+                return {key: to_plain(inner) for key, inner in value.items()}
+            return (
+                [to_plain(one) for one in value] if isinstance(value, list) else value
+            )
 
-        found = {key: plain(value) for key, value in self._read.items()}
+        found = {key: to_plain(value) for key, value in self._read.items()}
         if self._stand_in is not None:
             found |= self._stand_in.echo()
         return {k: value for k, value in found.items() if value not in (None, {})}

@@ -39,7 +39,7 @@ class Warning(str):
         """Arguments from which copies and unpickled warnings are made."""
         return self.kind, self.words
 
-    def of(self: Own, name: str) -> Own:
+    def about(self: Own, name: str) -> Own:
         """Return the warning as one about a named part, which begins its sentence.
 
         Args:
@@ -66,7 +66,7 @@ def warnings_of(name: str, warnings: Iterable[Warning]) -> list[Warning]:
         name: Name of the part, such as a bearing of a machine.
         warnings: Its warnings.
     """
-    return [one.of(name) for one in warnings]
+    return [one.about(name) for one in warnings]
 
 
 @dataclasses.dataclass(frozen=True)

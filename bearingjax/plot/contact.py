@@ -77,7 +77,7 @@ def contact_map(solution: ContactSolution, ax: Ax = None) -> Axes:
         The axes; the colour bar is next to it.
     """
     ax = axes_or_new(ax, (9.0, 4.0))
-    x, pressure = _whole(solution)
+    x, pressure = _unfold(solution)
     grid = solution.grid
     edges = 1e3 * np.asarray(grid.edges)
     cell = 1e6 * float(grid.half_x)
@@ -128,7 +128,7 @@ def contact_surface(
         ax = figure.add_axes((0.0, 0.05, 0.95, 0.92), projection="3d")
     if ax.name != "3d":
         raise ValueError('contact_surface needs axes of subplot(projection="3d").')
-    x, pressure = _whole(solution)
+    x, pressure = _unfold(solution)
     top, cut = scale(solution, pressure.max(axis=0))
     y = 1e3 * np.asarray(solution.grid.y)
     touched = np.flatnonzero(pressure.max(axis=1) > 0)
@@ -164,7 +164,7 @@ def contact_surface(
     return ax
 
 
-def _whole(solution):
+def _unfold(solution):
     """Return cell centres across (m,) [m], and pressure on both sides (m, n) [MPa]."""
     grid = solution.grid
     x = (

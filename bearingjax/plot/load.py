@@ -208,7 +208,7 @@ def load_displacement(
     of = Axis(f"displacement {freedom}", MOTION_UNITS[FREEDOMS.index(freedom)])
     inner, look = COLOURS["inner"], {"marker": "o", "markersize": 4}
 
-    def lost(ax):
+    def mark_failed(ax):
         if not np.all(good):
             ax.plot(
                 over.scale * x[~good], np.full(np.count_nonzero(~good), 0.02), "x",
@@ -217,7 +217,7 @@ def load_displacement(
             ax.legend(fontsize=SMALL)
 
     known = Curve(x, np.where(good, y, np.nan), "", inner, look=look)
-    return Panel("Displacement against load", over, of, [known], also=lost)
+    return Panel("Displacement against load", over, of, [known], also=mark_failed)
 
 
 @chart

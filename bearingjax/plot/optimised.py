@@ -66,7 +66,7 @@ def optimised(found: Optimised, title: str = "") -> Figure:
     panels = {"h": _history(found)}
     panels["c"] = _each_bearing(found) if shafts else _cases(found)
     if rollers:
-        case, roller, raceway = worst(found.before.solution)
+        case, roller, raceway = worst_contact(found.before.solution)
         panels |= {"p": _profiles(found, roller, raceway), "a": _pressures(found, case)}
     for name, panel in panels.items():
         panel.draw(axes[name])
@@ -86,7 +86,7 @@ def _of_bearings(found):
     )
 
 
-def worst(solution: Any) -> tuple[int, int, int]:
+def worst_contact(solution: Any) -> tuple[int, int, int]:
     """Return case, rolling element and raceway of the highest pressure of rollers.
 
     Args:
@@ -121,19 +121,19 @@ def _profiles(found, roller, raceway) -> Panel:
         limit = max(limit, min(float(drop.max()), 3.0 * float(drop[near].max())))
     limit = 1e6 * limit or 1.0
 
-    def down(ax):
+    def flip(ax):
         ax.set_ylim(1.1 * limit, -0.1 * limit)
         ax.margins(x=0)
 
     title = f"Profile of roller and {ring} raceway"
-    return Panel(title, ALONG, Axis("drop", "m"), marks, also=down)
+    return Panel(title, ALONG, Axis("drop", "m"), marks, also=flip)
 
 
 def _pressures(found, case) -> Panel:
     """Return the pressure along the most loaded roller, in one case."""
     marks = []
     for side, outcome in (("before", found.before), ("after", found.after)):
-        one = _one(outcome.solution, case)
+        one = _case(outcome.solution, case)
         pressure = np.asarray(one.contact_pressure)
         peaks = np.asarray(one.roller_pressure)
         roller, raceway = np.unravel_index(np.argmax(peaks), peaks.shape)
@@ -248,5 +248,5 @@ def _history(found) -> Panel:
     )  # fmt: skip
 
 
-def _one(solution, case):
+def _case(solution, case):
     return jax.tree.map(lambda leaf: leaf[case], solution)

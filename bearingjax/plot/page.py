@@ -97,7 +97,7 @@ def _results(solution):
     count = len(solution_warnings(solution))
     return (
         "inner against outer ring:  "
-        f"u = ({_three(1e6 * shift)}) µm,  γ = ({_three(1e3 * tilt)}) mrad",
+        f"u = ({_join(1e6 * shift)}) µm,  γ = ({_join(1e3 * tilt)}) mrad",
         f"largest {element} load {force_text(load[roller, ring])} at {azimuth:.4g}°,  "
         f"largest pressure {1e-6 * pressure.max():.4g} MPa,  "
         f"{np.count_nonzero(np.asarray(solution.load_zone))} of {len(load)} {element}s"
@@ -105,5 +105,5 @@ def _results(solution):
     )
 
 
-def _three(values):
+def _join(values):
     return ", ".join(f"{v:.4g}" for v in np.where(np.abs(values) < 5e-7, 0.0, values))

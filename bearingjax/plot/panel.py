@@ -37,7 +37,7 @@ class Axis:
     shown: tuple[float, str] | None = None
 
     @classmethod
-    def of(
+    def from_field(
         cls, result: Any, field: str, shown: tuple[float, str] | None = None
     ) -> "Axis":
         """Return the axis of a field of a result, with the unit of its metadata."""
@@ -49,14 +49,14 @@ class Axis:
         return (self.shown or display_unit(self.unit))[0]
 
     @property
-    def displayed(self) -> str:
+    def shown_unit(self) -> str:
         """Displayed unit."""
         return (self.shown or display_unit(self.unit))[1]
 
     @property
     def label(self) -> str:
         """Name and displayed unit."""
-        return f"{self.name} [{self.displayed}]" if self.displayed else self.name
+        return f"{self.name} [{self.shown_unit}]" if self.shown_unit else self.name
 
 
 ALONG = Axis("position along the roller", "m", MM)

@@ -74,12 +74,12 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         if place + 1 == across or k + 1 == len(shown):
             zone_legend(ax, list(named.values()), list(named))
     if warm:
-        _warming(figure.add_subplot(grid[n_shafts + rows, :]), run)
+        _draw_warm_up(figure.add_subplot(grid[n_shafts + rows, :]), run)
     head(figure, ", ".join(filter(None, (title or "Shafts", run.shown_case))))
     return figure
 
 
-def _warming(ax, run):
+def _draw_warm_up(ax, run):
     """Plot the temperatures of rings and housing over time."""
     for k, (name, warm) in enumerate(run.warm_nodes.items()):
         style = "--" if name.endswith("outer") else "-"

@@ -156,13 +156,13 @@ def power_bars(found: SteadySkid | SteadyRollerSkid, ax: Ax = None) -> Panel:
     }
     heights, colours = zip(*bars.values(), strict=True)
 
-    def small(ax):
+    def shrink(ax):
         ax.tick_params(axis="x", labelsize=SMALL)
         ax.margins(y=0.12)
 
     return Panel(
         "Power of the drive, and where it goes", Axis(""), Axis("power", "W"),
-        [Bars(heights, "", colours, labels="%.3g")], names=list(bars), also=small,
+        [Bars(heights, "", colours, labels="%.3g")], names=list(bars), also=shrink,
     )  # fmt: skip
 
 
@@ -198,7 +198,7 @@ def cage_speed(
         Curve(load, speed, label or "with slip", colour, "o-", {"markersize": 4}),
         Curve(load, rolling, "pure rolling", colour, "--", {"linewidth": 1}),
     ]
-    of = Axis.of(found, "cage_speed", (1.0, "rad/s"))
+    of = Axis.from_field(found, "cage_speed", (1.0, "rad/s"))
     return Panel("Cage speed over the load", Axis("load", "N", NEWTONS), of, marks)
 
 

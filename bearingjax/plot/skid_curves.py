@@ -80,7 +80,7 @@ def spin_over_time(found: History, ax: Ax = None, *, ball: int = 0) -> Panel:
 def load_over_time(found: History, ax: Ax = None, *, ball: int = 0) -> Panel:
     """Plot contact loads of a ball [N]."""
     load = by_raceway(found.contact_load, found.contact_load)[:, ball]
-    of = Axis.of(found, "contact_load", NEWTONS)
+    of = Axis.from_field(found, "contact_load", NEWTONS)
     title = f"Load on {_kind(found)} {ball}"
     return _over_time(found, title, of, _raceways(found.time, load), floor=True)
 
@@ -101,7 +101,7 @@ def cage_force_over_time(found: History, ax: Ax = None) -> Panel:
         Curve(found.time, force.max(axis=1), "pushed most", OUTER),
         Curve(found.time, force.min(axis=1), "held back most", INNER),
     ]
-    of = Axis.of(found, "cage_force", NEWTONS)
+    of = Axis.from_field(found, "cage_force", NEWTONS)
     return _over_time(found, f"Force of the cage on a {_kind(found)}", of, marks)
 
 
@@ -209,8 +209,8 @@ def sliding_spectrum(
 @chart
 def load_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     """Plot contact loads [N] against azimuth [deg], zones B and D shaded."""
-    of = Axis.of(found, "contact_load", NEWTONS)
-    marks = _both(found, found.contact_load)
+    of = Axis.from_field(found, "contact_load", NEWTONS)
+    marks = _raceway_curves(found, found.contact_load)
     note = "\nB, D: more load than by the axial load alone" if zones(found) else ""
     return _over_orbit(found, "Load", of, marks, note=note, floor=True)
 
@@ -223,7 +223,7 @@ def sliding_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     """
     slip = Curve(*_close_circle(found, found.slip), "orbit slip", GREY, ":")
     title = "Sliding in the middle of the contacts"
-    marks = _both(found, found.sliding_speed)
+    marks = _raceway_curves(found, found.sliding_speed)
     twin = _over_orbit(found, "", _SLIP, [slip])
     return _over_orbit(found, title, _SLIDING, marks, twin=twin, floor=True)
 
@@ -246,7 +246,7 @@ def spin_over_orbit(found: Steady, ax: Ax = None) -> Panel:
 @chart
 def heat_over_orbit(found: Steady, ax: Ax = None) -> Panel:
     """Plot heat of the contacts [W] against azimuth [deg]."""
-    marks, of = _both(found, found.heat), Axis.of(found, "heat")
+    marks, of = _raceway_curves(found, found.heat), Axis.from_field(found, "heat")
     return _over_orbit(found, "Heat of the contacts", of, marks, floor=True)
 
 
@@ -255,11 +255,11 @@ def cage_force_over_orbit(found: SteadyRollerSkid, ax: Ax = None) -> Panel:
     """Plot the force of the cage on a roller [N] against azimuth [deg]."""
     label = "above zero: pushed forwards"
     marks = [Curve(*_close_circle(found, found.cage_force), label, ROLLER)]
-    of = Axis.of(found, "cage_force", NEWTONS)
+    of = Axis.from_field(found, "cage_force", NEWTONS)
     return _over_orbit(found, "Force of the cage on a roller", of, marks)
 
 
-def _both(found, values) -> list[Curve]:
+def _raceway_curves(found, values) -> list[Curve]:
     return _raceways(*_close_circle(found, by_raceway(values, found.contact_load)))
 
 
@@ -277,7 +277,7 @@ def _over_orbit(found, title, of, marks, *, note="", **more: Any) -> Panel:
     twin = more.get("twin")
     count = len(marks) + (0 if twin is None else len(twin.marks))
 
-    def shaded(ax):
+    def shade(ax):
         parts = zones(found)
         ax.set_title(title, pad=_PAD if parts else None)
         ax.set_xlabel(f"{_AZIMUTH.label}{note}")
@@ -287,7 +287,7 @@ def _over_orbit(found, title, of, marks, *, note="", **more: Any) -> Panel:
 
     return Panel(
         title, _AZIMUTH, of, marks, (0.0, 360.0), room=0.14,
-        legend={"loc": "upper center", "ncols": count}, also=shaded, **more,
+        legend={"loc": "upper center", "ncols": count}, also=shade, **more,
     )  # fmt: skip
 
 

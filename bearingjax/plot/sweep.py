@@ -49,8 +49,8 @@ def sweep_overview(
     names = list(found)
     split = names.index("result")
     good = solved.converged
-    inputs = _varying({name: found[name] for name in names[:split]}, good)
-    results = _varying({name: found[name] for name in names[split + 1 :]}, good)
+    inputs = _varying_columns({name: found[name] for name in names[:split]}, good)
+    results = _varying_columns({name: found[name] for name in names[split + 1 :]}, good)
     results = {
         name: values
         for name, values in results.items()
@@ -97,7 +97,7 @@ def sweep_overview(
     return figure
 
 
-def _varying(found, good) -> dict[str, np.ndarray]:
+def _varying_columns(found, good) -> dict[str, np.ndarray]:
     """Columns of numbers that differ over the cases by more than round-off, which is
     told from the largest number of their unit."""
     kept, largest = {}, {}

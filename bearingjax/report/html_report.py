@@ -256,7 +256,7 @@ def _format_value(value: Any) -> str:
 def _table(found: Mapping[str, np.ndarray]) -> str:
     """Format the first rows of a table."""
     count = max(map(len, found.values()), default=0)
-    head = "".join(f'<th scope="col">{_breakable(header)}</th>' for header in found)
+    head = "".join(f'<th scope="col">{_break_words(header)}</th>' for header in found)
     rows = [
         "<tr>" + "".join(f"<td>{escape(_cell(x))}</td>" for x in row) + "</tr>"
         for row in zip(*(v[:MOST_ROWS] for v in found.values()), strict=True)
@@ -269,7 +269,7 @@ def _table(found: Mapping[str, np.ndarray]) -> str:
     return _section("Table", f'{note}<div class="scroll">{table}</div>', "wide")
 
 
-def _breakable(name: str) -> str:
+def _break_words(name: str) -> str:
     """Allow line breaks between the words of a name."""
     return escape(name).replace("_", "_<wbr>").replace(".", ".<wbr>")
 

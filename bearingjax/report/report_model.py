@@ -178,7 +178,7 @@ class Report:
         warned = "".join(f"\nwarning: {text}" for text in self.warnings)
         return f"\n{RULE}\n".join(texts) + warned
 
-    def only(self, titles: Sequence[str]) -> "Report":
+    def with_sections(self, titles: Sequence[str]) -> "Report":
         """Return the report with some of its sections.
 
         Args:

@@ -33,7 +33,7 @@ def load_doubts(system: ShaftSystem, loads: Any) -> Iterator[Warning]:
         if idle.size:
             where = _where(idle, len(loads))
             words = f"it bears nothing{where}; it may skid"
-            yield Warning("idle_bearing", words).of(seat.name)
+            yield Warning("idle_bearing", words).about(seat.name)
         if seat.preload is not None:
             kept = np.array([axial_load(system, k, load) for load in loads[:, k]])
             lost = np.flatnonzero(kept < _LOST * float(seat.preload))
@@ -44,7 +44,7 @@ def load_doubts(system: ShaftSystem, loads: Any) -> Iterator[Warning]:
                     f" of {least:.4g} N{_where(lost, len(loads))}: the preload is lost"
                     " to loads or heat"
                 )
-                yield Warning("lost_preload", words, least).of(seat.name)
+                yield Warning("lost_preload", words, least).about(seat.name)
     yield from _located_twice(system)
 
 

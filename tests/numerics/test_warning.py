@@ -35,7 +35,7 @@ def test_warning_of_a_part_begins_with_its_name():
     (one,) = warnings_of("fan", [Warning("hot", "the oil is hot", 90.0, 80.0, "sump")])
     assert one == "fan: the oil is hot"
     assert (one.kind, one.size, one.where) == ("hot", 90.0, "fan: sump")
-    assert Warning("hot", "the oil is hot").of("fan").where == "fan"
+    assert Warning("hot", "the oil is hot").about("fan").where == "fan"
 
 
 def test_kind_shows_size_and_limit_in_its_unit():

@@ -539,9 +539,9 @@ def test_stiffness_over_speed():
 
 def test_chart_axes_have_units_of_fields(solution):
     """The numbers of a panel are in SI; its axes know the units of the result."""
-    load = Axis.of(solution, "roller_load")
+    load = Axis.from_field(solution, "roller_load")
     assert (load.label, load.scale) == ("roller load [kN]", 1e-3)
-    assert Axis.of(solution, "azimuth", (1.0, "rad")).label == "azimuth [rad]"
+    assert Axis.from_field(solution, "azimuth", (1.0, "rad")).label == "azimuth [rad]"
     assert Axis("count").label == "count"
     shown: Any = plot.load_displacement
     panel = shown.panel([1e3, 2e3], [1e-6, 2e-6])

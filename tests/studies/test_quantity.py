@@ -150,10 +150,10 @@ def test_numbers_in_messages_have_units_of_scenes():
         assert to_si(text, kind) == pytest.approx(value, rel=ROUNDING)
     assert scene_number(500.0, "force", 2e3) == "0.5 kN"
     length = Key("", "length", least=0.0, below=1e-4)
-    assert length.allowed == "from 0 to below 0.1 mm"
+    assert length.range_words == "from 0 to below 0.1 mm"
     assert length.shown_value(2.0) == "2000 mm"
     assert Key("", "temperature", most=50).shown_value(60.0) == "60 °C"
-    assert Key("", above=0).allowed == "above 0"
+    assert Key("", above=0).range_words == "above 0"
 
 
 REFUSED = {

@@ -81,5 +81,7 @@ def test_inputs_are_rounded_but_for_integers():
 
 
 def test_report_only_selects_sections():
-    report = Report({"a": ["first"], "b": ["second"]}, ["odd"]).only(("b", "none"))
+    report = Report({"a": ["first"], "b": ["second"]}, ["odd"]).with_sections(
+        ("b", "none")
+    )
     assert str(report) == "second\nwarning: odd"

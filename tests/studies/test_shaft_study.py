@@ -14,7 +14,7 @@ from runs import SEARCH, WORDS, Runs, Study
 import bearingjax as bj
 from bearingjax.files import SceneError
 from bearingjax.numerics.result import Result
-from bearingjax.plot.shafts import _warming
+from bearingjax.plot.shafts import _draw_warm_up
 from bearingjax.report.report_model import Grid
 from bearingjax.shafts import DutyResult
 from bearingjax.studies.shaft.output import shaft_columns
@@ -348,7 +348,7 @@ def test_warming_up_is_shown(tmp_path):
     assert isinstance(grid, Grid) and grid.title.startswith("warming up")
     assert [column.name for column in grid.columns][1:] == [*run.warm_nodes]
     _, ax = plt.subplots()
-    _warming(ax, run)
+    _draw_warm_up(ax, run)
     names = ["A inner", "A outer", "B inner", "B outer"]
     assert [line.get_label() for line in ax.lines] == names
     drawn = np.asarray(ax.lines[1].get_xydata())

@@ -128,7 +128,7 @@ def _page(strips):
 
 def _set_strips(bearing):
     """Return strips of the arrangement and of each different bearing."""
-    kinds = _different([row.bearing for row in bearing.rows])
+    kinds = _distinct([row.bearing for row in bearing.rows])
     turned = [
         row
         for one, rows in kinds
@@ -145,12 +145,12 @@ def _set_strips(bearing):
     return strips
 
 
-def _different(bearings):
+def _distinct(bearings):
     """Return each bearing with its rows, ignoring the first azimuth."""
     kinds: list[tuple[Any, list[int]]] = []
     for row, bearing in enumerate(bearings):
         for one, rows in kinds:
-            if _alike(one, bearing):
+            if _looks_alike(one, bearing):
                 rows.append(row)
                 break
         else:
@@ -158,7 +158,7 @@ def _different(bearings):
     return kinds
 
 
-def _alike(one, other):
+def _looks_alike(one, other):
     if type(one) is not type(other):
         return False
     turned = eqx.tree_at(lambda b: b.first_azimuth, other, one.first_azimuth)

@@ -92,7 +92,7 @@ def _barrel(ax, bearing, parts):
     names = "roller_profile_radius", "outer_raceway_radius", "inner_raceway_radius"
     for name, k, share in zip(names, (1, 0, 1), (0.8, 0.8, 0.2), strict=True):
         wall = parts.raceways[k, round(share * (parts.raceways.shape[1] - 1))]
-        start = wall - 0.3 * parts.diameter * _outwards(parts, k)
+        start = wall - 0.3 * parts.diameter * _normal(parts, k)
         ax.annotate("", tuple(wall), tuple(start), arrowprops=arrow, zorder=6)
         text = label(bearing, name)
         if getattr(bearing, name) is None:
@@ -106,13 +106,13 @@ def _barrel(ax, bearing, parts):
     if hasattr(bearing, "profile_offset"):
         back = parts.axis.mean(axis=0) - parts.axis[0]
         back *= -1e3 * float(bearing.profile_offset) / np.linalg.norm(back)
-        at, aside = parts.centre, -0.25 * parts.diameter * _outwards(parts, 0)
+        at, aside = parts.centre, -0.25 * parts.diameter * _normal(parts, 0)
         if back.any():
             at = between(ax, parts.centre, parts.centre + back, aside)
         yield Label(label(bearing, "profile_offset"), at)
 
 
-def _outwards(parts, k):
+def _normal(parts, k):
     """Return the normal of a raceway in the middle, from the roller to the ring."""
     g = parts.generators[k]
     return (1.0, -1.0)[k] * np.array([-g[1], g[0]])
@@ -152,7 +152,7 @@ def roller_clearance_view(
     apart = (times - 1.0) * gap
     corners = roller_row(ax, parts, apart=apart)
     for k in range(2):
-        way = _outwards(parts, k)
+        way = _normal(parts, k)
         wall = parts.centre + (0.5 * parts.diameter + gap) * way
         near, far = wall - gap * way, wall + apart * way
         if gap != 0.0:
@@ -193,7 +193,7 @@ def rib_view(
     ax.fill(*parts.roller.T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4)
     # Along the face of the rib, from the raceway on.
     rise = np.array([-away[1], away[0]])
-    rise *= -np.sign(rise @ _outwards(parts, ring))
+    rise *= -np.sign(rise @ _normal(parts, ring))
     point = point - gap * away  # of the roller
     face = point + times * gap * away
     foot, top = face - height * rise, face + 0.7 * reach * rise

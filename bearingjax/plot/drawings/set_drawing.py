@@ -52,11 +52,11 @@ def arrangement_view(
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
             zorder=7,
         )
-        _push(ax, row, (middle, low + 0.08 * tall), 0.1 * tall)
+        _draw_push(ax, row, (middle, low + 0.08 * tall), 0.1 * tall)
     depth = _positions(ax, bearing, low, 0.13 * tall)
     ax.plot([0.0, 0.0], [depth, high + 0.1 * tall], **AXIS)
     # The words stand below the view.
-    texts = [_words(row, k, k in turned) for k, row in enumerate(bearing.rows)]
+    texts = [_row_labels(row, k, k in turned) for k, row in enumerate(bearing.rows)]
     block = _APART + max(width(text) for text in texts)
     across = max(1, int(size[0] // block))
     lines = 1 + max(text.count("\n") for text in texts)
@@ -100,16 +100,16 @@ def _positions(ax, bearing, low, step):
             down -= step
             place, below = side * far, np.array([0.0, down - low])
             between(ax, (0.0, low), (place, low), below)
-            _beside(ax, bearing, k, (place, down), side)
+            _write_position(ax, bearing, k, (place, down), side)
         depth = min(depth, down)
     for k, row in enumerate(bearing.rows):
         if float(row.position) == 0.0:
             depth -= step
-            _beside(ax, bearing, k, (0.0, depth), 1.0)
+            _write_position(ax, bearing, k, (0.0, depth), 1.0)
     return depth - 0.5 * step
 
 
-def _beside(ax, bearing, k, at, side):
+def _write_position(ax, bearing, k, at, side):
     """Write the position of a row at the end of its dimension line."""
     ax.annotate(
         label(bearing.rows[k], "position", f"rows.{k}."),
@@ -124,7 +124,7 @@ def _beside(ax, bearing, k, at, side):
     )
 
 
-def _push(ax, row, at, half):
+def _draw_push(ax, row, at, half):
     """Draw an arrow on an inner ring with an offset."""
     if float(row.inner_offset) == 0.0:
         return
@@ -133,7 +133,7 @@ def _push(ax, row, at, half):
     ax.annotate("", at + way, at - way, arrowprops=arrow, zorder=6)
 
 
-def _words(row, k, turned):
+def _row_labels(row, k, turned):
     """Return the labels of a row other than its position."""
     name = f"rows.{k}."
     note = "" if float(row.inner_offset) == 0.0 else ", arrow not to scale"
@@ -163,13 +163,13 @@ def _draw(ax, row, bearing):
 
         return ball_row(ax, part, place, reach)
 
-    def turned(points):
+    def mirror(points):
         return np.asarray(points) * np.array([sign, 1.0]) + np.array(
             [1e3 * float(row.position), 0.0]
         )
 
     behind = _is_crossed(bearing) and row is not bearing.rows[0]
-    return roller_row(ax, section(part), turned, behind=behind)
+    return roller_row(ax, section(part), mirror, behind=behind)
 
 
 def _is_crossed(bearing):

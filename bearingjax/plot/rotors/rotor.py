@@ -78,7 +78,7 @@ def _shaft(ax, stations, outer, bore):
             )
 
 
-def _at(outer, station):
+def _radius_at(outer, station):
     """Return the larger radius of the segments adjacent to a station [mm]."""
     return float(outer[max(station - 1, 0) : station + 1].max())
 
@@ -87,7 +87,7 @@ def _part(ax, rotor, part, stations, outer):
     """Draw a disc or a point mass; return its largest radius."""
     from matplotlib.patches import Circle
 
-    z, radius = stations[part.station], _at(outer, part.station)
+    z, radius = stations[part.station], _radius_at(outer, part.station)
     given = rotor.shaft.material
     material = (
         given[min(part.station, len(given) - 1)] if isinstance(given, tuple) else given
@@ -112,7 +112,7 @@ def _part(ax, rotor, part, stations, outer):
 
 def _support(ax, support, stations, outer, size):
     """Draw a bearing and its housing or ground; return the largest radius below."""
-    z, radius = stations[support.station], _at(outer, support.station)
+    z, radius = stations[support.station], _radius_at(outer, support.station)
     if isinstance(support, BearingSupport):
         outside = draw_bearing(ax, support, z)
     elif hasattr(support, "law"):

@@ -140,6 +140,6 @@ def waterfall(
     ax.set_ylim(*ends)
     ax.set_xlabel("frequency [Hz]")
     ax.set_ylabel(SPEED.label)
-    said = f"{largest:.3g} {of.displayed}"
+    said = f"{largest:.3g} {of.shown_unit}"
     ax.set_title(f"Spectra over the speed, largest line {said}")
     return ax

@@ -92,9 +92,9 @@ def _response(run) -> list[Callable]:
 
 def _transient(run) -> list[Callable]:
     found, task = run.transient, run.task.transient
-    if found is None or found.reached < 2:
+    if found is None or found.n_reached < 2:
         return []
-    n = int(found.reached)
+    n = int(found.n_reached)
     time, speed = np.asarray(found.time)[:n], np.asarray(found.speed)[:n]
     freedom = STATION_FREEDOMS.index(task.coordinate)
     station = np.asarray(found.displacement)[:n, task.station]
@@ -112,12 +112,12 @@ def _transient(run) -> list[Callable]:
 
         return [*drawn, paths]
 
-    def rising(ax):
+    def draw_run_up(ax):
         speed_curve(
             *envelope(time, speed, motion), ax, unit=unit, names=(name,), title="Run-up"
         )
 
-    drawn.append(rising)
+    drawn.append(draw_run_up)
     if n >= _LEAST_TIMES:
         spectra = spectra_over_time(time, speed, motion)
         drawn.append(lambda ax: waterfall(spectra, ax, unit=unit))

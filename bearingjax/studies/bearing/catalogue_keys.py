@@ -63,7 +63,7 @@ class FromCatalogue:
     overridden: tuple[str, ...]
 
     @property
-    def rerated(self) -> tuple[str, ...]:
+    def rerated_keys(self) -> tuple[str, ...]:
         """Overridden keys on which load ratings depend: the published ones are void."""
         fields = {**ROLLERS, **BALLS}[self.entry.type].rated_fields
         return tuple(key for key in self.overridden if key in fields)
@@ -74,11 +74,11 @@ class FromCatalogue:
         Args:
             row: The row as the scene has it.
         """
-        if self.rerated:
+        if self.rerated_keys:
             return row
         return with_published(row, self.entry.ratings_for(row))
 
-    def varied(self, keys: Iterable[str]) -> "FromCatalogue":
+    def override(self, keys: Iterable[str]) -> "FromCatalogue":
         """Mark further scene keys, such as "bearing.n_balls", as overridden."""
         given = [key.split(".")[1] for key in keys if key.startswith("bearing.")]
         names = dict.fromkeys((*self.overridden, *given))
@@ -142,7 +142,7 @@ def same_key(entry: CatalogueEntry, key: str, value: Any) -> bool:
         value: Value as written in the scene.
     """
     own = as_keys({key: entry.design.get(key)})[key]
-    return _same(value, own) or _same(value, _fill_defaults(entry).get(key))
+    return _are_equal(value, own) or _are_equal(value, _fill_defaults(entry).get(key))
 
 
 _FILLED: dict[str, dict[str, Any]] = {}
@@ -157,10 +157,12 @@ def _fill_defaults(entry: CatalogueEntry) -> dict[str, Any]:
     return _FILLED[entry.designation]
 
 
-def _same(value: Any, own: Any) -> bool:
+def _are_equal(value: Any, own: Any) -> bool:
     """Whether two scene values are equal, such as "7.94 mm" and "0.00794 m"."""
     if isinstance(value, Mapping) and isinstance(own, Mapping):
-        return set(value) == set(own) and all(_same(value[k], own[k]) for k in value)
+        return set(value) == set(own) and all(
+            _are_equal(value[k], own[k]) for k in value
+        )
     if value == own or not (isinstance(value, str) and isinstance(own, str)):
         return value == own
     for kind in ("length", "angle"):

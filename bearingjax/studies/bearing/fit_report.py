@@ -83,16 +83,16 @@ def _microns(name, values):
 def _seats(found) -> Grid:
     """Tabulate interference and pressure of both seats."""
 
-    def both(state, what):
+    def of_seats(state, what):
         return [getattr(state, f"{seat}_{what}") for seat in seats]
 
     seats = "shaft", "housing"
-    pressure = both(found.operating, "pressure")
+    pressure = of_seats(found.operating, "pressure")
     return Grid(
         [
             Column("", seats),
-            _microns("interference mounted", both(found.mounted, "interference")),
-            _microns("operating", both(found.operating, "interference")),
+            _microns("interference mounted", of_seats(found.mounted, "interference")),
+            _microns("operating", of_seats(found.operating, "interference")),
             Column("pressure operating", pressure, "Pa", ".4g"),
         ]
     )

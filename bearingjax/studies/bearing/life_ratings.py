@@ -78,7 +78,10 @@ def why_not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
     """
     if scene.catalogue is None:
         return []
-    entry, changed = scene.catalogue.entry, scene.catalogue.varied(varied).rerated
+    entry, changed = (
+        scene.catalogue.entry,
+        scene.catalogue.override(varied).rerated_keys,
+    )
     if entry.dynamic_capacity is None:
         if scene.life is not None and scene.life.dynamic_capacity is not None:
             return []

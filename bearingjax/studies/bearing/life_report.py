@@ -115,7 +115,7 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
         f"static safety C0/P0 {life_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
         *limits(solution, life),
-        turning(life.turns_against_load, solution.speed is None),
+        describe_turning(life.turns_against_load, solution.speed is None),
     ]
 
 
@@ -163,7 +163,7 @@ def limits(solution: Solution, life: Life) -> list[str]:
     return [words]
 
 
-def turning(turns: Any, at_rest: bool) -> str:
+def describe_turning(turns: Any, at_rest: bool) -> str:
     """Describe which rings rotate relative to the load, or are assumed to at rest.
 
     Args:

@@ -72,7 +72,7 @@ def read_oil(table: Table) -> tuple[Oil, tuple[str, ...]]:
     """
     keys = read_keys(LubricantKeys, table)
     known = keys.temperature, keys.supply, keys.roughness
-    return Oil(keys.called, keys.oil(), *known), keys.assumed
+    return Oil(keys.oil_name, keys.oil(), *known), keys.assumed
 
 
 def oil_facts(
@@ -85,7 +85,7 @@ def oil_facts(
         solution: Converged solution.
         catalogue: Catalogue entry of the bearing's designation.
     """
-    if solution.speed is None or float(_turning(solution)) == 0.0:
+    if solution.speed is None or float(_relative_speed(solution)) == 0.0:
         return None
     numbers = jax.tree.map(jnp.asarray, solution)
     rough = None if oil.roughness is None else as_array(oil.roughness, float)
@@ -100,7 +100,7 @@ def oil_facts(
     return jax.device_get(_facts(numbers, oil.lubricant, temperature, *known))
 
 
-def _turning(solution):
+def _relative_speed(solution):
     return np.asarray(solution.speed.inner) - np.asarray(solution.speed.outer)
 
 

@@ -83,7 +83,7 @@ def read_machine_bearing(
         found = scene_of(data, path, (), (*inside, *other_keys), places)
         known[mark] = dataclasses.replace(found, name=name)
     scene = known[mark]
-    for key, value in echoed(scene.inputs).items():
+    for key, value in bearing_inputs(scene.inputs).items():
         table.fill(key, value)
     for key in _COMMON:
         if key in own:
@@ -91,7 +91,7 @@ def read_machine_bearing(
     return scene
 
 
-def echoed(inputs: Mapping[str, Any]) -> dict[str, Any]:
+def bearing_inputs(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Convert the inputs of a scene to those of one [bearings.NAME].
 
     Args:

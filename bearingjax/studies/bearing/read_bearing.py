@@ -107,7 +107,7 @@ def _complete(
     if found is None:
         return table
     table.skip("designation")
-    whole = table.completed(found[0])
+    whole = table.with_values(found[0])
     # The echo states whose ratings apply, and the clearance.
     whole.fill("designation", found[1].entry.designation)
     return whole

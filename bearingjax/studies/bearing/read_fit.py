@@ -219,7 +219,7 @@ class FitKeys(Keys):
             raise self.table.error("ring_roughness", problem)
 
 
-def _warm(part: str) -> Any:
+def _temperature_key(part: str) -> Any:
     return scene_key(
         f"temperature of the {part}",
         "temperature",
@@ -240,11 +240,11 @@ class TemperatureKeys(Keys):
         least=_COLDEST,
         most=_HOTTEST,
     )
-    shaft: float | None = _warm("shaft")
-    inner_ring: float | None = _warm("inner ring")
-    elements: float | None = _warm("rolling elements")
-    outer_ring: float | None = _warm("outer ring")
-    housing: float | None = _warm("housing")
+    shaft: float | None = _temperature_key("shaft")
+    inner_ring: float | None = _temperature_key("inner ring")
+    elements: float | None = _temperature_key("rolling elements")
+    outer_ring: float | None = _temperature_key("outer ring")
+    housing: float | None = _temperature_key("housing")
 
     def conditions(self, speed: Speed | None) -> FitConditions:
         """Return the temperatures and speeds of the seats.

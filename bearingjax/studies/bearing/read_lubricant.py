@@ -123,7 +123,7 @@ class LubricantKeys(Keys):
     )
 
     @property
-    def called(self) -> str:
+    def oil_name(self) -> str:
         """Name of the oil, or of its law."""
         return str(self.name or self.law)
 
@@ -141,7 +141,7 @@ class LubricantKeys(Keys):
             names = ", ".join(OILS)
             problem = f"is missing; give one of {names}, or a `law` with its numbers"
             raise self.table.error("name", problem)
-        graded = self.grade is not None or self.called.startswith("ISO VG")
+        graded = self.grade is not None or self.oil_name.startswith("ISO VG")
         if self.viscosity_index is not None and not graded:
             problem = "goes with a `grade`, or with the `name` of an ISO VG"
             raise self.table.error("viscosity_index", problem)
@@ -158,7 +158,7 @@ class LubricantKeys(Keys):
             with self.table.building():
                 return OILS[self.name](**given)
         if self.law == "free_volume":
-            ambient = pressure = self.built(FreeVolume)
+            ambient = pressure = self.build_law(FreeVolume)
         else:
             ambient = self._ambient()
             # Raises if it is missing.
@@ -189,7 +189,7 @@ class LubricantKeys(Keys):
             with table.building():
                 return Walther.from_grade(self.grade, index)
         if given == ["cold_viscosity"]:
-            return self.built(Walther)
+            return self.build_law(Walther)
         # Without coefficients the viscosity is that at the given temperature.
         values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
         for name in ("reference_viscosity", *values):

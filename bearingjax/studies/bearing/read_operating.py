@@ -68,7 +68,7 @@ class OperatingKeys(Keys):
         return Speed(self.inner_speed, self.outer_speed)
 
     @property
-    def held(self) -> dict[str, float]:
+    def prescribed_values(self) -> dict[str, float]:
         """Prescribed displacements by freedom [m, rad]."""
         return {} if self.prescribed is None else self.prescribed.given
 
@@ -79,7 +79,7 @@ class OperatingKeys(Keys):
         return tuple(given.get(name, 0.0) for name in LOADS)
 
     def check(self) -> None:
-        free, held = self.free, self.held
+        free, held = self.free, self.prescribed_values
         both = sorted(set(free or ()) & set(held))
         if both:
             problem = f"{', '.join(both)} is both free and prescribed; choose one"
@@ -101,7 +101,11 @@ class OperatingKeys(Keys):
             bearing: The design.
         """
         if self.free is None:
-            moving = [f for f in restrained_freedoms(bearing) if f not in self.held]
+            moving = [
+                f
+                for f in restrained_freedoms(bearing)
+                if f not in self.prescribed_values
+            ]
             self.table.fill("free", moving)
 
 

@@ -215,7 +215,7 @@ def scene_of(
     table.know(*other_keys)
     found = read_designation(table)
     if found is not None:
-        found = found[0], found[1].varied(varied)
+        found = found[0], found[1].override(varied)
     bearing, preload = read_bearing(table, top, found)
     catalogue = None if found is None else found[1]
     warned = bearing.warnings
@@ -291,7 +291,7 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
         fits=fits,
         oil=oil,
         load=operating.loads,
-        prescribed=operating.held,
+        prescribed=operating.prescribed_values,
         free=operating.free,
         fixed_ring=operating.fixed_ring,
         speed=speed,

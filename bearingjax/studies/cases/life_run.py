@@ -24,11 +24,11 @@ from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Part, Report
 from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published
 from ..bearing.life_report import (
+    describe_turning,
     life_number,
     lives_grid,
     ratings_as_dict,
     ratings_in_words,
-    turning,
 )
 from ..solve.report import design_sections
 from .case_words import case_words, varied_settings
@@ -112,7 +112,7 @@ class LifeRun:
         which = f"case {case}{', of 0 h' if spent else ''}"
         return f"{life_number(safety[case])} ({which})"
 
-    def worst(self, most: int) -> tuple[np.ndarray, np.ndarray]:
+    def worst_cases(self, most: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the cases with the largest damage; all must be solved.
 
         Args:
@@ -160,7 +160,10 @@ def run_life(
         }
     outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
     bearing = scene.element.bearing
-    if scene.catalogue is not None and scene.catalogue.varied(table.varied).rerated:
+    if (
+        scene.catalogue is not None
+        and scene.catalogue.override(table.varied).rerated_keys
+    ):
         bearing = with_published(bearing, None)
     given = (
         conditions.dynamic_capacity,
@@ -281,7 +284,7 @@ def _lives(run) -> list[Part]:
     ]
     if at_rest:
         fixed_to = life_conditions(table.scene).load_fixed_to
-        parts.append(turning(turns_against_load(None, fixed_to), True))
+        parts.append(describe_turning(turns_against_load(None, fixed_to), True))
     parts += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
     return [*parts, *_by_case(run)]
 
@@ -304,7 +307,7 @@ def _ends(values: np.ndarray) -> str:
 def _by_case(run) -> list[Part]:
     """Tabulate the worst cases, each as if it acted alone, and their distinguishing
     settings."""
-    order, shares = run.worst(_SHOWN)
+    order, shares = run.worst_cases(_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
     columns = [

@@ -80,7 +80,7 @@ class DesignGroup:
         taken = self.scene.catalogue
         return None if taken is None else taken.entry.designation
 
-    def of(self, cases: Cases) -> np.ndarray:
+    def cases_of(self, cases: Cases) -> np.ndarray:
         """Return the indices of the cases with one of these designs."""
         if self.designs is None:
             return np.arange(cases.count)
@@ -131,7 +131,7 @@ _VARIES: dict[str, Any] = {
 _ENTRIES: dict[str, Any] = {"type": "array", "items": {"type": "object"}}
 
 
-def _raw(table: Table, name: str) -> Any:
+def _read_raw(table: Table, name: str) -> Any:
     return table.raw(name, None)
 
 
@@ -142,7 +142,7 @@ class CasesKeys(Keys):
         "values of each key, a list or `{ start, stop, count }`; every combination is a"
         " case, the last key running fastest",
         default=None,
-        reader=_raw,
+        reader=_read_raw,
         json=_VARIES,
     )
     file: str | None = scene_key(
@@ -152,7 +152,7 @@ class CasesKeys(Keys):
     spectrum: Any = scene_key(
         "a table for each case, with its `hours`",
         default=None,
-        reader=_raw,
+        reader=_read_raw,
         json=_ENTRIES,
     )
     outputs: tuple[str, ...] | None = scene_key(
@@ -228,7 +228,7 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
         varied=tuple(column.key for column in columns),
         settings=made,
         outputs=outputs,
-        warnings=_alike(scene.warnings, warned),
+        warnings=_merge_warnings(scene.warnings, warned),
         inputs=_inputs(scene, columns, _with_path(data["cases"], path)),
     )
 
@@ -240,12 +240,12 @@ def _fill_first_values(
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
     for column in columns:
-        if _makes_design(column.key) and not _stands(data, column.key):
+        if _makes_design(column.key) and not _has_key(data, column.key):
             assign(begun, column.key, column.values[column.index[0]], file)
     return begun
 
 
-def _stands(data: dict[str, Any], key: str) -> bool:
+def _has_key(data: dict[str, Any], key: str) -> bool:
     """Whether a dotted key is present."""
     inner: Any = data
     for part in key.split("."):
@@ -269,7 +269,9 @@ def speed_warnings(
     """Return warnings of case speeds above the catalogue speeds of each bearing."""
     turns, found = turns_of(cases), []
     for name in dict.fromkeys(part.designation for part in design_groups):
-        mine = [part.of(cases) for part in design_groups if part.designation == name]
+        mine = [
+            part.cases_of(cases) for part in design_groups if part.designation == name
+        ]
         own = np.zeros(cases.count)
         own[np.concatenate(mine)] = turns[np.concatenate(mine)]
         bearing = next(
@@ -289,7 +291,9 @@ def turns_of(cases: Cases) -> np.ndarray:
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 
 
-def _alike(first: Iterable[Warning], warned: Sequence[Warning]) -> tuple[Warning, ...]:
+def _merge_warnings(
+    first: Iterable[Warning], warned: Sequence[Warning]
+) -> tuple[Warning, ...]:
     """Merge the warnings of a scene and of its designs; of those that differ only in
     their numbers the first is kept."""
     found: dict[str, list[Warning]] = {}
@@ -459,7 +463,7 @@ def _designs(data, path, columns, scene):
 
     Where the design does not vary, it is that of `scene`.
     """
-    varied = [c for c in columns if c.key not in OPERATING or _fits(data, c.key)]
+    varied = [c for c in columns if c.key not in OPERATING or _changes_fit(data, c.key)]
     if not varied:
         return (DesignGroup(scene.running(), None, scene),), None, ({},), ()
     # Repeated values are merged, and so are repeated designs.
@@ -532,7 +536,7 @@ def _resolve(inputs: dict[str, Any], key: str, given: Any) -> tuple[str, Any]:
     return f"{key} [{unit}]", float(number)
 
 
-def _fits(data, key) -> bool:
+def _changes_fit(data, key) -> bool:
     """Whether a key of [operating] changes the mounted bearing through its speed."""
     return "fit" in data and key.endswith("_speed")
 

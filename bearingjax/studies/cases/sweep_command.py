@@ -83,7 +83,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
 
     words = f"{lost} of {solved.cases.count} cases not solved"
 
-    def interrupted():
+    def conclude():
         if not left and interrupt.number is None:
             return None
         if not left:  # struck during the last cases, or while files were written
@@ -102,7 +102,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         {"Results over the cases": draw} if solved.converged.any() else {},
         table_on_page=True,
         problems=[words] if lost else [],
-        interrupted=interrupted,
+        interrupted=conclude,
     )
 
 

@@ -61,7 +61,7 @@ def run_cases(
     """
     done: list[tuple[np.ndarray, Sweep]] = []
     for part in table.design_groups:
-        mine = part.of(table.cases)
+        mine = part.cases_of(table.cases)
         # A sweep polls after its first block; once stopped, no other sweep is started.
         stopped = bool(done) and stop is not None and stop()
         if mine.size and not stopped:

@@ -88,11 +88,11 @@ def select(
         entry
         for entry in entries
         if kind in (None, entry.type)
-        and all(_within(getattr(entry, name), ends) for name, ends in ranges.items())
+        and all(_is_within(getattr(entry, name), ends) for name, ends in ranges.items())
     )
 
 
-def _within(value, ends) -> bool:
+def _is_within(value, ends) -> bool:
     """Whether a number lies within a range; an unknown number does not."""
     if ends is None:
         return True
@@ -142,17 +142,17 @@ def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
 
 def catalogue_title(entry: CatalogueEntry) -> str:
     """Describe a bearing: type, sizes, and origin of its internal geometry."""
-    return f"{_what(entry)}, inner geometry {entry.geometry}"
+    return f"{_describe(entry)}, inner geometry {entry.geometry}"
 
 
-def _what(entry):
+def _describe(entry):
     what = f"{_words(entry.type)} bearing, {_sizes(entry)}"
     return f"{entry.designation}: {what}" if entry.designation else what.capitalize()
 
 
 def catalogue_details(entry: CatalogueEntry) -> str:
     """Format all data of a bearing, with its sources."""
-    lines = [_what(entry)]
+    lines = [_describe(entry)]
     lines.append(_loads(entry))
     if entry.other is not None:
         c, c0, source = entry.other
@@ -171,7 +171,7 @@ def catalogue_details(entry: CatalogueEntry) -> str:
         lines.append(", ".join(known))
     if entry.printed:
         printed = as_keys(entry.printed).items()
-        words = (f"{k.replace('_', ' ')} {_plain(v)}" for k, v in printed)
+        words = (f"{k.replace('_', ' ')} {_format(v)}" for k, v in printed)
         lines.append(f"printed: {', '.join(words)}")
     lines.append(f"inner geometry {entry.geometry}: {entry.sources['geometry']}")
     keys = as_keys(entry.design)
@@ -181,7 +181,7 @@ def catalogue_details(entry: CatalogueEntry) -> str:
     return "\n".join([*lines, *entry.notes])
 
 
-def _plain(value: Any) -> str:
+def _format(value: Any) -> str:
     return " / ".join(map(str, value)) if isinstance(value, list) else f"{value}"
 
 
@@ -214,7 +214,7 @@ def new_scene(entry: CatalogueEntry) -> str:
             written out, so that it can be changed.
     """
     lines = [
-        f"# {_what(entry)}.",
+        f"# {_describe(entry)}.",
         *_comment(f"{_loads(entry)}."),
         *_comment(f"Inner geometry {entry.geometry}: {entry.sources['geometry']}."),
     ]
@@ -237,7 +237,7 @@ def new_scene(entry: CatalogueEntry) -> str:
         "",
         *_ratings(entry),
         "# What may be added; a # less at the beginning of its lines:",
-        *(f"# {line}".rstrip() for line in _further(entry)),
+        *(f"# {line}".rstrip() for line in _more_tables(entry)),
         "",
     ]
     return "\n".join(lines)
@@ -253,7 +253,7 @@ def _designation(entry: CatalogueEntry) -> list[str]:
     ]
 
 
-def _further(entry: CatalogueEntry) -> list[str]:
+def _more_tables(entry: CatalogueEntry) -> list[str]:
     """Return the lines of the tables needed for a life in operation."""
     lines = []
     if entry.type in _PAIRED:

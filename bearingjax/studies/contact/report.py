@@ -116,7 +116,7 @@ def contact_report(scene: ContactScene, cases: list[Compared]) -> Report:
         "Contact": [_contact(scene, solved)],
         "Loads and peaks": [_loads(solved)],
         "Pressures": [_places(scene, solved)],
-        "Solution": [_ending(solved)],
+        "Solution": [_convergence(solved)],
     }
     return Report(sections, contact_warnings(scene, cases))
 
@@ -156,7 +156,7 @@ def _loads(cases):
     def where_touching(number):
         return [number(case) if case.touches else None for case in cases]
 
-    def each(name):
+    def of_cases(name):
         return [_clean(getattr(case.solution, name)) for case in cases]
 
     def grid(name, case):
@@ -167,11 +167,11 @@ def _loads(cases):
     sliced = where_touching(lambda case: float(case.slices.peak_pressure))
     return Grid(
         [
-            Column("load", each("load"), "N", ".5g", NEWTONS),
-            Column("approach", each("approach"), "m"),
-            Column("tilt", each("tilt"), "rad", ".4g"),
-            Column("moment", each("moment"), "N m", ".4g"),
-            Column("peak", each("peak_pressure"), "Pa", ".0f"),
+            Column("load", of_cases("load"), "N", ".5g", NEWTONS),
+            Column("approach", of_cases("approach"), "m"),
+            Column("tilt", of_cases("tilt"), "rad", ".4g"),
+            Column("moment", of_cases("moment"), "N m", ".4g"),
+            Column("peak", of_cases("peak_pressure"), "Pa", ".0f"),
             Column("at", at, "m", ".4g", (1e3, "mm")),
             Column("in cell", cell, "m", ".4g"),
             Column("slices", sliced, "Pa", ".0f"),
@@ -184,7 +184,9 @@ def _places(scene, cases):
     """Tabulate the pressure at x = 0 at fixed positions, independent of the cells."""
     length = float(scene.contact.roller_length)
     places = np.array(PLACES) * length
-    pressure = np.array([_at(case.solution, 0.5 * length - places) for case in cases])
+    pressure = np.array(
+        [_pressure_at(case.solution, 0.5 * length - places) for case in cases]
+    )
     loads = [float(case.solution.load) for case in cases]
     return Grid(
         [
@@ -198,7 +200,7 @@ def _places(scene, cases):
     )
 
 
-def _ending(cases):
+def _convergence(cases):
     steps = max(int(case.solution.steps) for case in cases)
     residual = max(float(case.solution.residual) for case in cases)
     return (
@@ -207,7 +209,7 @@ def _ending(cases):
     )
 
 
-def _at(solution, y):
+def _pressure_at(solution, y):
     grid = solution.grid
     return np.interp(y, np.asarray(grid.y), np.asarray(solution.centre_pressure))
 

@@ -42,7 +42,7 @@ def run_contact(scene: ContactScene) -> list[Compared]:
     sizes = (asked.across, asked.along, asked.grading)
     solved = _solve(contact, jnp.asarray(widths), given, solver, sizes)
     sliced = _slice(contact, solved, scene.law)
-    return [Compared(_one(solved, k), _one(sliced, k)) for k in range(len(cases))]
+    return [Compared(_case(solved, k), _case(sliced, k)) for k in range(len(cases))]
 
 
 def run_refined(
@@ -114,5 +114,5 @@ def _slice(contact, solved, law):
     return eqx.filter_vmap(slice_)(solved)
 
 
-def _one(tree: Any, k: int) -> Any:
+def _case(tree: Any, k: int) -> Any:
     return jax.tree.map(lambda leaf: leaf[k], tree)

@@ -58,7 +58,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
 
         return noise_overview(done, title=task.name)
 
-    def sound(path):
+    def write_sound(path):
         full = write_noise_sound(path, done)
         return f"{options.wav}: full scale is {full:.4g} m/s²"
 
@@ -69,6 +69,6 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         noise_report(done) if solved else None,
         (lambda: noise_columns(done)) if solved else None,
         {"Overview": draw} if solved else {},
-        sound=sound if solved else None,
+        sound=write_sound if solved else None,
         problems=[] if solved else [f"{done.result.label}: {done.message}"],
     )

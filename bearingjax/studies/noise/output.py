@@ -46,7 +46,7 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     if run.analysis is not None:
         parts |= _analysis(run)
     if run.many is not None:
-        parts["monte_carlo"] = _many(run.many, run.task.tighter)
+        parts["monte_carlo"] = _random_bearings(run.many, run.task.tighter)
     parts |= {"result": run.result.label, "message": run.message}
     return run_json(parts, run.warnings, run.task.inputs)
 
@@ -79,7 +79,7 @@ PERCENTILES = (5.0, 50.0, 95.0)
 """Percentiles of the levels of random bearings that are reported [%]."""
 
 
-def _many(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
+def _random_bearings(many: RandomBearings, tighter: Tighter) -> dict[str, Any]:
     levels = many.levels
     numbers: dict[str, Any] = {
         "level": levels.level,

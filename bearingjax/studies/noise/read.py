@@ -168,7 +168,7 @@ def read_noise(
         "errors": _of_rows(errors),
         "sensor": vibration.sensor,
         "moving_ring": _moving_ring(vibration, operating),
-        **_tilting(vibration, scene),
+        **_tilt_settings(vibration, scene),
     }
     if vibration.retardation is not None:
         values["retardation"] = vibration.retardation
@@ -232,12 +232,12 @@ def _nominal(element: BearingElement) -> BearingElement:
     """Return the bearing with identical rolling elements."""
     fields = "ball_deviation", "roller_deviation", "azimuth_deviation"
 
-    def even(bearing):
+    def without_deviations(bearing):
         mine = {k: None for k in fields if getattr(bearing, k, None) is not None}
         return dataclasses.replace(bearing, **mine) if mine else bearing
 
     bearing: Any = element.bearing
-    rows = map(even, bearings_of(bearing))
+    rows = map(without_deviations, bearings_of(bearing))
     return dataclasses.replace(element, bearing=with_bearings(bearing, rows))
 
 
@@ -264,7 +264,7 @@ def _check_operating(operating: Table, scene: Scene) -> None:
         raise operating.error("inner_speed", f"{problem}, {rest}")
 
 
-def _tilting(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
+def _tilt_settings(vibration: VibrationKeys, scene: Scene) -> dict[str, Any]:
     """Return whether the moving ring tilts, and its inertia if given."""
     held = "gx" in scene.prescribed or "gx" not in (scene.free or FREEDOMS)
     inertia = vibration.tilting_inertia

@@ -58,7 +58,7 @@ class DeviationKeys(Keys):
         return "raised"
 
     @property
-    def most(self) -> int:
+    def highest_order(self) -> int:
         """Highest wave order of the part."""
         return MOST_ORDER["element" if self.part == ELEMENTS else "raceway"]
 
@@ -70,7 +70,7 @@ class DeviationKeys(Keys):
         """
         raise NotImplementedError
 
-    def _each(self, values: Any, context: ErrorContext) -> Any:
+    def _of_elements(self, values: Any, context: ErrorContext) -> Any:
         """Spread values over the rolling elements, 0 for those without the error."""
         values = np.asarray(values, dtype=float)
         if context.n_elements is None:
@@ -86,8 +86,8 @@ class DeviationKeys(Keys):
     def _check_order(self, name: str, order: Any) -> None:
         """Raise SceneError for a wave order outside the range of the part."""
         whole = isinstance(order, int) and not isinstance(order, bool)
-        if not whole or not 1 <= order <= self.most:
-            problem = f"{order!r} is not a whole number from 1 to {self.most}"
+        if not whole or not 1 <= order <= self.highest_order:
+            problem = f"{order!r} is not a whole number from 1 to {self.highest_order}"
             raise self.table.error(name, problem)
 
 
@@ -154,7 +154,7 @@ class WavesKeys(DirectedKeys):
 
     def shape(self, context: ErrorContext) -> Harmonics:
         sizes = np.broadcast_to(self.amplitude, len(self.order))
-        sizes = self._each(sizes, context)
+        sizes = self._of_elements(sizes, context)
         return Harmonics(self.order, sizes, np.broadcast_to(self.phase, sizes.shape))
 
 
@@ -187,7 +187,7 @@ class SpectrumKeys(DirectedKeys):
             (orders,) if context.n_elements is None else (context.n_elements, orders)
         )
         phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, shape)
-        sizes = self._each(np.full(1, self.amplitude), context)
+        sizes = self._of_elements(np.full(1, self.amplitude), context)
         return Harmonics.spectrum(self.lowest, self.highest, sizes, self.slope, phase)
 
 
@@ -221,10 +221,12 @@ class ProfileKeys(DirectedKeys):
             heights = found["height"]
             table.fill("file", None)  # in the echo its heights
             table.fill("points", [format_number(height, "m") for height in heights])
-        highest = self.highest or min(self.most, max(1, (len(heights) - 1) // 2))
+        highest = self.highest or min(
+            self.highest_order, max(1, (len(heights) - 1) // 2)
+        )
         table.fill("highest", highest)
         waves = Harmonics.from_heights(heights, highest)
-        sizes = self._each(waves.amplitude, context)
+        sizes = self._of_elements(waves.amplitude, context)
         return Harmonics(waves.order, sizes, np.broadcast_to(waves.phase, sizes.shape))
 
 
@@ -247,7 +249,7 @@ class SpallKeys(DeviationKeys):
 
     def shape(self, context: ErrorContext) -> Spall:
         every = np.zeros(() if context.n_elements is None else (context.n_elements,))
-        depth = self._each(self.depth, context)
+        depth = self._of_elements(self.depth, context)
         return Spall(every + self.angle, every + self.length, depth)
 
 

@@ -28,7 +28,7 @@ def noise_report(run: NoiseRun) -> Report:
         "Levels": [_levels(run)],
         "Lines": _lines(run),
         "Contacts": [_states(run)],
-        "Random bearings": [] if run.many is None else _many(run),
+        "Random bearings": [] if run.many is None else _random_bearings(run),
     }
     return Report(sections, run.warnings)
 
@@ -129,7 +129,7 @@ def _states(run):
     )
 
 
-def _many(run):
+def _random_bearings(run):
     """Report the levels of random bearings and their sources."""
     many, task = run.many, run.task
     levels = np.asarray(many.levels.percentile(PERCENTILES))

@@ -155,7 +155,7 @@ def run_noise(
         The run with its result code; a failed solve does not raise.
     """
     model = task.model
-    _tell(on_stage, "natural modes")
+    _announce(on_stage, "natural modes")
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
     if result is not Result.CONVERGED:
@@ -169,7 +169,7 @@ def run_noise(
         model, line = models
         task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
-    _tell(on_stage, "vibration")
+    _announce(on_stage, "vibration")
     record = vibration(model, **task.counts, steps=task.steps, throw=False)
     result, steps = Result(int(record.result)), record.steps
     asked = model_warnings(model, task.samples, steps, tolerances)
@@ -185,7 +185,7 @@ def run_noise(
     analysis = analyse(task, record, modes)
     doubtful = record_warnings(model, record, analysis.spectrum, task.bands, tolerances)
     warned += tuple(doubtful)
-    many = _many(task, steps, on_stage) if task.bearings else None
+    many = _run_random(task, steps, on_stage) if task.bearings else None
     if many is not None and many.levels.n_failed:
         failed = many.levels.n_failed
         words = f"{failed} of {task.bearings} random bearings were not solved"
@@ -195,12 +195,12 @@ def run_noise(
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
-def _tell(on_stage, stage, *share):
+def _announce(on_stage, stage, *share):
     if on_stage is not None:
         on_stage(stage, *share)
 
 
-def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
+def _run_random(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
     """Evaluate random bearings, and on a subset the share of each scatter source."""
     tolerances = task.tolerances
     assert tolerances is not None  # checked when it was read
@@ -220,11 +220,11 @@ def _many(task: NoiseScene, steps: int, on_stage) -> RandomBearings:
 
     def progress(before):
         def tell(done, _):
-            _tell(on_stage, "random bearings", (before + done) / whole)
+            _announce(on_stage, "random bearings", (before + done) / whole)
 
         return tell
 
-    _tell(on_stage, "random bearings", 0.0)
+    _announce(on_stage, "random bearings", 0.0)
     levels = monte_carlo(
         *given,
         task.bearings,

@@ -97,7 +97,7 @@ OF_FREEDOM = ("displacement", "stiffness")
 _QUANTITY: dict[str, Any] = {"type": "string"}
 
 
-def _later(table: Table, name: str) -> Any:
+def _read_raw(table: Table, name: str) -> Any:
     """Return the raw value of a key whose unit depends on the measure."""
     return table.raw(name, None)
 
@@ -119,10 +119,10 @@ def bound_key(end: str, bare: str = "") -> Any:
     """
     about = f"{end} bound, in the unit of the measure"
     if not bare:
-        return scene_key(about, default=None, reader=_later, json=_QUANTITY)
+        return scene_key(about, default=None, reader=_read_raw, json=_QUANTITY)
     both = {"anyOf": [_QUANTITY, {"type": "number"}]}
     about = f"{about}; of `{bare}` a bare number"
-    return scene_key(about, default=None, reader=_later, json=both)
+    return scene_key(about, default=None, reader=_read_raw, json=both)
 
 
 class BoundKeys(Keys):
@@ -137,7 +137,7 @@ class BoundKeys(Keys):
             problem = "give `at_least`, `at_most` or both"
             raise self.table.error("measure", problem)
 
-    def bound(self, measure: Any, kind: str) -> Constraint:
+    def constraint(self, measure: Any, kind: str) -> Constraint:
         """Build the constraint.
 
         Args:
@@ -201,7 +201,7 @@ class OptimiseKeys(SearchKeys):
         "stiffness that is wanted, with its unit",
         default=None,
         only={"objective": ("stiffness",)},
-        reader=_later,
+        reader=_read_raw,
         json=_QUANTITY,
     )
     constraints: tuple[ConstraintKeys, ...] = scene_key(
@@ -459,7 +459,7 @@ class _Measured(NamedTuple):
     def constraint(self, keys: ConstraintKeys) -> Constraint:
         """Build a bound on a measure."""
         measure = self._measure(keys, "measure")
-        return keys.bound(measure, _kind_of(measure))
+        return keys.constraint(measure, _kind_of(measure))
 
     def _measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
         kind = getattr(keys, key)

@@ -46,7 +46,7 @@ _GIVEN = ("torque", "power")
 """Numbers of a wheel that are loads, not the design."""
 
 
-def _of() -> Any:
+def _part_key() -> Any:
     return scene_key(
         "bearing or gear that the measure is of", otherwise="the worst of all"
     )
@@ -58,7 +58,7 @@ class ShaftConstraintKeys(BoundKeys):
     measure: str = scene_key("what is bounded", choices=SHAFT_OBJECTIVES)
     at_least: Any = bound_key("lower", "static_safety")
     at_most: Any = bound_key("upper", "static_safety")
-    of: str | None = _of()
+    of: str | None = _part_key()
 
 
 class ShaftOptimiseKeys(SearchKeys):
@@ -68,7 +68,7 @@ class ShaftOptimiseKeys(SearchKeys):
         "what is made least; lives and `static_safety` are made largest",
         choices=SHAFT_OBJECTIVES,
     )
-    of: str | None = _of()
+    of: str | None = _part_key()
     constraints: tuple[ShaftConstraintKeys, ...] = scene_key(
         "bounds on measures", default=()
     )
@@ -139,7 +139,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     variables = read_variables(free, design, numbers)
     bounds = zip(keys.constraints, measures[1:], strict=True)
     constraints = tuple(
-        one.bound(measure, kind_of(measure.unit) if measure.unit else "")
+        one.constraint(measure, kind_of(measure.unit) if measure.unit else "")
         for one, measure in bounds
     )
     top.finish()

@@ -111,7 +111,7 @@ class RotorTransient:
     stopped: Stopped | None
 
     @property
-    def reached(self) -> int:
+    def n_reached(self) -> int:
         """Number of times reached."""
         return int(np.isfinite(self.displacement).all(axis=(1, 2)).sum())
 
@@ -145,7 +145,7 @@ def respond(
         warned += warnings_of("`rotor.response.reduction`", found)
     scale = asked.scale
     if scale is None and all(isinstance(s, LinearSupport) for s in rotor.supports):
-        scale = _largest(task, settled.rotor)
+        scale = _largest_response(task, settled.rotor)
     system = _system(task, rotor, settled, modes, scale, asked.speed, asked.reduction)
     method = (
         Shooting(asked.steps)
@@ -187,7 +187,7 @@ def respond(
     )
 
 
-def _largest(task, linear) -> float | None:
+def _largest_response(task, linear) -> float | None:
     """Return the norm of the largest linear response, with tilts scaled by the shaft
     length, or `None` if there is none [m]."""
     asked, shaft = task.response, task.shaft

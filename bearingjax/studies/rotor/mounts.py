@@ -17,7 +17,7 @@ from ...rotor import Housing, Shaft
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
 from ...statics.installed import Installed
-from ..bearing.placed_bearing import echoed, read_machine_bearing, seat_misfits
+from ..bearing.placed_bearing import bearing_inputs, read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene, scene_of
 
 LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
@@ -71,7 +71,7 @@ def _of_axes(about: str, kind: str, **default: float) -> Any:
     """Return a field of one number for x, y and z, or a table with one for each."""
     usual = tuple(default.values())
 
-    def read(table: Table, key: str) -> list[float]:
+    def read_axes(table: Table, key: str) -> list[float]:
         apart = isinstance(table.raw(key, None), Mapping)
         place, names = (table.table(key), "xyz") if apart else (table, 3 * [key])
         found = []
@@ -83,7 +83,7 @@ def _of_axes(about: str, kind: str, **default: float) -> Any:
 
     axes = object_schema({axis: number_schema(kind) for axis in "xyz"}, list("xyz"))
     json = {"anyOf": [number_schema(kind), axes]}
-    return scene_key(about, kind, **default, least=0, reader=read, json=json)
+    return scene_key(about, kind, **default, least=0, reader=read_axes, json=json)
 
 
 class HousingKeys(Keys):
@@ -258,7 +258,7 @@ def _bearing(
     # In the echo it becomes one of [bearings.NAME].
     own = name if scene.name in named else scene.name
     table.fill("bearing", own)
-    inputs = echoed(scene.inputs)
+    inputs = bearing_inputs(scene.inputs)
     tables.fill(own, inputs)
     inside = Table(inputs, path.name, f"bearings.{own}")
     placed = read_machine_bearing(top, inside, scene.name, path, speed=speed)

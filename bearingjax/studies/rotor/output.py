@@ -55,7 +55,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
     if run.critical is not None:
         parts |= _critical(run.critical)
     if run.task.seats:
-        parts["fit"] = _fits(run.task)
+        parts["fit"] = _fit_results(run.task)
     if run.settled is not None:
         parts["static"] = _static(run)
     if run.lives:
@@ -151,7 +151,7 @@ def rotor_columns(run: RotorRun, series: str) -> dict[str, np.ndarray]:
             first["stable"] = run.response.branch.stable
         return first | _of_motions(run.response.amplitude)
     if series == "transient" and run.transient is not None:
-        motion, seen = run.transient, slice(run.transient.reached)
+        motion, seen = run.transient, slice(run.transient.n_reached)
         first = {"time [s]": motion.time[seen], "speed [rad/s]": motion.speed[seen]}
         return first | _of_motions(motion.displacement[seen])
     return {}
@@ -198,7 +198,7 @@ def _static(run: RotorRun) -> dict[str, Any]:
     }
 
 
-def _fits(task: RotorScene) -> list[dict[str, Any]]:
+def _fit_results(task: RotorScene) -> list[dict[str, Any]]:
     return [
         {
             "bearing": mount.name,

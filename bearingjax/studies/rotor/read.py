@@ -246,7 +246,7 @@ class RotorKeys(Keys):
         return ModalDamping(self.damping_ratio) if self.damping_ratio else None
 
     @property
-    def shown(self) -> int:
+    def shown_station(self) -> int:
         """Station shown by default in report and plot."""
         for part in (*self.excitation.unbalance, *self.discs):
             return part.station
@@ -282,10 +282,10 @@ def _scene(top: Table, path: Path) -> RotorScene:
     loads = keys.excitation.loads(AXES[keys.axis])
     response, transient = keys.response, keys.transient
     if response is not None:
-        response = response.with_defaults(station=keys.shown)
+        response = response.with_defaults(station=keys.shown_station)
         warned += _speed_warnings(keys.speed, response.speed, bool(loads.unbalances))
     if transient is not None:
-        transient = transient.with_defaults(station=keys.shown)
+        transient = transient.with_defaults(station=keys.shown_station)
     return RotorScene(
         name=path.stem,
         shaft=shaft,

@@ -35,7 +35,7 @@ def rotor_report(run: RotorRun) -> Report:
     """
     sections: dict[str, Section] = {
         "Rotor": [_head(run)],
-        **_fits(run.task),
+        **_fit_sections(run.task),
         "At rest": [] if run.settled is None else [_stations(run), _bearings(run)],
         "Rating life": _lives(run),
         "Modes": [] if run.modes is None else _modes(run),
@@ -86,7 +86,7 @@ def _lives(run) -> Section:
     return [Grid(columns, "rating lives under the loads of the static equilibrium")]
 
 
-def _fits(task):
+def _fit_sections(task):
     """Report the fits of each bearing, by section title."""
     found = {}
     for mount, stations in task.seats:
@@ -258,7 +258,7 @@ def _response(run, found: RotorResponse):
 
 
 def _transient(run, found: RotorTransient):
-    n, time = found.reached, found.time
+    n, time = found.n_reached, found.time
     if not n:
         return ["motion in time: none"]
     moved = found.displacement[:n, :, :2]

@@ -132,9 +132,9 @@ class _Parts:
         try:
             yield
         except SolveError as error:
-            self.failed(name, error.result or Result.STEP_LIMIT, str(error))
+            self.record_failure(name, error.result or Result.STEP_LIMIT, str(error))
 
-    def failed(self, part: str, result: Result, message: str) -> None:
+    def record_failure(self, part: str, result: Result, message: str) -> None:
         """Record a failure."""
         self.failures.append(Failure(part, result, message))
 
@@ -155,7 +155,7 @@ def run_rotor(
         SceneError: For errors found only when the rotor is assembled.
     """
     parts = _Parts(on_stage)
-    with _naming(task):
+    with _name_in_errors(task):
         rotor = _rotor(task, parts)
         if rotor is not None:
             _static(task, rotor, parts)
@@ -173,7 +173,7 @@ def run_rotor(
 
 
 @contextlib.contextmanager
-def _naming(task: RotorScene) -> Iterator[None]:
+def _name_in_errors(task: RotorScene) -> Iterator[None]:
     """Context that adds the scene name to the ValueError of a constructor."""
     try:
         yield
@@ -205,7 +205,7 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
             continue
         if not isinstance(support, BearingSupport):
             words = "a `law` has no life; leave it out"
-            parts.warnings.append(Warning("no_life", words).of(mount.name))
+            parts.warnings.append(Warning("no_life", words).about(mount.name))
             continue
         turns = -task.speed if mount.keys.turned else task.speed
         speed = Speed(as_array(turns, float)) if task.speed else None
@@ -321,11 +321,11 @@ def _nonlinear(task: RotorScene, rotor: Rotor, linear: Any, parts: _Parts) -> No
                 found["response"] = response
             parts.warnings += response.warnings
             if response.stopped is not None:
-                parts.failed("response", *response.stopped)
+                parts.record_failure("response", *response.stopped)
     if task.transient is not None:
         with parts.part("transient"):
             motion = run_in_time(task, rotor, found["settled"], found["modes"])
-            if motion.reached:
+            if motion.n_reached:
                 found["transient"] = motion
             if motion.stopped is not None:
-                parts.failed("transient", *motion.stopped)
+                parts.record_failure("transient", *motion.stopped)

@@ -111,7 +111,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
         *(of_balls if isinstance(solution, BallSolution) else ()),
     ]
     numbers |= {name: getattr(solution, name) for name in names}
-    numbers |= _largest(solution)
+    numbers |= _largest_numbers(solution)
     numbers |= life_as_dict(life, scene)
     numbers["life_hours"] = run.hours[k]
     if scene.oil is not None:
@@ -124,7 +124,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     return numbers
 
 
-def _largest(solution: Solution) -> dict[str, np.floating]:
+def _largest_numbers(solution: Solution) -> dict[str, np.floating]:
     """Return the largest numbers of the rolling elements, by name, but for the load."""
     largest = summaries(type(solution)).items()
     return {k: np.max(getattr(solution, v)) for k, v in largest if k != "largest_load"}
@@ -184,14 +184,14 @@ def _cases(run: ShaftRun, duty: DutyResult) -> dict[str, Any]:
                 "load": duty.load[:, k],
                 "peak_pressure": duty.peak_pressure[:, k],
                 **{key: of[:, k] for key, of in duty.lives.items()},
-                **{key: of[:, k] for key, of in _warmth(run).items()},
+                **{key: of[:, k] for key, of in _ring_temperatures(run).items()},
             }
             for k, name in enumerate(names)
         },
     }
 
 
-def _warmth(run: ShaftRun) -> dict[str, np.ndarray]:
+def _ring_temperatures(run: ShaftRun) -> dict[str, np.ndarray]:
     """Return temperatures of the rings in all cases by name (case, bearing) [K]."""
     if run.rings is None:
         return {}
@@ -209,7 +209,8 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         found: dict[str, Any] = {"bearing": names}
         load = run.solution.load
         largest = [
-            {} if b.solution is None else _largest(b.solution) for b in run.bearings
+            {} if b.solution is None else _largest_numbers(b.solution)
+            for b in run.bearings
         ]
         most = {
             name: [numbers.get(name, np.nan) for numbers in largest]
@@ -241,5 +242,7 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         columns += label_output(key, np.asarray(values, float)).columns(key)
     found |= {header: column for header, _, column in columns}
     if run.duty is not None:
-        found |= {f"{key} [K]": of.ravel() for key, of in _warmth(run).items()}
+        found |= {
+            f"{key} [K]": of.ravel() for key, of in _ring_temperatures(run).items()
+        }
     return {name: np.asarray(values) for name, values in found.items()}

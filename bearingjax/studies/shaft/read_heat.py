@@ -93,14 +93,14 @@ def heat_warnings(bearings: Mapping[str, Scene | None]) -> Iterator[Warning]:
             "temperatures change the viscosity of the oil alone, neither clearance nor"
             " preload, without the seats of a `fit`"
         )
-        yield Warning("no_seats", words).of(", ".join(loose))
+        yield Warning("no_seats", words).about(", ".join(loose))
     for name, one in scenes.items():
         given = one.installed.conditions
         if given is not None and any(
             float(getattr(given, part)) != float(given.reference) for part in PARTS
         ):
             words = "its `temperature` is not used: [heat] finds temperatures"
-            yield Warning("unused_temperature", words).of(name)
+            yield Warning("unused_temperature", words).about(name)
 
 
 def _path(table: Table, scene: Scene | None) -> ThermalPaths | None:

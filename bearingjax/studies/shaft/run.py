@@ -237,7 +237,7 @@ def run_shafts(
             if int(states[0].result) != Result.CONVERGED:
                 problem = states[0].failure_message
             else:
-                task = _warm(task, states[0])
+                task = _with_temperatures(task, states[0])
     except ValueError as error:
         raise SceneError(f"{task.name}: {error}") from error
     found, bearings = jax.device_get(found), ()
@@ -306,7 +306,9 @@ def _duty(
     try:
         if states:
             cases = [
-                _warm(case, state) if state.result == Result.CONVERGED else case
+                _with_temperatures(case, state)
+                if state.result == Result.CONVERGED
+                else case
                 for case, state in zip(cases, states, strict=True)
             ]
         systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
@@ -338,7 +340,7 @@ def _duty(
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 
 
-def _warm(task: ShaftScene, state: ThermalState) -> ShaftScene:
+def _with_temperatures(task: ShaftScene, state: ThermalState) -> ShaftScene:
     """Return a scene whose bearings and oil have the temperatures that were found."""
     scenes, lives = [], []
     rings = np.asarray([state.inner_ring, state.outer_ring]).mean(axis=0)

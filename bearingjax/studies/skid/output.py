@@ -174,7 +174,7 @@ def skid_message(run: SkidRun) -> str:
             " `dynamics.places`, or integrate in time, without --steady."
         )
     time = run.found.time
-    last = f"{time[run.reached - 1]:.4g} s" if run.reached else "the first time"
+    last = f"{time[run.n_reached - 1]:.4g} s" if run.n_reached else "the first time"
     where = f"The motion was followed to {last} of {time[-1]:.4g} s in {steps} steps"
     if run.result is Result.STEP_LIMIT:
         return f"{where}. Raise `dynamics.max_steps`, or take a larger tolerance."

@@ -111,11 +111,11 @@ def read_skid(
     assert scene.speed is not None  # checked before
     speeds = dynamics.speeds(scene.speed)
     duration = None if steady else dynamics.duration
-    scene = with_speed_warnings(scene, _fastest(speeds, duration))
+    scene = with_speed_warnings(scene, _highest_speed(speeds, duration))
     found = SkidScene(
         scene=scene,
         model=model,
-        oil=lubricant.called,
+        oil=lubricant.oil_name,
         speeds=speeds,
         loads=loads,
         dynamics=dataclasses.replace(dynamics, speed=None, load=None),
@@ -159,7 +159,7 @@ def _check_dynamics(dynamics: DynamicsKeys, scene: Scene, steady: bool) -> None:
             raise dynamics.table.error(key, problem)
 
 
-def _fastest(speeds: SpeedTable | None, duration: float | None) -> float | None:
+def _highest_speed(speeds: SpeedTable | None, duration: float | None) -> float | None:
     """Return the largest relative speed of the rings until a time [rad/s]; `None`:
     that of the scene, used for a steady state."""
     if speeds is None or duration is None:

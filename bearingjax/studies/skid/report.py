@@ -33,7 +33,7 @@ def skid_report(run: SkidRun) -> Report:
         "Bearing and oil": [_bearing(run)],
         "Cage, torque and power" if run.task.steady else "Motion": whole,
         "Balls" if run.state else "Rollers": [_balls(run)],
-        "Solution": [*_films(run), _ending(run)],
+        "Solution": [*_films(run), _convergence(run)],
     }
     return Report(sections, run.warnings)
 
@@ -188,7 +188,7 @@ def _films(run):
     return [f"films: {', '.join(names)}"]
 
 
-def _ending(run):
+def _convergence(run):
     found = run.found
     if run.task.steady:
         done = (

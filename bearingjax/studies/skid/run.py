@@ -46,10 +46,10 @@ class SkidRun:
     @property
     def has_numbers(self) -> bool:
         """Whether there are results: a motion in time may end early."""
-        return self.converged or (not self.task.steady and self.reached > 0)
+        return self.converged or (not self.task.steady and self.n_reached > 0)
 
     @property
-    def reached(self) -> int:
+    def n_reached(self) -> int:
         """Number of times reached by a motion in time."""
         return int(np.isfinite(self.found.cage_speed).sum())
 

@@ -152,7 +152,7 @@ def compare_report(found: Comparison) -> Report:
     be = "is" if same == 1 else "are"
     parts += [f"{shown_count(same, 'result')} {be} the same"] if same else []
     warned = [
-        warning.of(name)
+        warning.about(name)
         for name, one in zip(found.names, found.solved, strict=True)
         for warning in one.warnings
     ]

@@ -378,12 +378,12 @@ def _balls(solution):
     outer, inner = load[:, :half].argmax(axis=1), half + load[:, half:].argmax(axis=1)
     most = np.stack([outer, inner], axis=1)
 
-    def larger(values):
+    def at_largest(values):
         return np.take_along_axis(np.asarray(values), most, axis=1)[shown]
 
     # An open contact has no meaningful angle.
-    bears = larger(load) > 1e-9 * load.max()
-    angle = np.where(bears, larger(solution.contact_angle), np.nan)
+    bears = at_largest(load) > 1e-9 * load.max()
+    angle = np.where(bears, at_largest(solution.contact_angle), np.nan)
     stated = _stated_columns(
         solution, shown, roller_load=(".5g", NEWTONS), roller_pressure=(".0f",)
     )

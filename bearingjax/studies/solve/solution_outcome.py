@@ -42,7 +42,7 @@ def solution_outcome(
         lambda: (numbers or solution_json)(found),
         full_report
         if brief is None or full_report is None
-        else full_report.only(brief),
+        else full_report.with_sections(brief),
         page=None if full_report is None else lambda: full_report,
         pictures={"Section, load zone, contacts": draw} if found.converged else {},
         drawing=draw_bearing,
