@@ -317,7 +317,7 @@ def test_rotor_overview_shows_requested_parts():
     time = np.linspace(0.0, 1.0, 400)
     motion = 1e-6 * np.sin(20.0 * np.pi * time)[:, None, None] * np.ones((1, 4, 5))
     transient = SimpleNamespace(
-        time=time, speed=20.0 * time, displacement=motion, reached=400
+        time=time, speed=20.0 * time, displacement=motion, n_reached=400
     )
     around = np.zeros((8, 8, 4, 5))
     around[:, :, 1, :2] = CIRCLE[:, 0] * np.arange(1.0, 9.0)[:, None, None]
