@@ -85,8 +85,8 @@ class AbstractProfile(eqx.Module):
             self,
             "crown_drop",
             fits,
-            "at least 0 all along the roller (a profile that may stand out says"
-            " `protruding = True`) and below half the roller diameter,"
+            "at least 0 all along the roller (a profile of your own may stand out if it"
+            " is `protruding`) and below half the roller diameter,"
             f" {0.5 * float(diameter):.6g} m",
             found.min() if found.min() < -_ROUND_OFF else found.max(),
             "m",

@@ -166,7 +166,7 @@ class RollerChoices(AbstractChoices):
             if quadrature:
                 raise ValueError(
                     "BearingElement: `quadrature` is for independent slices, but"
-                    " `line_law` is CoupledSlices(), which has slices of its own."
+                    " `line_law` is of coupled slices, which are there already."
                 )
         else:
             quadrature = quadrature or ContactMapped()
@@ -179,18 +179,18 @@ class RollerChoices(AbstractChoices):
         assert isinstance(bearing, AbstractRollerBearing)
         if not kinematics.keeps_arcs or bearing.arc_radii is None:
             return
-        name = f"{type(kinematics).__name__}()"
         if isinstance(self.line_law, CoupledSlices):
             raise ValueError(
-                f"BearingElement: `kinematics` is {name}, which takes independent"
-                " slices of barrel rollers, but `line_law` is CoupledSlices(); use"
-                " Linearised()."
+                "BearingElement: `kinematics` is finite, which takes independent slices"
+                " of barrel rollers, but `line_law` is of coupled slices; use"
+                " linearised kinematics."
             )
         for which in PROFILES:
             if getattr(bearing, which).knots() is not None:
                 raise ValueError(
-                    f"BearingElement: `kinematics` is {name}, which takes no measured"
-                    f" profiles of barrel rollers, as is `{which}`; use Linearised()."
+                    "BearingElement: `kinematics` is finite, which takes no measured"
+                    f" profiles of barrel rollers, as is `{which}`; use linearised"
+                    " kinematics."
                 )
 
     def rolling_element(
@@ -249,27 +249,27 @@ class BallChoices(AbstractChoices):
     def check(self, part: SetRow, speed: Speed | None) -> None:
         kinematics, bearing = self.kinematics, part.bearing
         kinematics.check("ball")
-        name = type(kinematics).__name__
         if bearing.aligns and not kinematics.turns_far:
             raise ValueError(
-                f"BearingElement: `kinematics` is {name}(), with which a self-aligning"
-                " bearing would resist its tilt; use Finite()."
+                "BearingElement: `kinematics` is for small rotations, with which a"
+                " self-aligning bearing would resist its tilt; use finite kinematics."
             )
         if kinematics.holds_angles and len(bearing.axial_senses) > 1:
             raise ValueError(
-                f"BearingElement: `kinematics` is {name}(), which is for balls of one"
-                " contact angle: of angular contact and thrust bearings."
+                "BearingElement: `kinematics` is of a constant contact angle, for balls"
+                " that have one: of angular contact and thrust bearings."
             )
         if part.spring is not None and kinematics.turns_far:
             raise ValueError(
-                "BearingElement: a row has a spring, whose ring would slide along a"
-                f" tilted seat; with {name}() kinematics that is not modelled."
+                "BearingElement: `kinematics` is finite, and a spring presses a row,"
+                " whose ring would slide along a tilted seat, which is not modelled;"
+                " use linearised kinematics."
             )
         if speed is not None and kinematics.holds_angles:
             raise ValueError(
-                f"BearingElement: `kinematics` is {name}(), with which nothing holds a"
-                " turning ball along its raceways; leave out `speed`, or use"
-                " Linearised()."
+                "BearingElement: `kinematics` is of a constant contact angle, and"
+                " nothing holds a turning ball along its raceways then; leave out the"
+                " speed, or use linearised kinematics."
             )
 
     def rolling_element(

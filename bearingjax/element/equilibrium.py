@@ -113,9 +113,9 @@ def solve_element(
     if not element.has_potential:
         if not isinstance(minimiser, TrustRegionNewton):
             raise TypeError(
-                f"BearingElement: `equilibrium` is {type(minimiser).__name__}(), which"
-                " minimises an energy; gyroscopic moments and contact constants at the"
-                " operating angle have none. Use TrustRegionNewton()."
+                "BearingElement: `equilibrium` is a method that minimises an energy;"
+                " gyroscopic moments and contact constants at the operating angle have"
+                " none. Use Newton's method, the default."
             )
         minimiser = dataclasses.replace(minimiser, symmetric=False)
     frozen = stop_gradient((element, rings, magnitude, near))

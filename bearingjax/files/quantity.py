@@ -159,7 +159,7 @@ def to_si(text: object, kind: str) -> float:
         SceneError: If it is not a number with a unit of this kind; the message does
             not name the key, which the caller adds.
     """
-    article = _article(kind)
+    article = article_of(kind)
     wanted = f'{article} {kind} with its unit is wanted, such as "5 {KINDS[kind][1]}"'
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise SceneError(f"{text!r} is not a quantity; {wanted}")
@@ -288,5 +288,6 @@ def _scale(number: decimal.Decimal, size: float, name: str, kind: str) -> float:
     return float(number) * size
 
 
-def _article(kind: str) -> str:
+def article_of(kind: str) -> str:
+    """Return the article of a kind of quantity."""
     return "an" if kind[0] in "aeiou" else "a"

@@ -3,15 +3,20 @@
 import contextlib
 import dataclasses
 import difflib
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..numerics.units import unit_of
-from .key_lines import error_at, join_key, place_of
-from .quantity import KINDS, SceneError, kind_of, to_si
+from .quantity import KINDS, SceneError, article_of, kind_of, to_si
+from .scene_errors import error_at, join_key, place_of, problem_of
 
 _MISSING: Any = object()
+_ABOUT = re.compile(
+    r"`(?P<name>[^`]+)` (?:of (?P<part>\S+) )?(?P<fault>(?:is|has) .*)", re.DOTALL
+)
+"""Message of a check: "`bore` of A is 1 m; it must be ..."."""
 LARGEST = 1e9
 """Largest bare number allowed in a scene."""
 
@@ -125,7 +130,9 @@ class Table:
             kind: Kind of quantity, see `quantity.KINDS`.
             default: Value if absent; without a default the key is required.
         """
-        value: Any = self._get(key, default, f"a {kind}, a text with its unit")
+        value: Any = self._get(
+            key, default, f"{article_of(kind)} {kind}, a text with its unit"
+        )
         if key in self._data:
             try:
                 value = to_si(value, kind)
@@ -338,16 +345,44 @@ class Table:
         return {k: value for k, value in found.items() if value not in (None, {})}
 
     @contextlib.contextmanager
-    def building(self) -> Iterator[None]:
-        """Context that adds file, line and table to the error of a constructor."""
+    def building(self, *beside: "Table", **keys: str) -> Iterator[None]:
+        """Context that turns the error of a constructor into one of the key that it is
+        about, or of this table.
+
+        Args:
+            *beside: Other tables whose keys may be at fault.
+            **keys: Keys by the name of the argument, where they differ.
+        """
         try:
             yield
         except SceneError:
             raise
         except (ValueError, TypeError) as error:
-            where = f"[{self._path}]" if self._path else "top level"
-            place = place_of(self._file, self._path)
-            raise SceneError(f"{place}: {where}: {error}") from error
+            problem, table = problem_of(error), self
+            about = _ABOUT.fullmatch(problem)
+            if about is not None:
+                key = keys.get(about["name"], about["name"])
+                for table in (*beside, self):
+                    owners = table._owners(key, about["part"] or "")
+                    if len(owners) == 1:
+                        raise owners[0].error(key, about["fault"]) from error
+                    if owners:
+                        break
+            where = f"[{table._path}]: " if table._path else ""
+            place = place_of(self._file, table._path)
+            raise SceneError(f"{place}: {where}{problem}") from error
+
+    def _owners(self, key: str, part: str) -> "list[Table]":
+        """Return this table if it has a key, or else those below that have it.
+
+        Args:
+            key: The key.
+            part: End of the path of the table; empty: any.
+        """
+        if key in self._data and f".{self._path}".endswith(f".{part}" if part else ""):
+            return [self]
+        below = (child._owners(key, part) for child in self._children)
+        return [table for tables in below for table in tables]
 
     def finish(self) -> None:
         """Raise SceneError for unread keys, here and below."""

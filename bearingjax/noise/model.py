@@ -122,8 +122,8 @@ class NoiseModel(eqx.Module):
         arcs = getattr(rows_of(bearing)[0].bearing, "arc_radii", None) is not None
         if kinematics.turns_far and not (aligning or arcs):
             raise ValueError(
-                f"NoiseModel: `element` has {type(kinematics).__name__}() kinematics;"
-                " it must have Linearised()."
+                "NoiseModel: `kinematics` is finite; the noise of this bearing is with"
+                " linearised kinematics."
             )
         if aligning and self.tilting_inertia is not None:
             raise ValueError(
@@ -138,13 +138,13 @@ class NoiseModel(eqx.Module):
         for row in rows_of(bearing):
             if row.bearing.raceway_deviation is not None:
                 raise ValueError(
-                    "NoiseModel: `element` has a `raceway_deviation`, which stands"
-                    " still; form errors that turn are `errors`."
+                    "NoiseModel: `raceway_deviation` is of errors that stand still;"
+                    " those that turn are `errors` (in a scene, [deviations])."
                 )
             if row.spring is not None:
                 raise ValueError(
-                    "NoiseModel: `element` has a row that a spring presses, whose ring"
-                    " slides on its seat; noise is of sets with a `preload_offset`."
+                    "NoiseModel: a spring presses a row, whose ring slides on its seat;"
+                    " noise is of sets with a `preload_offset`."
                 )
         self._check_errors()
 

@@ -10,6 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..files.scene_errors import problem_of
 from ..numerics.units import shown_number, unit_of
 from .system import Design
 
@@ -209,7 +210,7 @@ def check_variables(element: Design, variables: Sequence[Variable]) -> list[floa
             number is named twice.
     """
     if not variables:
-        raise ValueError("optimise: `variables` is empty; name at least one Variable.")
+        raise ValueError("optimise: `variables` is empty; name at least one.")
     for variable in variables:
         if not isinstance(variable, Variable):
             raise TypeError(
@@ -232,7 +233,7 @@ def check_variables(element: Design, variables: Sequence[Variable]) -> list[floa
                 shown = shown_number(bound, unit_of(element, variable.path[0]))
                 raise ValueError(
                     f"Variable: `{key}` of {variable.name} is {shown}, which the"
-                    f" design does not allow: {error}"
+                    f" design does not allow: {problem_of(error)}."
                 ) from error
     return start
 

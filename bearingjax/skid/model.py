@@ -93,8 +93,8 @@ class SkidModel(eqx.Module):
         for name in (*names, "raceway_deviation"):
             if getattr(bearing, name, None) is not None:
                 raise ValueError(
-                    f"SkidModel: `element` has a `{name}`; all balls or rollers must"
-                    " be alike and evenly spaced, so that one orbit stands for all."
+                    f"SkidModel: `{name}` is given; all balls or rollers must be"
+                    " alike and evenly spaced, so that one orbit stands for all."
                 )
         instance(self, "lubricant", Lubricant)
         positive(self, "temperature")

@@ -158,7 +158,9 @@ def check_preload(bearing: AbstractBearing | BearingSet, force: Scalar | float) 
     """
     check_opposed("preload", bearing)
     if any(row.spring is not None for row in rows_of(bearing)):
-        raise ValueError("preload: a row has a spring, which presses it.")
+        raise ValueError(
+            "preload: `force` is given, and a spring presses a row already."
+        )
     positive("preload", "force", as_real(force), "N")
 
 

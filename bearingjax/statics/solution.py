@@ -241,16 +241,16 @@ def _describe_failure(solution: Solution) -> str:
     cure, newton = "check load, clearance, preload and dimensions", TrustRegionNewton
     usual = isinstance(solution.element.equilibrium, newton)
     if residual < _BALANCED:
-        more = "raise their step limit (`equilibrium=TrustRegionNewton(max_steps=...)`)"
+        more = "raise their step limit (from Python, `max_steps` of `equilibrium`)"
         if not usual:
-            more = "use TrustRegionNewton() for them"
+            more = "use Newton's method for them (`equilibrium`)"
         return (
             f"Step limit of the rolling elements: the rings balance to {residual:.1e}"
             f" of the load, rolling elements only to {local:.1e}: {cure}, or {more}."
         )
-    cure += ", or raise the step limit (`SolveOptions(max_steps=...)`)"
+    cure += ", or raise the step limit (from Python, `max_steps` of the solve)"
     if not usual:
-        cure += ", or use TrustRegionNewton() for the rolling elements"
+        cure += ", or use Newton's method for the rolling elements (`equilibrium`)"
     return (
         f"Step limit reached after {int(stats.iterations)} steps, relative residual"
         f" {residual:.1e}, rolling elements {local:.1e}: {cure}."

@@ -154,7 +154,7 @@ KINDS: dict[str, SolutionKind] = {
     "tilt": SolutionKind(
         sizes.LARGEST_TILT_ERROR,
         "tilt beyond small rotations: linearised kinematics leave out {size:.2g} % of"
-        " {where} (Finite() kinematics do not)",
+        " {where} (finite kinematics do not)",
         lambda s: (
             "the motion"
             if {"gx", "gy"} <= set(s.free)
@@ -168,7 +168,7 @@ KINDS: dict[str, SolutionKind] = {
     "arc_travel": SolutionKind(
         sizes.LARGEST_TILT_ERROR,
         "travel along barrel rollers: linearised kinematics leave out {size:.2g} % of"
-        " the axial force (Finite() kinematics do not)",
+        " the axial force (finite kinematics do not)",
         shown=lambda size: 100.0 * size,
         applies=_is_linearised_barrel,
         size=sizes.travel_error,

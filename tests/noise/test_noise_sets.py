@@ -197,7 +197,7 @@ def test_errors_of_a_set_are_one_for_each_row():
 
 def test_noise_model_rejects_sprung_and_unlike_sets():
     sprung = bj.BearingSet.back_to_back(ROW, 0.02, spring=bj.PreloadSpring(100.0))
-    with pytest.raises(ValueError, match="that a spring presses"):
+    with pytest.raises(ValueError, match="a spring presses a row"):
         model(sprung)
     deep = bj.DeepGrooveBallBearing(
         8, 0.05, 0.01, outer_osculation=0.52, inner_osculation=0.52

@@ -461,7 +461,7 @@ WRONG = {
     "bound not allowed": (
         dict(variables=[bj.optimise.Variable("bearing.roller_length", 0.0, 0.02)]),
         "`lower` of bearing.roller_length is 0 µm, which the design does not allow:"
-        " CylindricalRollerBearing: `roller_length` is 0 m; it must be above 0 m",
+        " `roller_length` is 0 m; it must be above 0 m",
     ),
     "twice": (
         dict(variables=[play(), play()]),

@@ -225,6 +225,6 @@ def _set(table: Table, bearing: AbstractBearing) -> tuple[BearingSet, float | No
     keys = read_keys(SetKeys, table)
     pack, force = keys.set_of(bearing), keys.preload_force
     if force is not None:
-        with table.building():
+        with table.building(force="preload_force"):
             check_preload(pack, force)
     return pack, force

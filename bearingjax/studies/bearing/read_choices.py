@@ -82,7 +82,7 @@ class LineContactKeys(Keys):
     @property
     def law(self) -> AbstractLineLaw:
         """Line law of the slices."""
-        with self.table.building():
+        with self.table.building(value="line_constant"):
             if self.line_law == "coupled_slices":
                 return CoupledSlices(self.slices)
             if self.line_constant is not None:
@@ -116,7 +116,7 @@ class PointContactKeys(Keys):
         """Point law of the contacts."""
         if self.outer_constant is None or self.inner_constant is None:
             return POINT_LAWS[self.point_law]()
-        with self.table.building():
+        with self.table.building(outer="outer_constant", inner="inner_constant"):
             return PointConstant(self.outer_constant, self.inner_constant)
 
 
@@ -148,7 +148,7 @@ class ControlKeys(Keys):
         """Raceway control of the balls."""
         if self.friction_coefficient is None:
             return CONTROLS[self.raceway_control]()
-        with self.table.building():
+        with self.table.building(friction="friction_coefficient"):
             return FrictionLimited(self.friction_coefficient)
 
 

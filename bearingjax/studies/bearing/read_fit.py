@@ -527,7 +527,7 @@ def _of_bearing(keys: FitKeys, given: Any, wanted: str, material) -> WarmMateria
         name = given if isinstance(given, str) else "steel"
         value = float(WARM_MATERIALS[name]().expansion)
         keys.fill(**{wanted: value})
-    with keys.table.building():
+    with keys.table.building(expansion=wanted):
         return WarmMaterial(material, value)
 
 

@@ -186,7 +186,7 @@ class LubricantKeys(Keys):
         if self.grade is not None:
             index = 95.0 if self.viscosity_index is None else self.viscosity_index
             self.fill(viscosity_index=index)
-            with table.building():
+            with table.building(index="viscosity_index"):
                 return Walther.from_grade(self.grade, index)
         if given == ["cold_viscosity"]:
             return self.build_law(Walther)

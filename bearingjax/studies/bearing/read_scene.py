@@ -22,6 +22,7 @@ from ...files.table import Table
 from ...fits import FitStates
 from ...life.life import LifeConditions
 from ...life.life_warning import given_rating_warnings
+from ...numerics import TrustRegionNewton
 from ...numerics.compiled.programs import call_stored
 from ...numerics.warning import Warning
 from ...statics.installed import Installed
@@ -272,6 +273,11 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     if held and speed is not None:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
+    newton = isinstance(element.equilibrium, TrustRegionNewton)
+    if not newton and not element.has_potential(speed):
+        problem = "minimises an energy, and gyroscopic moments and contact constants at"
+        problem += " the operating angle have none; leave it out, or write newton"
+        raise numerics.error("equilibrium", problem)
     operating.fill_free(bearing)
     life = read_life(top, bearing, speed, points)
     speeds = "limiting_speed", "reference_speed"

@@ -5,7 +5,7 @@ import functools
 
 import jax
 
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...life.life import Life, rating_life
 from ...life.life_warning import life_warnings
 from ...numerics.warning import Warning
@@ -78,10 +78,8 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     speed = scene.speed
     turning = speed is not None and float(speed.inner) != float(speed.outer)
     conditions = life_conditions(scene, turning=turning)
-    try:
+    with scene_errors(scene.name):
         life = rating_life(solution.element, solution, conditions)
-    except ValueError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
     return jax.device_get(life)
 
 

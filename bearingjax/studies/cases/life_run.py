@@ -14,6 +14,7 @@ from ...cases.sweep_table import columns
 from ...design import rows_of
 from ...design.published import with_published
 from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...life.life import LIFE_OUTPUTS, turns_against_load
 from ...life.rating import Ratings, ratings
 from ...life.reference_life import exponents_of
@@ -170,10 +171,8 @@ def run_life(
         conditions.static_capacity,
         conditions.fatigue_load_limit,
     )
-    try:
+    with scene_errors(scene.name):
         rated = ratings(bearing, *given)
-    except ValueError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
     wanted = dataclasses.replace(table, outputs=tuple(outputs))
     solved = run_cases(wanted, progress, stop)
     lives = {

@@ -23,8 +23,8 @@ from ...design import rows_of
 from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ...element.frame import LOAD_UNITS, MOTION_UNITS
 from ...files.column_list import LARGEST, read_list
-from ...files.key_lines import error_at
 from ...files.quantity import KINDS, SceneError, kind_of, to_si
+from ...files.scene_errors import error_at
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, text_of

@@ -15,7 +15,7 @@ from ...cases.sweep_program import not_run
 from ...cases.sweep_table import columns
 from ...design import rows_of
 from ...element import BearingElement
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import LIFE_OUTPUTS, LifeConditions
 from ...numerics.labels import summaries
@@ -77,7 +77,7 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         cases = jax.tree.map(lambda a: np.asarray(a)[mine], cases)
         number = np.searchsorted(part.designs, np.asarray(cases.design))
         cases = dataclasses.replace(cases, design=number)
-    try:
+    with scene_errors(f"{scene.name}: [cases]"):
         solved = sweep(
             part.element,
             cases,
@@ -89,8 +89,6 @@ def _run(table, part, mine, progress, stop) -> Sweep:
             life=_life(table, part),
             batches=Batches(progress=progress, stop=stop),
         )
-    except ValueError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
     return _on_seats(part, solved)
 
 

@@ -11,6 +11,7 @@ from ...contact.line import Palmgren
 from ...contact.slices import Compared, slices
 from ...element import RINGS
 from ...files.quantity import SceneError
+from ...files.scene_errors import problem_of
 from ...files.schema import read_keys
 from ...files.table import Table
 from ...numerics.compiled.programs import program
@@ -78,7 +79,7 @@ def run_refined(
             throw=False,
         )
     except (TypeError, ValueError) as error:
-        raise SceneError(f"{scene.name}: {error}") from error
+        raise SceneError(f"{scene.name}: {problem_of(error)}") from error
     solved = found.solution
     across, along = solved.grid.n_across, solved.grid.shape[1]
     load = float(solution.roller_load[found.roller, RINGS.index(found.raceway)])

@@ -172,7 +172,7 @@ def read_noise(
     }
     if vibration.retardation is not None:
         values["retardation"] = vibration.retardation
-    with vibration.table.building():
+    with vibration.table.building(deviations, operating):
         model = NoiseModel(element, **values)
         # Through the scene, so that the echo has it.
         model = dataclasses.replace(model, tilting_inertia=model.inertia)

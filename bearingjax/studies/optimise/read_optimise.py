@@ -149,6 +149,9 @@ class BoundKeys(Keys):
             table.quantity(key, kind, None) if kind else table.number(key, None)
             for key in ("at_least", "at_most")
         ]
+        if None not in ends and not ends[0] < ends[1]:
+            low, high = (scene_number(x, kind) if kind else f"{x:g}" for x in ends)
+            raise table.error("at_least", f"{low} must lie below `at_most`, {high}")
         with table.building():
             return Constraint(measure, *ends)
 
@@ -389,7 +392,7 @@ def read_variables(
     Raises:
         SceneError: For keys that are missing, unknown or not allowed.
     """
-    variables = []
+    variables, ends = [], {"lower": "from", "upper": "to"}
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
@@ -403,13 +406,19 @@ def read_variables(
             start = part.real("start", unit, None)
             if start is None and key in begun:
                 start = 0.5 * (low + high)
-        if unit and start is not None and low < high and not low <= start <= high:
-            words = (scene_number(x, kind_of(unit)) for x in (start, low, high))
+        first = low if start is None else start
+        words = [
+            scene_number(x, kind_of(unit)) if unit else f"{x:g}"
+            for x in (first, low, high)
+        ]
+        if not low < high:
+            raise part.error("from", "{1} must lie below `to`, {2}".format(*words))
+        if not low <= first <= high:
             problem = "{} must lie between `from`, {}, and `to`, {}".format(*words)
             raise part.error("start", problem)
-        with part.building():
+        with part.building(**ends):
             variables.append(Variable(numbers[key], low, high, start, key))
-    with table.building():
+    with table.building(**ends):
         check_variables(design, variables)
     return tuple(variables)
 

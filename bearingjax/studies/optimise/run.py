@@ -3,7 +3,7 @@
 import dataclasses
 from functools import partial
 
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...optimise.life import OfLife, RatingLife
 from ...optimise.optimise import Optimised, SearchOptions, optimise
 from ...statics.support import RESTRAINED, Support
@@ -37,7 +37,7 @@ def run_optimisation(
         support = Support(scene.free, fixed_ring=scene.fixed_ring)
         solve = scene.solve_options
     limits = task.max_steps, task.tolerance
-    try:
+    with scene_errors(name):
         found = optimise(
             design,
             task.cases,
@@ -47,8 +47,6 @@ def run_optimisation(
             search=SearchOptions(task.method, *limits, solve, progress),
             support=support,
         )
-    except ValueError as error:
-        raise SceneError(f"{name}: {error}") from error
     return (
         found
         if isinstance(task, ShaftOptimisation)

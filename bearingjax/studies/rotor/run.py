@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ...element import Speed
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...life.life import Life, rating_life
 from ...life.life_warning import life_warnings
 from ...numerics.labels import to_xarray
@@ -155,7 +155,7 @@ def run_rotor(
         SceneError: For errors found only when the rotor is assembled.
     """
     parts = _Parts(on_stage)
-    with _name_in_errors(task):
+    with scene_errors(task.name):
         rotor = _rotor(task, parts)
         if rotor is not None:
             _static(task, rotor, parts)
@@ -170,15 +170,6 @@ def run_rotor(
         warnings=(*task.warnings, *parts.warnings, *task_warnings(task)),
         **parts.found,
     )
-
-
-@contextlib.contextmanager
-def _name_in_errors(task: RotorScene) -> Iterator[None]:
-    """Context that adds the scene name to the ValueError of a constructor."""
-    try:
-        yield
-    except ValueError as error:
-        raise SceneError(f"{task.name}: {error}") from error
 
 
 def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...cases.cases import check_hours
 from ...element.frame import LOADS
-from ...files.key_lines import error_at
 from ...files.output_files import read_matrix
 from ...files.quantity import SceneError, to_si
+from ...files.scene_errors import error_at, problem_of
 from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
 from ...files.schema import Keys, build, direction_json, fields_of, read_keys, scene_key
 from ...files.table import Table
@@ -324,8 +324,10 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         check_hours(None if None in given else given)
         systems = align_systems([one.system for one in cases])
     except ValueError as error:
-        where = "" if "Cases" not in str(error) else "`cases.hours`: "
-        raise SceneError(f"{path.name}: {where}{error}") from error
+        problem = problem_of(error)
+        if problem.startswith("`hours` "):
+            raise error_at(path, "cases.hours", problem[8:]) from error
+        raise SceneError(f"{path.name}: {problem}") from error
     cases = [
         _with_lives(dataclasses.replace(one, system=system), path)
         for one, system in zip(cases, systems, strict=True)
@@ -476,7 +478,7 @@ def _housing(
     try:
         matrix = read_matrix(path.parent / keys.file)
     except ValueError as error:
-        raise keys.table.error("file", error) from error
+        raise keys.table.error("file", problem_of(error)) from error
     with keys.table.building():
         return HousingStiffness(keys.seats, matrix)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...design import rows_of
 from ...element import Speed
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
@@ -222,7 +222,7 @@ def run_shafts(
     say = on_stage or (lambda name: None)
     system, cases = task.system, task.cases
     states, problem = [], ""
-    try:
+    with scene_errors(task.name):
         if task.heat is None:
             say("static equilibrium")
             found, place = searched_system(system)
@@ -238,8 +238,6 @@ def run_shafts(
                 problem = states[0].failure_message
             else:
                 task = _with_temperatures(task, states[0])
-    except ValueError as error:
-        raise SceneError(f"{task.name}: {error}") from error
     found, bearings = jax.device_get(found), ()
     duty, rings, warming, solved = None, None, None, not problem
     if cases and solved:
@@ -303,7 +301,7 @@ def _duty(
         The cases, temperatures of the rings, and what was not solved, in words.
     """
     cases = task.cases
-    try:
+    with scene_errors(task.name):
         if states:
             cases = [
                 _with_temperatures(case, state)
@@ -313,8 +311,6 @@ def _duty(
             ]
         systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
         duty = solve_duty(systems, lives)
-    except ValueError as error:
-        raise SceneError(f"{task.name}: {error}") from error
     rings = lost = None
     if states:
         rings = np.array([[s.inner_ring, s.outer_ring] for s in states])
@@ -390,10 +386,8 @@ def _in_place(
             speed=None if system.inertia is None else speed,
             installed=scene.installed.with_speed(Speed(speed.inner, 0.0)),
         )
-        try:
+        with scene_errors(f"{task.name}: {seat.name}"):
             life = jax.device_get(rating_life(solution.element, solution, conditions))
-        except ValueError as error:
-            raise SceneError(f"{task.name}: {seat.name}: {error}") from error
         oil = None
         if scene.oil is not None:
             oil = oil_facts(scene.oil, solution, scene.catalogue)

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 
 from ... import skid
-from ...files.quantity import SceneError
+from ...files.scene_errors import scene_errors
 from ...numerics.labels import Labelled, array_fields, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning
@@ -88,10 +88,8 @@ def run_skid(task: SkidScene, shown: bool = False) -> SkidRun:
 
     Fails: as `skid.steady` and `skid.simulate`.
     """
-    try:
+    with scene_errors(task.name):
         found, speed = _end(task) if task.steady else _motion(task, shown)
-    except ValueError as error:
-        raise SceneError(f"{task.name}: {error}") from error
     balls = task.model.bearing.is_ball
     state = conditions(task.model, found, speed) if balls else None
     held, state = jax.device_get((found, state))

@@ -6,7 +6,7 @@ import pytest
 
 from bearingjax import SceneError, read_scene
 from bearingjax.files import shipped_scenes
-from bearingjax.files.key_lines import _keys, line_of_key, place_of
+from bearingjax.files.scene_errors import _keys, line_of_key, place_of
 from bearingjax.files.scene_file import parse_scene
 from bearingjax.files.table import Table
 from bearingjax.studies.shaft.read import read_shafts
@@ -214,7 +214,7 @@ friction = 0.1
         ("end_radius", "radius", "9: `bearing.rib.end_radius`"),
         ('"1.5 mm"', "1", "9: `bearing.rib.contact_height`"),
         ("Fy", "fy", "11: `operating.load.fy`"),
-        ('"9 mm"', '"90 mm"', "1: [bearing]"),
+        ('"9 mm"', '"90 mm"', "5: `bearing.roller_diameter`"),
         ("friction", "[contact.law]\nfriction", "13: `contact.law`"),
     ],
 )

@@ -1,6 +1,8 @@
-"""The line of a key in a scene file, for messages: `tomllib` gives none."""
+"""Errors of scenes: the line of a key, which `tomllib` does not give, and the words of
+constructors without Python's names."""
 
 import bisect
+import contextlib
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -40,6 +42,32 @@ def error_at(
         value: As in `place_of`.
     """
     return SceneError(f"{place_of(file, key, value)}: `{key}`: {problem}")
+
+
+def problem_of(error: Exception) -> str:
+    """Return the message of an error without the class or function at its head.
+
+    Args:
+        error: Of a check, such as "Disc: `mass` is -1 kg; it must be above 0 kg."
+    """
+    head, colon, problem = str(error).partition(": ")
+    named = colon and head.replace(".", "_").isidentifier()
+    return (problem if named else str(error)).removesuffix(".")
+
+
+@contextlib.contextmanager
+def scene_errors(name: str) -> Iterator[None]:
+    """Context that turns errors of arguments into those of a scene.
+
+    Args:
+        name: Name of the scene, or what else the message begins with.
+    """
+    try:
+        yield
+    except SceneError:
+        raise
+    except ValueError as error:
+        raise SceneError(f"{name}: {problem_of(error)}") from error
 
 
 def place_of(file: str | Path, key: str, value: Any = _UNKNOWN) -> str:
