@@ -82,7 +82,7 @@ class Task(eqx.Module):
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
         return solve_case(element, case, self.support, self.options, start)
 
-    def outputs(self, solution: Solution) -> dict[str, jax.Array]:
+    def outputs(self, solution: Any) -> dict[str, jax.Array]:
         """Outputs of a solution by name; floats of a failed solve are NaN."""
         solved = solution.converged
 

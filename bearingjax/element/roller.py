@@ -103,7 +103,7 @@ class Roller(AbstractRollingElement):
         return self.constants.diameter
 
     @property
-    def tether(self) -> Scalar:
+    def tether(self) -> Float[Array, "..."]:
         return self.constants.tether
 
     @property

@@ -66,7 +66,7 @@ class AbstractRollingElement(eqx.Module):
         """Diameter of the rolling element [m]."""
 
     @property
-    def tether(self) -> Scalar:
+    def tether(self) -> Float[Array, "..."]:
         """Stiffness of the spring that holds an element without contact [N/m].
 
         Too soft to affect any result; zero for an element without unknowns.

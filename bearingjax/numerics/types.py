@@ -7,7 +7,6 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-Scalar = Float[Array, ""]
 Count = Int[Array, ""]
 Flag = Bool[Array, ""]
 Ring = Float[Array, "12"]
@@ -15,6 +14,7 @@ RingStiffness = Float[Array, "12 12"]
 T = TypeVar("T")
 
 if TYPE_CHECKING:
+    Scalar = Float[Array, ""]
 
     class Real:
         """Number of a field that `as_real` converts: set from any, read as an array."""
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
         def __set__(self, owner: Any, value: Any) -> None: ...
 
 else:
+    # A design or result that was brought to NumPy has its numbers there.
+    Scalar = Float[Array | np.ndarray, ""]
     Real = Scalar
     RealOrNone = Scalar | None
 

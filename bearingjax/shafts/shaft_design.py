@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..cases.cases import Cases, check_hours
+from ..cases.cases import check_hours
 from ..design.checks import one_of
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions
@@ -118,7 +118,7 @@ class ShaftDesign(AbstractSystem):
     def element(self) -> BearingElement[Any]:
         raise TypeError("ShaftDesign: it has several bearings, `system.seats`.")
 
-    def check(self, cases: Cases) -> None:
+    def check(self, cases: Any) -> None:
         pass
 
     def solve_case(self, case: Any, support: Any, options: Any) -> DutyResult:
@@ -167,7 +167,7 @@ class ShaftDesign(AbstractSystem):
     def failure_message(self, solved: Any) -> str:
         return "the shafts find no equilibrium on their bearings"
 
-    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
+    def warnings(self, cases: Any, solved: Any) -> list[Warning]:
         found = []
         for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
             every = warnings_of_cases(jax.device_get(sizes), ALL)

@@ -65,7 +65,7 @@ class Ball(AbstractRollingElement):
         return self.ball_diameter
 
     @property
-    def tether(self) -> Scalar:
+    def tether(self) -> Float[Array, "..."]:
         return self.spring
 
     def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:

@@ -49,7 +49,7 @@ class AbstractVibratingSystem(eqx.Module):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar,
+        phase: Scalar | float,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         """Restoring forces f, positive against the displacement [N, N m].
@@ -63,7 +63,7 @@ class AbstractVibratingSystem(eqx.Module):
 
     @abc.abstractmethod
     def excitation(
-        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         """Return the external forces e [N, N m].
 
@@ -126,13 +126,13 @@ class VibratingSystem(AbstractVibratingSystem):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar,
+        phase: Scalar | float,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         return self.restoring(q, velocity, phase, frequency)
 
     def excitation(
-        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 

@@ -67,7 +67,7 @@ class VibratingRotor(AbstractVibratingSystem):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar,
+        phase: Scalar | float,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         force, speed = self.stiffness @ q, self._speed(frequency)
@@ -85,7 +85,7 @@ class VibratingRotor(AbstractVibratingSystem):
         return force + jnp.einsum("sim,si->m", self.rows, each)
 
     def excitation(
-        self, phase: Scalar, frequency: Scalar, acceleration: Scalar
+        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 
