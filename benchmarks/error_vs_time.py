@@ -99,7 +99,7 @@ class WholeLength(AbstractQuadrature):
     def reference(self):
         return np.polynomial.legendre.leggauss(self.points)
 
-    def table(self, offset, kinks, dtype):
+    def table(self, offset, kinks, dtype, arcs=False):
         return (offset(jnp.asarray(self.reference()[0], dtype)),)
 
     def nodes(self, offset, args, table, a, b, arcs=False):

@@ -195,10 +195,10 @@ def test_unit_of_a_named_tuple():
         moments: Annotated[list, unit(("N", "N m"))]
         life: Annotated[float | None, unit("rev")]
         ratio: Annotated[float, unit("1")]
-        count: int
+        rows: int
 
     found = Example(1.0, [2.0, 2.0], 3.0, 4.0, 5)
-    names = "life", "ratio", "count", "force"
+    names = "life", "ratio", "rows", "force"
     assert [unit_of(found, name) for name in names] == ["rev", "", "", ""]
     assert unit_of(Example, "moments.1") == unit_of(Example, "moments", (1,)) == "N m"
     assert unit_of(Example, "moments") == ""

@@ -124,10 +124,10 @@ class TorusChoices(AbstractChoices):
     names = ("kinematics",)
 
     @classmethod
-    def from_rows(cls, rows, kinematics=None):
-        return cls(kinematics=kinematics or bj.element.Linearised())
+    def from_rows(cls, rows, **given):
+        return cls(kinematics=given["kinematics"] or bj.element.Linearised())
 
-    def rolling_element(self, part, speed, deviation):
+    def rolling_element(self, part, speed, deviation) -> AbstractRollingElement:
         return TorusRoller(part.bearing)
 
 

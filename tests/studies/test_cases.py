@@ -468,7 +468,7 @@ def test_wrong_outputs(run, scene):
 def test_warnings_of_designs_merge_if_alike_but_for_numbers():
     texts = "loose by 0.42 µm", "loose by 3e-1 µm", "x"
     said = [Warning("loose_ring", text) for text in texts]
-    told = cases_table._alike(said[:1], said)
+    told = cases_table._merge_warnings(said[:1], said)
     assert told == ("loose by 0.42 µm (2 designs alike)", "x")
 
 
@@ -495,5 +495,5 @@ def test_a_report_shows_no_round_off(scene):
 
 @pytest.mark.parametrize("text, value", [("12", 12), ("1.5", 1.5), ("C3", "C3")])
 def test_cells_without_unit_are_numbers_or_text(text, value):
-    found = cases_list._bare(text)
+    found = cases_list._parse_value(text)
     assert found == value and isinstance(found, type(value))
