@@ -497,3 +497,9 @@ def test_a_report_shows_no_round_off(scene):
 def test_cells_without_unit_are_numbers_or_text(text, value):
     found = cases_list._parse_value(text)
     assert found == value and isinstance(found, type(value))
+
+
+def test_a_method_that_needs_an_energy_is_refused_for_turning_balls():
+    turning = "cases={ grid = { 'operating.inner_speed' = ['0 rpm', '3000 rpm'] } }"
+    with pytest.raises(SceneError, match="`numerics.equilibrium`: minimises an energy"):
+        read_cases("deep_groove", ["numerics.equilibrium=bfgs", turning])

@@ -235,6 +235,23 @@ def scene_of(
     return dataclasses.replace(scene, inputs=inputs, warnings=warned)
 
 
+def check_equilibrium(
+    numerics: Table, element: BearingElement[Any], speed: Speed | None
+) -> None:
+    """Raise SceneError if forces at a speed have no energy that the method minimises.
+
+    Args:
+        numerics: [numerics] of the scene.
+        element: Its bearing.
+        speed: Ring speeds, or `None` at rest.
+    """
+    newton = isinstance(element.equilibrium, TrustRegionNewton)
+    if not newton and not element.has_potential(speed):
+        problem = "minimises an energy, and gyroscopic moments and contact constants at"
+        problem += " the operating angle have none; leave it out, or write newton"
+        raise numerics.error("equilibrium", problem)
+
+
 def read_element(
     bearing: AbstractBearing | BearingSet,
     contact: Table,
@@ -273,11 +290,7 @@ def _scene(top, name, bearing, preload, catalogue, warned) -> Scene:
     if held and speed is not None:
         problem = "constant_angle is for balls at rest; leave out the speeds"
         raise numerics.error("kinematics", problem)
-    newton = isinstance(element.equilibrium, TrustRegionNewton)
-    if not newton and not element.has_potential(speed):
-        problem = "minimises an energy, and gyroscopic moments and contact constants at"
-        problem += " the operating angle have none; leave it out, or write newton"
-        raise numerics.error("equilibrium", problem)
+    check_equilibrium(numerics, element, speed)
     operating.fill_free(bearing)
     life = read_life(top, bearing, speed, points)
     speeds = "limiting_speed", "reference_speed"

@@ -33,7 +33,7 @@ from ...numerics.labels import stated_axes
 from ...numerics.units import unit_of
 from ...numerics.warning import Warning
 from ...statics.solution import Solution
-from ..bearing.read_scene import Scene, scene_of
+from ..bearing.read_scene import Scene, check_equilibrium, scene_of
 
 OPERATING = {
     **{
@@ -220,6 +220,9 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     design_groups, design, made, warned = _designs(data, path, columns, scene)
     _check_outputs(table, outputs, design_groups)
     cases = _cases(table, scene, columns, design)
+    if any(np.any(x) for x in (cases.inner_speed, cases.outer_speed) if x is not None):
+        numerics = Table(data, path).table("numerics")
+        check_equilibrium(numerics, scene.element, Speed(1.0, 1.0))
     warned += speed_warnings(design_groups, cases)
     return CaseTable(
         scene=scene,
