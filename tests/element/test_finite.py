@@ -127,7 +127,7 @@ def test_two_slices_stand_up_to_a_limit():
     """Approach of the two middle slices above 2 n s²/D = 18.7 um: a saddle."""
     element = sharp(20, bj.element.Finite())
     s = 0.5 * 0.01372 / 20
-    drop = float(bj.CircularCrown(0.02).drop(jnp.asarray(s), None, None))
+    drop = float(bj.CircularCrown(0.02).drop(jnp.asarray(s), 0.01372, 0.014))
     limit = 2 * (10 / 9) * s**2 / 0.014
     assert abs(limit - 18.7e-6) < 0.05e-6
     assert result_of(element, 2 * (0.98 * limit + drop)) is bj.Result.CONVERGED
