@@ -195,5 +195,5 @@ def test_bad_input():
         assert isinstance(bj.BearingElement(bearing).kinematics, bj.element.Finite)
     spring = bj.PreloadSpring(300.0)
     pair = bj.BearingSet.back_to_back(balls(), 0.02, spring=spring)
-    with pytest.raises(ValueError, match="with Finite"):
+    with pytest.raises(ValueError, match="is finite, and a spring presses a row"):
         bj.BearingElement(pair, kinematics=bj.element.Finite())
