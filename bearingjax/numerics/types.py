@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 else:
     # A design or result that was brought to NumPy has its numbers there.
-    Scalar = Float[Array | np.ndarray, ""]
+    Scalar = Float[Array | np.ndarray | np.floating, ""]
     Real = Scalar
     RealOrNone = Scalar | None
 
