@@ -248,7 +248,7 @@ def test_bad_input(pair):
         (bj.BearingElement(balls()), "a bearing alone"),
         (one_way, "no rows face each other"),
         (bj.BearingElement(bj.BearingSet.back_to_back(roller, 0.02)), "no axial load"),
-        (bj.BearingElement(sprung), "a row has a spring"),
+        (bj.BearingElement(sprung), "a spring presses a row"),
         (bj.BearingElement(bj.BearingSet.self_aligning(ALIGNING)), "one inner ring"),
     ):
         with pytest.raises(ValueError, match=problem):
