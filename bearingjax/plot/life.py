@@ -41,7 +41,7 @@ def life_overview(run: Any, title: str = "") -> Figure:
     parts: Any = figure.subfigures(2, 1, height_ratios=[5.4, 0.6])
     upper, foot = parts
     left, right = upper.subplots(1, 2)
-    order = np.sort(run.worst(_MOST)[0])
+    order = np.sort(run.worst_cases(_MOST)[0])
     _lives(run, order, left)
     _shares(run, order, right)
     foot.text(

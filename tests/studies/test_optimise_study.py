@@ -148,7 +148,7 @@ def test_optimise_command_invalid_measure_is_scene_error(run, monkeypatch):
     monkeypatch.setattr("bearingjax.studies.optimise.run.optimise", refuse)
     done = run("optimise", CLEARANCE)
     assert done.status == 2 and done.out == ""
-    assert "clearance: Displacement: `freedom` is 'ux'" in done.err
+    assert "clearance: `freedom` is 'ux'" in done.err
 
 
 def test_optimise_command_progress_on_terminal_only(run, monkeypatch):
