@@ -358,7 +358,9 @@ def test_constant_contact_angle_in_closed_form():
         assert float(s.stiffness[8, 8]) == pytest.approx(1.5 * force / moved, rel=1e-8)
     with pytest.raises(ValueError, match="constant contact angle.*leave out the speed"):
         element.force(jnp.zeros(12), bj.Speed(100.0))
-    with pytest.raises(ValueError, match="constant contact angle.*angular contact and thrust"):
+    with pytest.raises(
+        ValueError, match="constant contact angle.*angular contact and thrust"
+    ):
         bj.BearingElement(masta(0.0), kinematics=bj.element.ConstantAngle())
 
 

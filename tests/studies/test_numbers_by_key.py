@@ -14,6 +14,7 @@ from bearingjax.studies.optimise.read_optimise import (
     installed_numbers,
     read_bearing_optimisation,
 )
+from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
 
 
 def one_of_each_type():
@@ -118,3 +119,18 @@ def test_a_search_refuses_a_number_that_moves_the_pitch_diameter(key):
     search = f"optimise={{ objective = 'peak_pressure', variables = {free} }}"
     with pytest.raises(SceneError, match=f"{key}.*the pitch diameter follows from it"):
         read_bearing_optimisation("spherical_roller", [search])
+
+
+def test_a_search_of_shafts_refuses_it_too():
+    bearing = parse_scene(shipped_scenes()["spherical_roller"], ())["bearing"]
+    row = ", ".join(f"{k} = {v!r}" for k, v in bearing.items())
+    place = "position = '1150 mm', floating = true"
+    free = "{ 'bearings.floating.contact_angle' = { from = '9 deg', to = '10 deg' } }"
+    settings = [
+        f"bearings.floating={{ {place}, {row} }}",
+        f"optimise={{ objective = 'system_life', variables = {free} }}",
+    ]
+    with pytest.raises(
+        SceneError, match=r"give \[bearings.floating\] `pitch_diameter`"
+    ):
+        read_optimisation("shaft_fan", settings)

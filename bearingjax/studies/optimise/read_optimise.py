@@ -357,21 +357,34 @@ def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     return numbers
 
 
+def refuse_moved_pitch(table: Table, key: str, head: str, bearing: Table) -> None:
+    """Raise SceneError for a variable from which a left-out pitch diameter follows: a
+    search would hold the pitch diameter of its start.
+
+    Args:
+        table: `[optimise.variables]`.
+        key: Key of the variable.
+        head: Path of the bearing's table in the scene.
+        bearing: The bearing's table.
+    """
+    name = key.removeprefix(f"{head}.")
+    if name != key and name in PITCH_FOLLOWS and pitch_follows(bearing):
+        problem = (
+            "the pitch diameter follows from it and `outer_raceway_radius` in this"
+            f" scene, and a search holds it; give [{head}] `pitch_diameter` in place of"
+            " `outer_raceway_radius`, which then follows"
+        )
+        raise table.error(key, problem)
+
+
 def _variables(
     table: Table, top: Table, scene: Scene, begun: set[str]
 ) -> tuple[Variable, ...]:
     unknown = {} if scene.fits is None else scene.fits.unknown
-    derived = pitch_follows(top.table("bearing"))
     for key in table.keys():
+        refuse_moved_pitch(table, key, "bearing", top.table("bearing"))
         if (warm := WARMTH.get(key)) in unknown:
             raise no_expansion(top.table("fit"), warm, f"bearing.{unknown[warm]}")
-        if derived and key.removeprefix("bearing.") in PITCH_FOLLOWS:
-            problem = (
-                "the pitch diameter follows from it and `outer_raceway_radius` in this"
-                " scene, and a search holds it; give [bearing] `pitch_diameter` in"
-                " place of `outer_raceway_radius`, which then follows"
-            )
-            raise table.error(key, problem)
     return read_variables(table, scene.installed, installed_numbers(scene), begun)
 
 

@@ -35,6 +35,7 @@ from .read_optimise import (
     installed_numbers,
     read_bearing_optimisation,
     read_variables,
+    refuse_moved_pitch,
 )
 
 _OF_BEARINGS = ("rating_life", "static_safety", "peak_pressure", "tilt")
@@ -129,7 +130,11 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     numbers = shaft_numbers(scene)
     varying = cases.paths(design)
     heads = tuple(dict.fromkeys(".".join(key.split(".")[:2]) for key in numbers))
+    bearings = Table(data, path).table("bearings")
     for key in free.keys():
+        for seat in scene.system.seats:
+            place = f"bearings.{seat.name}"
+            refuse_moved_pitch(free, key, place, bearings.table(seat.name))
         if "." in key and ".".join(key.split(".")[:2]) not in heads:
             problem = f"{key!r} may not be free; what may are numbers of"
             raise free.error(key, f"{problem} {', '.join(heads)}")
