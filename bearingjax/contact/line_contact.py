@@ -89,7 +89,7 @@ class AbstractLineContact(eqx.Module):
 
     @abc.abstractmethod
     def contact_state(self, table: Any, a: Scalar, b: Scalar) -> Any:
-        """Data of a solved contact that `load_at` takes."""
+        """Data of a solved contact that `load` takes."""
 
     @abc.abstractmethod
     def load(self, carried: Any, xi: Float[Array, " point"]) -> Float[Array, " point"]:
@@ -102,7 +102,7 @@ class AbstractLineContact(eqx.Module):
         """Positions ξ that include that of the largest pressure, both ends first.
 
         Args:
-            carried: As in `load_at`.
+            carried: Result of `contact_state`.
             scan: Ascending positions from -1 to 1, evenly spaced.
             weight: Relative radius ρ^(-9/10) there: times the approach, this is
                 largest where the pressure is.

@@ -39,7 +39,7 @@ def error_at(
         file: Path of the scene; the name alone of what is no file.
         key: Dotted path of the key.
         problem: Fault and remedy.
-        value: As in `place_of`.
+        value: Value that was read, by default that in the file.
     """
     return SceneError(f"{place_of(file, key, value)}: `{key}`: {problem}")
 
@@ -48,7 +48,7 @@ def problem_of(error: Exception) -> str:
     """Return the message of an error without the class or function at its head.
 
     Args:
-        error: Of a check, such as "Disc: `mass` is -1 kg; it must be above 0 kg."
+        error: Error of a check, such as "Disc: `mass` is -1 kg; it must be above 0 kg."
     """
     head, colon, problem = str(error).partition(": ")
     named = colon and head.replace(".", "_").isidentifier()
@@ -77,7 +77,8 @@ def place_of(file: str | Path, key: str, value: Any = _UNKNOWN) -> str:
     that is not in the file, from `--set` or a list of cases.
 
     Args:
-        file, key: As in `error_at`.
+        file: Path of the scene; the name alone of what is no file.
+        key: Dotted path of the key.
         value: Value that was read, by default that in the file.
     """
     if not isinstance(file, Path):

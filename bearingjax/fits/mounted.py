@@ -200,7 +200,8 @@ def row_shifts(
 
     Args:
         bearing: A set.
-        mounting, conditions: As in `mount`.
+        mounting: Its seats, as in `mount`.
+        conditions: Temperatures and speeds, as in `mount`.
 
     Returns:
         Of each row, along +z of the set [m]; 0 of a bearing whose rows share both

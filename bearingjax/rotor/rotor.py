@@ -274,7 +274,9 @@ def matrices_about(
     """Return the rotor as matrices; compiled by the caller.
 
     Args:
-        rotor, speed, motion: As in `Rotor.linearise`.
+        rotor: The rotor.
+        speed: Its speed, positive from x towards y [rad/s].
+        motion: Motion of nodes and housings, as in `Rotor.linearise` [m, rad].
         supported: Whether its supports count. Modal damping takes them along anyway.
     """
     own, basis, shaft = rotor.unsupported_matrices(), rotor.motions(), rotor.shaft

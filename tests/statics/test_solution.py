@@ -36,3 +36,6 @@ def test_axes_under_vmap_are_led_by_cases(name):
         assert found[key].dims == ("case", *values.dims), key
         assert found[key].attrs == values.attrs
         np.testing.assert_array_equal(found[key][1], values)
+    assert one.failure_message == ""
+    with pytest.raises(ValueError, match="several cases; map over them"):
+        str(several.failure_message)

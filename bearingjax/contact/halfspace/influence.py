@@ -112,8 +112,8 @@ def influence(
             numbers.
         modulus: Contact modulus E* of both bodies [Pa].
         mirrored: Weight with which the pressure acts once more, mirrored at both ends
-            of the grid, a function as `Mirrored` of `FreeEnds`; `None`: none. With it
-            the kernel of an even grid is that of a graded one.
+            of the grid, a function as `MirroredWeight` of `FreeEnds`; `None`: none.
+            With it the kernel of an even grid is that of a graded one.
     """
     modulus = as_real(modulus)
     leaves = jax.tree.leaves(mirrored)
