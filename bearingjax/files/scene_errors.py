@@ -17,6 +17,8 @@ _CLOSINGS = "", "]", "]]", "]]]", "]}", "]}]"
 """Ends of a value of several lines that was cut off: TOML breaks lines in lists and
 texts only. Texts cannot be closed here, because keys of a later line are none."""
 _UNKNOWN: Any = object()
+ABSENT: Any = object()
+"""Value of a key that the scene lacks, also where `--set` took it away."""
 
 
 def join_key(path: str, key: str) -> str:
@@ -90,7 +92,8 @@ def place_of(file: str | Path, key: str, value: Any = _UNKNOWN) -> str:
         return file.name
     if key not in there:
         above = [table for table in there if key.startswith((f"{table}.", f"{table}["))]
-        key = max(above, key=len, default="") if value is _UNKNOWN else ""
+        missing = value is _UNKNOWN or value is ABSENT
+        key = max(above, key=len, default="") if missing else ""
     elif not (value is _UNKNOWN or value == there[key]):
         key = ""
     return f"{file.name}:{line_of_key(text, key)}" if key else file.name

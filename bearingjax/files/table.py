@@ -10,7 +10,7 @@ from typing import Any
 
 from ..numerics.units import unit_of
 from .quantity import KINDS, SceneError, article_of, kind_of, to_si
-from .scene_errors import error_at, join_key, place_of, problem_of
+from .scene_errors import ABSENT, error_at, join_key, place_of, problem_of
 
 _MISSING: Any = object()
 _ABOUT = re.compile(
@@ -115,8 +115,8 @@ class Table:
 
     def error(self, key: str, problem: object) -> SceneError:
         """Return an error that names file, line and key."""
-        value = {"value": self._data[key]} if key in self._data else {}
-        return error_at(self._file, self.path_of(key), problem, **value)
+        value = self._data.get(key, ABSENT)
+        return error_at(self._file, self.path_of(key), problem, value)
 
     def own_error(self, problem: object) -> SceneError:
         """Return an error that names file, line and table."""

@@ -3,6 +3,7 @@
 import json
 from html import unescape
 
+import equinox as eqx
 import jax
 import numpy as np
 import pyarrow.csv
@@ -503,3 +504,13 @@ def test_a_method_that_needs_an_energy_is_refused_for_turning_balls():
     turning = "cases={ grid = { 'operating.inner_speed' = ['0 rpm', '3000 rpm'] } }"
     with pytest.raises(SceneError, match="`numerics.equilibrium`: minimises an energy"):
         read_cases("deep_groove", ["numerics.equilibrium=bfgs", turning])
+
+
+def test_cases_of_one_design_are_of_the_preloaded_pair():
+    loads = "cases={ grid = { 'operating.load.Fy' = ['-1 kN', '-2 kN'] } }"
+    pressed = "set={ arrangement = 'back_to_back', spacing = '17 mm',"
+    pressed += " preload_force = '300 N' }"
+    table = read_cases("ball_pair", [pressed, loads])
+    (group,) = table.design_groups
+    assert eqx.tree_equal(group.element, table.scene.running())
+    assert not eqx.tree_equal(group.element, table.scene.element)

@@ -253,3 +253,9 @@ def test_table_error_places():
     )
     with pytest.raises(SceneError, match=r"^a\.toml: `bearings\.A\.rows`: 'x' is not"):
         table.table("bearing").integer("rows")
+
+
+def test_a_key_that_a_setting_took_away_has_no_line():
+    pair = "set={ arrangement = 'back_to_back', preload_force = '300 N' }"
+    with pytest.raises(SceneError, match=r"^ball_pair.toml: `set.spacing`: is missing"):
+        read_scene("ball_pair", [pair])
