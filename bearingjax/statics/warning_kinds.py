@@ -20,7 +20,7 @@ from ..numerics.units import shown_count
 from ..numerics.warning import Kind
 from . import warning_sizes as sizes
 from .rollers import EDGE_PRESSURE
-from .solution import Solution
+from .solution import BallSolution, RollerSolution, Solution, solution_kind
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,11 +39,12 @@ class SolutionKind(Kind):
 
 
 def _of_balls(element, speed):
-    return element.choices.elements == "balls"
+    return issubclass(solution_kind(element.choices), BallSolution)
 
 
 def _of_rollers(element, speed):
-    return element.choices.elements == "rollers"
+    # Rolling elements of a user's own have neither of the two kinds of results.
+    return issubclass(solution_kind(element.choices), RollerSolution)
 
 
 def _has_ribs(element, speed):
