@@ -16,7 +16,7 @@ import bearingjax as bj
 from bearingjax import design
 from bearingjax.cases.output_labels import label_output
 from bearingjax.cases.sweep import SUMMARIES
-from bearingjax.files.quantity import KINDS, kind_of
+from bearingjax.files.quantity import QUANTITIES, kind_of
 from bearingjax.numerics.labels import axes_of
 from bearingjax.numerics.types import as_real
 from bearingjax.numerics.units import field_metadata, shown_count, unit, unit_of, units
@@ -117,7 +117,7 @@ def floats(kind):
 def test_a_scene_can_hold_every_number_of_the_drawing(kind):
     for name in numbers(kind):
         unit = unit_of(kind, name)
-        assert not unit or KINDS[kind_of(unit)][0] == unit, name
+        assert not unit or QUANTITIES[kind_of(unit)][0] == unit, name
 
 
 @pytest.mark.parametrize("kind", [RollerSolution, BallSolution])

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..fits.fits import Mounting
 from ..life.life import Life
-from ..numerics.labels import Labelled, labelled_fields, summaries
+from ..numerics.labels import LabelledArray, labelled_fields, summaries
 from ..statics.solution import BallSolution, RollerSolution
 from .cases import Cases
 
@@ -18,17 +18,17 @@ OPERATING_PRELOAD = "operating_preload"
 
 _KINDS = RollerSolution, BallSolution, Life, Mounting
 
-LARGEST = summaries(RollerSolution) | summaries(BallSolution)
+FIELD_OF_LARGEST = summaries(RollerSolution) | summaries(BallSolution)
 """Fields of a `Solution` by the name of the output that is their largest number."""
 
-_FIELD_OF = LARGEST | {
+_FIELD_OF = FIELD_OF_LARGEST | {
     OPERATING_CLEARANCE: "radial_clearance",
     OPERATING_PRELOAD: "roller_load",
 }
 """Fields that have the units of outputs of other names."""
 
 
-def label_output(name: str, values: np.ndarray) -> Labelled:
+def label_output(name: str, values: np.ndarray) -> LabelledArray:
     """Return an output of a sweep with the unit and axes of the field that it has.
 
     Args:
@@ -38,22 +38,24 @@ def label_output(name: str, values: np.ndarray) -> Labelled:
     field = _FIELD_OF.get(name, name)
     for kind in _KINDS:
         if field in kind.__dataclass_fields__:
-            found = Labelled.field(kind, field, values, ["case"])
+            found = LabelledArray.field(kind, field, values, ["case"])
             break
     else:
-        found = Labelled(np.asarray(values), ())
+        found = LabelledArray(np.asarray(values), ())
     if len(found.axes) == values.ndim and found.axes[0] == "case":
         return found
     # A user's own array under the name of a field: its axes are unknown.
     axes = ("case", *(f"{name}_{k}" for k in range(1, values.ndim)))
     units = found.units if isinstance(found.units, str) else "1"
-    return Labelled(found.values, axes, units)
+    return LabelledArray(found.values, axes, units)
 
 
-def label_cases(cases: Cases) -> Mapping[str, Labelled]:
+def label_cases(cases: Cases) -> Mapping[str, LabelledArray]:
     """Return the arrays of cases with their labels; `prescribed_ux` and the like."""
     found = labelled_fields(cases)
     for name, values in cases.prescribed.items():
         units = "m" if name.startswith("u") else "rad"
-        found[f"prescribed_{name}"] = Labelled(np.asarray(values), ("case",), units)
+        found[f"prescribed_{name}"] = LabelledArray(
+            np.asarray(values), ("case",), units
+        )
     return found

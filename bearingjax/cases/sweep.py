@@ -31,7 +31,7 @@ from ..statics.support import RESTRAINED, Support, check_held
 from .batches import Batches
 from .cases import Cases
 from .names_of_zeros import structural_zeros
-from .output_labels import LARGEST, label_cases, label_output
+from .output_labels import FIELD_OF_LARGEST, label_cases, label_output
 from .sweep_program import WARNED, Program, Task
 
 
@@ -40,15 +40,16 @@ def _largest_value(field: str, solution: Solution) -> Array:
 
 
 SUMMARIES: dict[str, Callable[[Solution], Array]] = {
-    name: functools.partial(_largest_value, field) for name, field in LARGEST.items()
+    name: functools.partial(_largest_value, field)
+    for name, field in FIELD_OF_LARGEST.items()
 } | {
     "n_loaded": lambda s: jnp.sum(s.load_zone),
     "iterations": lambda s: s.stats.iterations,
     "residual": lambda s: s.stats.residual,
 }
 """Outputs other than fields of a Solution: the largest numbers of fields that state a
-name for it (`LARGEST`: the largest load of a rolling element, the largest contact
-pressure), number of loaded elements, steps of the load solve, residual."""
+name for it (`FIELD_OF_LARGEST`: the largest load of a rolling element, the largest
+contact pressure), number of loaded elements, steps of the load solve, residual."""
 
 
 class Sweep(eqx.Module):
@@ -60,8 +61,9 @@ class Sweep(eqx.Module):
     Attributes:
         cases: The cases that were solved.
         outputs: By name, leading axis case; among them `warning_KIND`, the size of
-            every kind of warning that can arise (`statics.warning_kinds.KINDS`, and
-            with conditions of a life `life.life_warning.LIFE_KINDS`).
+            every kind of warning that can arise
+            (`statics.warning_kinds.SOLUTION_KINDS`, and with conditions of a life
+            `life.life_warning.LIFE_KINDS`).
         moving_ring: "outer" or "inner".
         zeros: (output, names along its last axes whose numbers are zero whatever the
             case), each; a table leaves them out.

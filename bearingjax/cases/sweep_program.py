@@ -37,7 +37,7 @@ from .near_starts import (
 BLOCK = 4096
 """Cases of a device between two visits of the host, or a chunk if that is more."""
 
-LARGEST = 4 * 2**30
+LARGEST_OUTPUTS = 4 * 2**30
 """Bytes that the outputs of a sweep may take."""
 
 _PAUSE = 0.005
@@ -167,7 +167,7 @@ class Program:
         rows = rows_of(self.element.bearing)
         elements = sum(row.bearing.n_elements for row in rows)
         numbers = n * elements * (20 * self.task.options.points + 1000)
-        return 8 * numbers > LARGEST
+        return 8 * numbers > LARGEST_OUTPUTS
 
     def _blocks(self, held, like, near, progress=False, stop=None):
         """Outputs of cases, in blocks as in a sweep of `like` cases."""
@@ -306,11 +306,11 @@ def not_run(name: str, dtype: np.dtype) -> int | float:
 def _check_size(out, n):
     """Raise if the outputs of all cases take too much memory."""
     needed = sum(v.dtype.itemsize * math.prod((n, *v.shape[1:])) for v in out.values())
-    if needed > LARGEST:
+    if needed > LARGEST_OUTPUTS:
         raise ValueError(
             f"sweep: the outputs of {n} cases take {needed / 2**30:.3g} GiB, more than"
-            f" {LARGEST / 2**30:g}; name those that you need in `outputs`, or use fewer"
-            " `points`."
+            f" {LARGEST_OUTPUTS / 2**30:g}; name those that you need in `outputs`, or"
+            " use fewer `points`."
         )
 
 

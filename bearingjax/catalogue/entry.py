@@ -2,7 +2,7 @@
 
 The folder `data/` has one file per type: `type`, the `[sources]` with their short
 names, and a table for each bearing under its designation, in the units of catalogues
-(`UNITS`). The `bearing` of such a table holds the keywords of its design.
+(`ENTRY_UNITS`). The `bearing` of such a table holds the keywords of its design.
 """
 
 import dataclasses
@@ -70,7 +70,7 @@ _RATINGS = (
 )
 _SIZES = ("bore", "outside_diameter", "width", "inner_width", "outer_width")
 
-UNITS = {
+ENTRY_UNITS = {
     **dict.fromkeys(_RATINGS[:3], "kN"),
     **dict.fromkeys(_RATINGS[3:], "rpm"),
     "mass": "kg",
@@ -103,7 +103,7 @@ def from_catalogue_unit(key: str, number: Any) -> Any:
     Powers of ten shift the decimal point, so that 10 µm are exactly 1e-05 m.
 
     Args:
-        key: Its key, which tells the unit (`UNITS`).
+        key: Its key, which tells the unit (`ENTRY_UNITS`).
         number: As in the files: a number, a list or a table of such; a word.
     """
     if isinstance(number, Mapping):
@@ -112,7 +112,7 @@ def from_catalogue_unit(key: str, number: Any) -> Any:
         return [from_catalogue_unit(key, one) for one in number]
     if isinstance(number, str):
         return number
-    unit = UNITS.get(key, "mm")
+    unit = ENTRY_UNITS.get(key, "mm")
     if unit in _POWERS:
         return float(Decimal(number).scaleb(_POWERS[unit]))
     if unit in _FACTORS:
@@ -127,7 +127,7 @@ def in_catalogue_unit(key: str, value: float) -> str:
         key: Its key, which tells the unit; not that of a pure number.
         value: Number in SI.
     """
-    unit = UNITS.get(key, "mm")
+    unit = ENTRY_UNITS.get(key, "mm")
     if unit in _FACTORS:
         return f"{value / _FACTORS[unit]:.12g} {unit}"
     number = Decimal(repr(value)).scaleb(-_POWERS[unit]).normalize()

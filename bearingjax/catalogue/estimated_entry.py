@@ -12,7 +12,7 @@ from ..files.table import not_among
 from .entry import (
     CLEARANCE,
     CLEARANCES,
-    UNITS,
+    ENTRY_UNITS,
     CatalogueEntry,
     class_clearance,
     from_catalogue_unit,
@@ -181,7 +181,7 @@ def _round_as_printed(name: str, value: Any, digits: int = 5) -> Any:
         return int(value)
     if name.endswith("osculation"):
         return round(float(value), 6)
-    if UNITS.get(name) == "deg":
+    if ENTRY_UNITS.get(name) == "deg":
         shown = f"{np.rad2deg(float(value)):.6g}"
     else:
         shown = f"{1e3 * float(value):.{digits}g}"

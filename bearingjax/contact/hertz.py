@@ -20,7 +20,7 @@ from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.power import positive_power
 from ..numerics.units import unit
 
-EXPONENT = (3, 2)
+POINT_EXPONENT = (3, 2)
 """Load ∝ approach^(3/2), as a fraction."""
 
 # Newton steps: quadratic from a start within 10 %.
@@ -57,7 +57,7 @@ class Ellipse(NamedTuple):
 
     def load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
         """Load Q [N] of an approach [m]; 0 where apart."""
-        return self.constant * positive_power(approach, *EXPONENT)
+        return self.constant * positive_power(approach, *POINT_EXPONENT)
 
     def peak_pressure(self, load: Float[Array, "..."]) -> Float[Array, "..."]:
         """Pressure in the middle, 3Q/(2π a b) [Pa], of a load Q [N]."""

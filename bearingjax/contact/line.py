@@ -13,7 +13,7 @@ from ..design.material import Material, contact_modulus
 from ..numerics.types import Real, Scalar
 from ..numerics.units import real
 
-EXPONENT = (10, 9)
+LINE_EXPONENT = (10, 9)
 """Line load ∝ approach^(10/9), as a fraction."""
 
 

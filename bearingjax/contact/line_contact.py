@@ -31,12 +31,12 @@ from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
 from ..numerics.units import unit
-from .line import EXPONENT, AbstractLineLaw, Palmgren
+from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren
 
 # φ = C/(n+1) x₊^(n+1), φ' = C x₊^n, φ'' = n C x₊^(n-1), n = 10/9: the powers differ by
 # factors of x, so that one root serves all three.
 # Source: Sorokin, Zhang, Ivannikov (2018), eq. (1), (2), (4).
-_N, _D = EXPONENT
+_N, _D = LINE_EXPONENT
 _FACTORS = (_D / (_N + _D), 1.0, _N / _D)
 
 _NEAR = tuple(1.0 - 10.0**-k for k in (1, 2, 3, 4, 6, 9))

@@ -14,7 +14,7 @@ from ..numerics.types import Scalar, as_real
 from ..numerics.warning import Warning
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
-from .line import EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
+from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
 from .line_contact import LineContact, response
 
 _ENOUGH = 1e-13
@@ -85,7 +85,7 @@ def slices(
     end, xi = 0.5 * length * tilt, 2.0 * position / length
     # The approach of an even load, counted from where the bodies touch first.
     first = jnp.min(line.drop(xi) - tilt * position)
-    even = (load / (line.constant * length)) ** (EXPONENT[1] / EXPONENT[0])
+    even = (load / (line.constant * length)) ** (LINE_EXPONENT[1] / LINE_EXPONENT[0])
 
     def load_error(approach, args):
         line, made, load, end = args
@@ -118,7 +118,7 @@ def slices(
     return Slices(approach, line_load, pressure)
 
 
-class Compared(eqx.Module):
+class SliceComparison(eqx.Module):
     """A single solved contact, and slices under the same load and tilt.
 
     Attributes:
@@ -173,7 +173,7 @@ class Compared(eqx.Module):
 
 
 def compared_warnings(
-    contact: RollerContact, cases: list[Compared], narrowed: str | None = None
+    contact: RollerContact, cases: list[SliceComparison], narrowed: str | None = None
 ) -> list[Warning]:
     """Warnings about solved contacts of a roller.
 

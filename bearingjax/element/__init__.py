@@ -64,7 +64,7 @@ hand-over between threads, half of the time of a call (benchmarks/single_call.py
 Names
 -----
 
-- The bearing: `BearingElement`, `BearingModel`, `Evaluated`, `Speed`.
+- The bearing: `BearingElement`, `BearingModel`, `BearingResponse`, `Speed`.
 - As a function of time: `orbiting_force`, `ring_force`, `FunctionParameters`.
 - Kinematics: `Linearised`, `Finite`, `ConstantAngle`, `AbstractKinematics`.
 - Turning balls: `OuterControl`, `InnerControl`, `EqualShare`, `LoadShare`,
@@ -92,7 +92,7 @@ from .balls.ball_speed import (
     ball_mass,
 )
 from .bearing_element import BearingElement
-from .bearing_model import BearingModel, Evaluated
+from .bearing_model import BearingModel, BearingResponse
 from .choices import AbstractChoices, choices_for
 from .frame import FREEDOMS, LOADS, RINGS
 from .function import FunctionParameters, orbiting_force, ring_force
@@ -103,7 +103,7 @@ from .row import Row
 from .solved_row import RowResults, inertia_load
 
 __all__ = [
-    "BearingElement", "BearingModel", "Evaluated", "Speed", "orbiting_force",
+    "BearingElement", "BearingModel", "BearingResponse", "Speed", "orbiting_force",
     "ring_force", "FunctionParameters", "Linearised", "Finite", "ConstantAngle",
     "AbstractKinematics", "OuterControl", "InnerControl", "EqualShare", "LoadShare",
     "FrictionLimited", "CentrifugalOnly", "OperatingCentrifugal",

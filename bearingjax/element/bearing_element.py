@@ -19,7 +19,7 @@ from ..numerics.types import Ring, Scalar
 from ..numerics.warning import Warning
 from .azimuth import azimuths, orbit_ratio
 from .balls.ball_speed import AbstractRacewayControl
-from .bearing_model import BearingModel, Evaluated, RowGroup
+from .bearing_model import BearingModel, BearingResponse, RowGroup
 from .choices import AbstractChoices, check_kinds, choices_for, in_one_dtype
 from .equilibrium import ElementStart
 from .function import FunctionParameters, RingFunction, as_function
@@ -319,7 +319,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
 
     def evaluate(
         self, q: Ring, speed: Speed | None = None, *, near: State | None = None
-    ) -> Evaluated:
+    ) -> BearingResponse:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
         Args, raises: as `energy`.

@@ -89,7 +89,7 @@ def _stack(rows):
     return jax.tree.map(lambda *leaves: jnp.stack(leaves), *rows)
 
 
-class Solved(NamedTuple):
+class SolvedElements(NamedTuple):
     """A bearing whose rolling elements are solved at given ring freedoms.
 
     Attributes:
@@ -102,7 +102,7 @@ class Solved(NamedTuple):
     groups: tuple[SolvedRow, ...]
 
 
-class Evaluated(NamedTuple):
+class BearingResponse(NamedTuple):
     """Energy, force and stiffness of the bearing, and convergence of its elements.
 
     Attributes:
@@ -191,12 +191,12 @@ class BearingModel(eqx.Module):
         q: Ring,
         near: tuple[ElementStart, ...] | None = None,
         azimuths: Azimuths | None = None,
-    ) -> Solved:
+    ) -> SolvedElements:
         """Solve every rolling element at given ring freedoms.
 
         Args:
             q: Ring freedoms [m, rad].
-            near: `Evaluated.near` at ring freedoms near by: fewer steps.
+            near: `BearingResponse.near` at ring freedoms near by: fewer steps.
             azimuths: Where the elements are; `None`: `azimuths` of q, whose turn by gz
                 derivatives see only with `cage_torque`.
 
@@ -223,7 +223,7 @@ class BearingModel(eqx.Module):
         solved = tuple(solved)
         if self.cage_torque:
             azimuths = self._turn(azimuths, q, -1.0)
-        return Solved(azimuths, solved)
+        return SolvedElements(azimuths, solved)
 
     def _turn(self, azimuths, q, sign=1.0):
         return tuple(
@@ -245,7 +245,7 @@ class BearingModel(eqx.Module):
         return q
 
     @eqx.filter_jit
-    def energy(self, q: Ring, solved: Solved | None = None) -> Scalar:
+    def energy(self, q: Ring, solved: SolvedElements | None = None) -> Scalar:
         """Condensed strain energy V(q) [J].
 
         Args:
@@ -263,7 +263,7 @@ class BearingModel(eqx.Module):
         return sum(parts[1:], start=parts[0])
 
     @eqx.filter_jit
-    def force(self, q: Ring, solved: Solved | None = None) -> Ring:
+    def force(self, q: Ring, solved: SolvedElements | None = None) -> Ring:
         """External load that holds the rings where they are [N, N m].
 
         Args: as in `energy`.
@@ -271,7 +271,7 @@ class BearingModel(eqx.Module):
         return jax.grad(self._energy)(*self._solved_at(q, solved))
 
     @eqx.filter_jit
-    def force_or_nan(self, q: Ring, solved: Solved | None = None) -> Ring:
+    def force_or_nan(self, q: Ring, solved: SolvedElements | None = None) -> Ring:
         """Return `force`, or NaN if a rolling element did not converge [N, N m]."""
         q, solved = self._solved_at(q, solved)
         converged = self.convergence(solved)[0] == Result.CONVERGED
@@ -279,7 +279,7 @@ class BearingModel(eqx.Module):
         return self.force(q, solved) * jnp.where(converged, 1.0, jnp.nan)
 
     @eqx.filter_jit
-    def stiffness(self, q: Ring, solved: Solved | None = None) -> RingStiffness:
+    def stiffness(self, q: Ring, solved: SolvedElements | None = None) -> RingStiffness:
         """Tangent stiffness d(force)/dq [N/m, N, N m].
 
         Args: as in `energy`.
@@ -288,8 +288,8 @@ class BearingModel(eqx.Module):
 
     @eqx.filter_jit
     def evaluate(
-        self, q: Ring, solved: Solved | None = None, least: Scalar | float = 0.0
-    ) -> Evaluated:
+        self, q: Ring, solved: SolvedElements | None = None, least: Scalar | float = 0.0
+    ) -> BearingResponse:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
         Args: as in `energy` and `convergence`.
@@ -297,7 +297,7 @@ class BearingModel(eqx.Module):
         q, solved = self._solved_at(q, solved)
         stiffness, energy, force = self._derivatives(q, solved)
         result, steps, residual = self.convergence(solved, least)
-        return Evaluated(
+        return BearingResponse(
             energy=energy,
             force=force,
             stiffness=stiffness,
@@ -330,7 +330,7 @@ class BearingModel(eqx.Module):
         q = self._check_freedoms(q)
         return q, self.solve(q) if solved is None else solved
 
-    def results(self, q: Ring, solved: Solved) -> tuple[RowResults, ...]:
+    def results(self, q: Ring, solved: SolvedElements) -> tuple[RowResults, ...]:
         """Results of the elements of every solved row, with derivatives.
 
         Args:
@@ -345,7 +345,7 @@ class BearingModel(eqx.Module):
         return self.in_order(found)
 
     def convergence(
-        self, solved: Solved, least: Scalar | float = 0.0
+        self, solved: SolvedElements, least: Scalar | float = 0.0
     ) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
         """Worst `Result` code, most steps and largest residual of the elements.
 
@@ -372,7 +372,7 @@ class BearingModel(eqx.Module):
             jnp.max(jnp.concatenate([s.residual.reshape(-1) for s in states])),
         )
 
-    def starts(self, solved: Solved) -> tuple[ElementStart, ...]:
+    def starts(self, solved: SolvedElements) -> tuple[ElementStart, ...]:
         """Return the state from which a solve near by may start."""
         return tuple(
             group.map(lambda row, s: s.starts(row), state)
@@ -400,7 +400,7 @@ class BearingModel(eqx.Module):
                 " if there is one now, else without."
             )
 
-    def magnitude(self, solved: Solved) -> Scalar:
+    def magnitude(self, solved: SolvedElements) -> Scalar:
         """Sum of the sizes of the forces of solved elements on the rings [N]."""
         sizes = []
         for group, state in zip(self.groups, solved.groups, strict=True):
@@ -408,7 +408,7 @@ class BearingModel(eqx.Module):
             sizes.append(jnp.sum(jnp.abs(state.energies.gradient[..., :count])))
         return sum(sizes[1:], start=sizes[0])
 
-    def is_apart(self, solved: Solved) -> Bool[Array, ""]:
+    def is_apart(self, solved: SolvedElements) -> Bool[Array, ""]:
         """Whether no rolling element contacts both rings, so that they are not coupled.
 
         Turning elements press the outer ring alone; what stiffness is left then is
@@ -435,12 +435,12 @@ class BearingModel(eqx.Module):
         """
         return [group.map(lambda row: row.map(function)) for group in self.groups]
 
-    def unsolved_state(self) -> Solved:
+    def unsolved_state(self) -> SolvedElements:
         """Return the unsolved bearing; its `near` holds no information."""
         groups = (group.map(lambda row: row.unsolved_state()) for group in self.groups)
-        return Solved(self.azimuths(), tuple(groups))
+        return SolvedElements(self.azimuths(), tuple(groups))
 
-    def follow_azimuths(self, q: Ring, solved: Solved) -> Solved:
+    def follow_azimuths(self, q: Ring, solved: SolvedElements) -> SolvedElements:
         """Solved elements whose azimuths follow both gz and the design in derivatives.
 
         Args:

@@ -33,7 +33,7 @@ from .rolling_element import AbstractRollingElement
 PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 """Fields of a roller bearing that hold profiles."""
 
-KINDS = {
+CHOICE_KINDS = {
     "line_law": (
         AbstractLineLaw,
         "Palmgren(), ISO16281(), LineConstant(...) or CoupledSlices()",
@@ -335,7 +335,7 @@ def check_kinds(choices: dict) -> None:
     choice, and nothing would say so.
     """
     for name, value in choices.items():
-        kind, allowed = KINDS[name]
+        kind, allowed = CHOICE_KINDS[name]
         if value is not None and not isinstance(value, kind):
             of_itself = isinstance(value, type)
             shown = f"the class {value.__name__}" if of_itself else repr(value)

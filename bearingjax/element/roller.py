@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float
 
-from ..contact.hertz import EXPONENT
+from ..contact.hertz import POINT_EXPONENT
 from ..contact.line_contact import expansion
 from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
@@ -22,7 +22,7 @@ from .roller_geometry import AbstractRollerGeometry, Approaches
 from .rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from .search_hints import SearchHints
 
-_N, _D = EXPONENT
+_N, _D = POINT_EXPONENT
 
 _TURNED = 0.5
 """Tilt of a roller against its rings beyond which it has left them [rad]."""

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from .quantity import KINDS, SceneError, to_si
+from .quantity import QUANTITIES, SceneError, to_si
 from .table import Table, as_written
 from .text_file import read_columns
 
-LARGEST = 10**7
+MOST_CASES = 10**7
 """Most cases of a scene: 1 kB of memory each, with the default outputs."""
 
 
@@ -70,8 +70,10 @@ def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
         raise table.error(
             "file", f"{name}: has no {what}; a header and rows are wanted"
         )
-    if len(rows) > LARGEST:
-        raise table.error("file", f"{name}: has {len(rows)} {what}; at most {LARGEST}")
+    if len(rows) > MOST_CASES:
+        raise table.error(
+            "file", f"{name}: has {len(rows)} {what}; at most {MOST_CASES}"
+        )
     wanted = len(rows[0][1])
     for line, row in rows:
         if len(row) != wanted:
@@ -84,7 +86,7 @@ def _cells(table, name, key, kind, unit, values, lines):
     """Convert the cells of a column: SI numbers of a kind, or design settings."""
     if kind is not None:
         if unit is None:
-            example = f"{key} [{KINDS[kind][1]}]"
+            example = f"{key} [{QUANTITIES[kind][1]}]"
             problem = f'{name}: {key} has no unit; head the column "{example}"'
             raise table.error("file", problem)
         try:

@@ -33,7 +33,7 @@ _ANGLE = {"frequency": "({}) turn"}
 _ANGLE |= dict.fromkeys(("tilting stiffness", "tilting damping"), "({})/rad")
 """Units whose radians may be left out; as a frequency, cycles are counted then."""
 
-KINDS = {
+QUANTITIES = {
     "length": ("m", "mm"),
     "angle": ("rad", "deg"),
     "force": ("N", "kN"),
@@ -79,7 +79,7 @@ def scene_number(value: float, kind: str, largest: float | None = None) -> str:
 
     Args:
         value: In SI.
-        kind: Key of `KINDS`.
+        kind: Key of `QUANTITIES`.
         largest: Number whose unit it takes [SI]; by default its own.
     """
     size = abs(value if largest is None else largest)
@@ -90,7 +90,7 @@ def scene_number(value: float, kind: str, largest: float | None = None) -> str:
         "frequency": (0.5 / math.pi, "Hz"),
         "pressure": (1e-9, "GPa") if size >= 1e9 else (1e-6, "MPa"),
         "force": (1e-3, "kN") if size >= 1e3 else (1.0, "N"),
-    }.get(kind, (1.0, KINDS[kind][0]))
+    }.get(kind, (1.0, QUANTITIES[kind][0]))
     return f"{factor * value:.6g} {unit}"
 
 
@@ -103,7 +103,7 @@ def kind_of(unit: str) -> str:
     Raises:
         KeyError: If there is no such kind.
     """
-    kinds = {known: kind for kind, (known, _) in reversed(KINDS.items())}
+    kinds = {known: kind for kind, (known, _) in reversed(QUANTITIES.items())}
     return kinds[unit]
 
 
@@ -150,7 +150,7 @@ def to_si(text: object, kind: str) -> float:
 
     Args:
         text: Value in the file.
-        kind: Key of `KINDS`.
+        kind: Key of `QUANTITIES`.
 
     Returns:
         Finite number in the SI unit of the kind.
@@ -160,7 +160,9 @@ def to_si(text: object, kind: str) -> float:
             not name the key, which the caller adds.
     """
     article = article_of(kind)
-    wanted = f'{article} {kind} with its unit is wanted, such as "5 {KINDS[kind][1]}"'
+    wanted = (
+        f'{article} {kind} with its unit is wanted, such as "5 {QUANTITIES[kind][1]}"'
+    )
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise SceneError(f"{text!r} is not a quantity; {wanted}")
     if not isinstance(text, str):
@@ -257,7 +259,7 @@ def _size(name: str, kind: str) -> float | None:
 
 def _si_unit(kind: str) -> tuple[float, dict[str, float]]:
     """Return size and dimension of the unit in which a kind is counted."""
-    unit = _parse(_plain_unit(KINDS[kind][0]))
+    unit = _parse(_plain_unit(QUANTITIES[kind][0]))
     assert unit is not None
     return unit
 

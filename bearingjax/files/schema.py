@@ -24,7 +24,7 @@ from typing import (
 
 from ..numerics.labels import stated_axes
 from ..numerics.units import CELSIUS, unit_of
-from .quantity import KINDS, kind_of, scene_number, to_si
+from .quantity import QUANTITIES, kind_of, scene_number, to_si
 from .table import Table, format_number
 
 _REQUIRED: Any = dataclasses.MISSING
@@ -36,7 +36,7 @@ class Key:
 
     Attributes:
         about: One line for the scene guide, without a full stop.
-        kind: Kind of quantity (`quantity.KINDS`); empty for a pure number.
+        kind: Kind of quantity (`quantity.QUANTITIES`); empty for a pure number.
         above, least, below, most: Range, in `unit`.
         shown: Unit of the range and of numbers in errors; empty: SI, for
             temperatures °C.
@@ -81,7 +81,7 @@ class Key:
     @property
     def unit(self) -> str:
         """Unit of the range; empty for a pure number."""
-        unit = KINDS[self.kind][0] if self.kind else ""
+        unit = QUANTITIES[self.kind][0] if self.kind else ""
         return self.shown or ("°C" if unit == "K" else unit)
 
     def in_shown_unit(self, value: float) -> float:
@@ -101,7 +101,7 @@ class Key:
             value: In `unit`.
             largest: Number whose unit it takes, in `unit`; by default its own.
         """
-        if self.kind and self.unit == KINDS[self.kind][0]:
+        if self.kind and self.unit == QUANTITIES[self.kind][0]:
             return scene_number(value, self.kind, largest)
         return f"{value:.6g} {self.unit}".rstrip()
 
@@ -246,7 +246,7 @@ class Keys:
         for one in fields_of(type(self)):
             if one.attribute in values:
                 value = values[one.attribute]
-                unit = KINDS[one.key.kind][0] if one.key.kind else ""
+                unit = QUANTITIES[one.key.kind][0] if one.key.kind else ""
                 if isinstance(value, float):
                     value = format_number(value, unit)
                 self.table.fill(one.name, value)

@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .quantity import KINDS
+from .quantity import QUANTITIES
 from .schema import Field, element_of, fields_of, is_table
-from .table import LARGEST
+from .table import LARGEST_NUMBER
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _QUANTITY = r"^\s*[-+−]?(\d+\.?\d*|\.\d+)([eE][-+−]?\d+)?\s*(1\s*/|[^\s\d]).*$"
@@ -103,7 +103,7 @@ def _bare_schema(field: Field) -> dict[str, Any]:
             several.append({"type": "boolean"})
         elif kind is int:
             several.append(
-                {"type": "integer", "minimum": 1, "maximum": LARGEST, **ends}
+                {"type": "integer", "minimum": 1, "maximum": LARGEST_NUMBER, **ends}
             )
         elif element_of(kind) is float:
             several.append({"type": "array", "items": number_schema(key.kind)})
@@ -116,11 +116,11 @@ def number_schema(kind: str) -> dict[str, Any]:
     """Return the JSON Schema of a quantity, or of a pure number.
 
     Args:
-        kind: Key of `quantity.KINDS`; empty for a pure number.
+        kind: Key of `quantity.QUANTITIES`; empty for a pure number.
     """
     if not kind:
         return {"type": "number"}
-    example = f"5 {KINDS[kind][1]}"
+    example = f"5 {QUANTITIES[kind][1]}"
     return {
         "type": "string",
         "pattern": _QUANTITY,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..numerics.units import unit_of
-from .quantity import KINDS, SceneError, article_of, kind_of, to_si
+from .quantity import QUANTITIES, SceneError, article_of, kind_of, to_si
 from .scene_errors import ABSENT, error_at, join_key, place_of, problem_of
 
 _MISSING: Any = object()
@@ -17,7 +17,7 @@ _ABOUT = re.compile(
     r"`(?P<name>[^`]+)` (?:of (?P<part>\S+) )?(?P<fault>(?:is|has) .*)", re.DOTALL
 )
 """Message of a check: "`bore` of A is 1 m; it must be ..."."""
-LARGEST = 1e9
+LARGEST_NUMBER = 1e9
 """Largest bare number allowed in a scene."""
 
 
@@ -127,7 +127,7 @@ class Table:
 
         Args:
             key: Key in this table.
-            kind: Kind of quantity, see `quantity.KINDS`.
+            kind: Kind of quantity, see `quantity.QUANTITIES`.
             default: Value if absent; without a default the key is required.
         """
         value: Any = self._get(
@@ -139,7 +139,7 @@ class Table:
             except SceneError as error:
                 raise self.error(key, error) from error
         if value is not None:
-            self.fill(key, format_number(value, KINDS[kind][0]))
+            self.fill(key, format_number(value, QUANTITIES[kind][0]))
         return value
 
     def quantities(self, key: str, kind: str) -> list[float]:
@@ -151,7 +151,7 @@ class Table:
             found = [to_si(value, kind) for value in values]
         except SceneError as error:
             raise self.error(key, error) from error
-        self.fill(key, [format_number(value, KINDS[kind][0]) for value in found])
+        self.fill(key, [format_number(value, QUANTITIES[kind][0]) for value in found])
         return found
 
     def number(self, key: str, default: Any = _MISSING) -> Any:
@@ -163,8 +163,10 @@ class Table:
             raise self.error(key, f"{value!r} is not a bare number (no unit, no text)")
         if value != value:
             raise self.error(key, "nan is not a finite number")
-        if abs(value) > LARGEST:
-            raise self.error(key, f"is out of range; at most {LARGEST:g} in size")
+        if abs(value) > LARGEST_NUMBER:
+            raise self.error(
+                key, f"is out of range; at most {LARGEST_NUMBER:g} in size"
+            )
         self.fill(key, float(value))
         return float(value)
 
@@ -188,8 +190,8 @@ class Table:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             allowed = f"a whole number of at least {least}"
             raise self.error(key, f"{value!r} is not {allowed}")
-        if value > LARGEST:
-            raise self.error(key, f"is out of range; at most {LARGEST:g}")
+        if value > LARGEST_NUMBER:
+            raise self.error(key, f"is out of range; at most {LARGEST_NUMBER:g}")
         return value
 
     def choice(

@@ -38,7 +38,7 @@ from .fit_range import (
 )
 from .fits import FitConditions, FitState, Mounting, fit_state, needed_drive_up
 from .iso286 import LIMIT_CLASSES, Limits, limits, standard_tolerance
-from .mounted import (
+from .mounting import (
     mount,
     radial_clearance,
     with_bearing_dimensions,

@@ -186,9 +186,9 @@ class FitConditions(eqx.Module):
     reference: Real = eqx.field(**real("K"), default=0.0)
 
     def __check_init__(self):
-        for name in (*PARTS, "reference", "speed", "outer_speed"):
+        for name in (*WARM_PARTS, "reference", "speed", "outer_speed"):
             number(self, name)
-        for name in PARTS:
+        for name in WARM_PARTS:
             known = floats(getattr(self, name), self.reference)
             if known is not None:
                 rise, base = known[0] - known[1], f"`reference`, {known[1]:.6g} K"
@@ -211,7 +211,7 @@ _REST = SimpleNamespace(
 )
 """`FitConditions()` in NumPy's numbers."""
 
-PARTS = ("shaft", "inner_ring", "elements", "outer_ring", "housing")
+WARM_PARTS = ("shaft", "inner_ring", "elements", "outer_ring", "housing")
 """Parts of a mounting that have a temperature and a material."""
 
 
@@ -293,7 +293,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
     _check_sized(mounting)
     m: Any = mounting
     c: Any = _REST if conditions is None else conditions
-    warm = {part: _strain(getattr(m, part), c, part) for part in PARTS}
+    warm = {part: _strain(getattr(m, part), c, part) for part in WARM_PARTS}
     bore = mean_bore(m)
     shaft_interference = (
         m.shaft_interference

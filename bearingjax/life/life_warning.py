@@ -10,7 +10,7 @@ from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.bearing_set import pitch_radius
 from ..numerics.types import array_namespace
 from ..numerics.warning import Kind, Warning
-from ..statics.warning_kinds import KINDS
+from ..statics.warning_kinds import SOLUTION_KINDS
 from .life_factor import KAPPA
 from .rating import Ratings
 from .reference_life import LEAST_LAMINAE
@@ -243,5 +243,5 @@ LIFE_KINDS: dict[str, Kind] = {
 `where` takes bearing, ratings and numbers of one life."""
 
 
-ALL: dict[str, Kind] = {**KINDS, **LIFE_KINDS}
+ALL: dict[str, Kind] = {**SOLUTION_KINDS, **LIFE_KINDS}
 """Every kind of warning about a case, by name."""

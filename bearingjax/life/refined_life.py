@@ -9,7 +9,7 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import RINGS
 from ..numerics.units import unit
 from ..numerics.warning import Warning
-from ..statics.refine import Refined, refine
+from ..statics.refine import RefinedContact, refine
 from ..statics.solution import RollerSolution
 from .reference_life import LEAST_LAMINAE, ROLLERS
 
@@ -84,12 +84,12 @@ def refined_lamina_loads(
     return LaminaLoads(found, (one,))
 
 
-def _peaks_at_an_end(found: Refined) -> bool:
+def _peaks_at_an_end(found: RefinedContact) -> bool:
     along = np.asarray(found.solution.pressure).max(axis=0)
     return along.argmax() in (0, along.size - 1)
 
 
-def _of_laminae(found: Refined, count: int) -> np.ndarray:
+def _of_laminae(found: RefinedContact, count: int) -> np.ndarray:
     y = np.asarray(found.solution.grid.y)
     pressure = np.asarray(found.solution.pressure).max(axis=0)
     radius = np.asarray(found.contact.relative_radius(found.solution.grid.y))

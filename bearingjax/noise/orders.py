@@ -21,7 +21,7 @@ from ..element.inertia import Speed
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 
-PARTS = ("outer", "inner", "element")
+WAVY_PARTS = ("outer", "inner", "element")
 """Parts that have waves: the raceways, and one rolling element."""
 
 
@@ -135,7 +135,7 @@ def waviness_force(
         n = kz; Σ exp(i (n ± 1) θ_j) for n = kz ∓ 1.
     """
     speeds = _speeds("waviness_force", bearing, speed, contact_angle)
-    one_of("waviness_force", "part", part, PARTS, ", ".join(PARTS))
+    one_of("waviness_force", "part", part, WAVY_PARTS, ", ".join(WAVY_PARTS))
     count("waviness_force", "order", order)
     cage, axial, radial = speeds.cage, [], []
     if part == "element":

@@ -47,7 +47,7 @@ class Stepping(NamedTuple):
     knots: Float[Array, " knot"] | None = None
 
 
-class Integrated(NamedTuple):
+class MotionHistory(NamedTuple):
     """A motion, leading axis time; NaN where it was not reached.
 
     Attributes:
@@ -71,7 +71,7 @@ def integrate(
     duration: Scalar,
     options: IntegrationOptions,
     stepping: Stepping,
-) -> Integrated:
+) -> MotionHistory:
     """A motion from time zero on.
 
     Args:
@@ -130,7 +130,7 @@ def integrate(
     limit = solved.result == diffrax.RESULTS.max_steps_reached
     other = jnp.where(limit, int(Result.STEP_LIMIT), int(Result.NON_FINITE))
     result = jnp.where(ended, int(Result.CONVERGED), other).astype(jnp.int32)
-    return Integrated(state, steps, rejected, result)
+    return MotionHistory(state, steps, rejected, result)
 
 
 def _largest_error(errors):

@@ -94,7 +94,7 @@ def array_fields(result: Any) -> dict[str, np.ndarray]:
 
 
 @dataclasses.dataclass(frozen=True)
-class Labelled:
+class LabelledArray:
     """An array with its labels.
 
     Attributes:
@@ -112,7 +112,7 @@ class Labelled:
     @classmethod
     def field(
         cls, owner: Any, name: str, values: Any, leading: Sequence[str] = ()
-    ) -> "Labelled":
+    ) -> "LabelledArray":
         """Return values of a field with the labels that its class states.
 
         Args:
@@ -162,7 +162,7 @@ def column_header(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def labelled_fields(result: Any, *parts: str) -> dict[str, Labelled]:
+def labelled_fields(result: Any, *parts: str) -> dict[str, LabelledArray]:
     """Return the arrays of a result with the labels that its class states.
 
     Axes that lead those of the class, such as of `jax.vmap`, are called "case"; of
@@ -179,12 +179,12 @@ def labelled_fields(result: Any, *parts: str) -> dict[str, Labelled]:
         if axes is not None and not any(map(_any_number, axes)):
             more.append(values.ndim - len(axes))
     cases = _numbered_labels("case", max(0, min(more, default=0)))
-    found: dict[str, Labelled] = {}
+    found: dict[str, LabelledArray] = {}
     for part in ("", *parts):
         owner = getattr(result, part) if part else result
         for name, values in ({} if owner is None else array_fields(owner)).items():
             shown = f"{part}_{name}" if name in found else name
-            found[shown] = Labelled.field(owner, name, values, cases)
+            found[shown] = LabelledArray.field(owner, name, values, cases)
     return found
 
 
@@ -230,7 +230,8 @@ def to_xarray(result: Any, *parts: str) -> Any:
 
 
 def make_dataset(
-    arrays: Mapping[str, Labelled], labels: Mapping[str, Sequence[str]] | None = None
+    arrays: Mapping[str, LabelledArray],
+    labels: Mapping[str, Sequence[str]] | None = None,
 ) -> Any:
     """Return labelled arrays as an `xarray.Dataset`.
 

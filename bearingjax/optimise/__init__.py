@@ -28,7 +28,7 @@ Names
 - Measures of load and pressure: `PeakPressure`, `MeanPressure`, `EdgeLoad`.
 - Measures of stiffness: `Displacement`, `Stiffness`, `StiffnessTarget`.
 - Measures of life: `RatingLife`, `Damage`.
-- Results: `Optimised`, `Outcome`, `History`.
+- Results: `OptimisedDesign`, `Outcome`, `History`.
 """
 
 from .constraint import Constraint
@@ -42,11 +42,11 @@ from .measure import (
     Stiffness,
     StiffnessTarget,
 )
-from .optimise import History, Optimised, SearchOptions, optimise
+from .optimise import History, OptimisedDesign, SearchOptions, optimise
 from .variable import Variable, design_numbers
 
 __all__ = [
     "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers",
     "PeakPressure", "MeanPressure", "EdgeLoad", "Displacement", "Stiffness",
-    "StiffnessTarget", "RatingLife", "Damage", "Optimised", "Outcome", "History",
+    "StiffnessTarget", "RatingLife", "Damage", "OptimisedDesign", "Outcome", "History",
 ]  # fmt: skip

@@ -21,7 +21,7 @@ from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
 from ..numerics.types import Real, Scalar
 from ..numerics.units import real, unit_of
 from ..statics.solution import RollerSolution, Solution
-from .smooth import EXPONENT, smooth_maximum, smooth_minimum
+from .smooth import SMOOTHING_EXPONENT, smooth_maximum, smooth_minimum
 from .system import Design, loads_of
 
 
@@ -90,7 +90,7 @@ class AbstractSmooth(AbstractMeasure):
             it is closer to the true one, but its derivative changes faster.
     """
 
-    exponent: float = eqx.field(static=True, default=EXPONENT, kw_only=True)
+    exponent: float = eqx.field(static=True, default=SMOOTHING_EXPONENT, kw_only=True)
 
     def __check_init__(self):
         number(self, "exponent")

@@ -38,7 +38,7 @@ class History(NamedTuple):
         values: Values of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
         violation: Largest violation of a constraint over the size of its bound (step,).
-        gradient: As `Optimised.optimality` (step,) [1]; NaN with a method without
+        gradient: As `OptimisedDesign.optimality` (step,) [1]; NaN with a method without
             gradients.
         evaluations: Designs evaluated so far (step,).
     """
@@ -51,7 +51,7 @@ class History(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Optimised:
+class OptimisedDesign:
     """Result of an optimisation.
 
     Attributes:
@@ -143,7 +143,7 @@ def optimise(
     search: SearchOptions | None = None,
     support: Support = RESTRAINED,
     build: Build | None = None,
-) -> Optimised:
+) -> OptimisedDesign:
     """Find the design within bounds that minimises an objective over operating cases.
 
     A design is rejected if a case does not solve, a number is not finite, or its
@@ -221,7 +221,7 @@ def optimise(
     return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
 
 
-def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimised:
+def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> OptimisedDesign:
     best = trials.attempt(ending.unit, slopes or ending.converged)
     if best.fault:
         # Its gradient may have failed: take the last step.
@@ -242,7 +242,7 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
     )
     initial, before = problem.outcome(steps[0])
     element, after = problem.outcome(best)
-    return Optimised(
+    return OptimisedDesign(
         element,
         initial,
         problem.variables,

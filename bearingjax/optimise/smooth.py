@@ -12,11 +12,13 @@ from jaxtyping import Array, Float
 
 from ..numerics.types import Scalar
 
-EXPONENT = 64.0
+SMOOTHING_EXPONENT = 64.0
 """Default exponent: with 100 samples near a peak the maximum comes out 7 % above it."""
 
 
-def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+def smooth_maximum(
+    values: Float[Array, "..."], exponent: float = SMOOTHING_EXPONENT
+) -> Scalar:
     """p-norm of numbers ≥ 0: max ≤ result ≤ count^(1/exponent) max.
 
     Args:
@@ -33,7 +35,9 @@ def smooth_maximum(values: Float[Array, "..."], exponent: float = EXPONENT) -> S
     return top * total ** (1.0 / exponent)
 
 
-def smooth_minimum(values: Float[Array, "..."], exponent: float = EXPONENT) -> Scalar:
+def smooth_minimum(
+    values: Float[Array, "..."], exponent: float = SMOOTHING_EXPONENT
+) -> Scalar:
     """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
 
     Args:

@@ -6,8 +6,9 @@ them; a page returns its figure.
 Names
 -----
 
-- Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`, `optimised`,
-  `noise_overview`, `skid_overview`, `rotor_overview`, `shaft_overview`.
+- Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`,
+  `optimise_overview`, `noise_overview`, `skid_overview`, `rotor_overview`,
+  `shaft_overview`.
 - Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
 - A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
@@ -43,7 +44,7 @@ from .noise import (
     source_bars,
 )
 from .noise_page import noise_overview
-from .optimised import optimised
+from .optimise_overview import optimise_overview
 from .page import overview
 from .pressure import pressure_map, pressure_profiles
 from .profiles import profile
@@ -73,8 +74,9 @@ from .skid_curves import (
 from .sweep import sweep_overview
 
 __all__ = [
-    "overview", "sweep_overview", "life_overview", "contact_overview", "optimised",
-    "noise_overview", "skid_overview", "rotor_overview", "shaft_overview", "drawing",
+    "overview", "sweep_overview", "life_overview", "contact_overview",
+    "optimise_overview", "noise_overview", "skid_overview", "rotor_overview",
+    "shaft_overview", "drawing",
     "cross_section", "cross_sections", "rotor_section", "profile", "load_zone",
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",

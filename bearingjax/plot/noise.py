@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..element.frame import DIRECTIONS
 from ..noise import (
     REFERENCE_ACCELERATION,
     Bands,
@@ -20,7 +21,6 @@ from ..noise.scatter import SOURCES
 from .panel import Ax, Axis, Curve, Panel, chart, finish
 from .style import CURVES, GREY, SMALL, Axes, axes_or_new
 
-AXES = ("x", "y", "z")
 STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
 """Colours of 0, 1, 2, 3, 4 contacts."""
 _NAMED = 8
@@ -39,12 +39,12 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
         record: From `vibration`.
     """
     turns = np.asarray(record.time) * float(record.shaft_frequency)
-    values = np.asarray(record.acceleration)[:, : len(AXES)]
+    values = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
     # What moves most lies below, so that it hides nothing.
     above = np.argsort(np.argsort(-values.std(axis=0)))
     marks = [
         Curve(turns, values[:, k], name, CURVES[k], look={"lw": 0.6, "zorder": 2 + z})
-        for k, (name, z) in enumerate(zip(AXES, above, strict=True))
+        for k, (name, z) in enumerate(zip(DIRECTIONS, above, strict=True))
     ]
     return Panel(
         "Vibration of the moving ring",
@@ -52,7 +52,7 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
         Axis("acceleration", "m/s²"),
         marks,
         (0.0, record.turns),
-        legend={"loc": "upper right", "ncols": len(AXES)},
+        legend={"loc": "upper right", "ncols": len(DIRECTIONS)},
         also=lambda ax: [line.set_linewidth(2) for line in ax.get_legend().get_lines()],
     )
 
@@ -152,7 +152,7 @@ def band_bars(
     place, width = np.arange(count), 0.8 / directions
     for k in range(directions):
         away = (k - 0.5 * (directions - 1)) * width
-        ax.bar(place + away, level[:, k], width, color=CURVES[k], label=AXES[k])
+        ax.bar(place + away, level[:, k], width, color=CURVES[k], label=DIRECTIONS[k])
     shown = level[np.isfinite(level)]
     if norm is not None:
         norm = np.asarray(norm, dtype=float)
@@ -245,7 +245,7 @@ def level_distribution(
     for k, values in enumerate(np.asarray(level, dtype=float).T):
         values = np.sort(values[values > LOWEST_LEVEL])
         share = (np.arange(len(values)) + 0.5) / max(len(values), 1)
-        marks.append(Curve(values, share, AXES[k], CURVES[k], ".-", {"lw": 1.2}))
+        marks.append(Curve(values, share, DIRECTIONS[k], CURVES[k], ".-", {"lw": 1.2}))
     return Panel(
         "Random bearings",
         _level("level", reference),

@@ -14,7 +14,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.warning import Warning
 from .damping import AbstractDamping
-from .held import map_parts
+from .like_parts import map_parts
 from .parts import AbstractPart, AbstractSupport
 from .shaft import STATION_FREEDOMS, Shaft
 

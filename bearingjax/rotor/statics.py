@@ -25,7 +25,7 @@ from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit, units
 from ..numerics.warning import Warning
-from .condensed import CondensedRotor, Supported, condense
+from .condensation import CondensedRotor, Supported, condense
 from .loads import Motions, RotorLoads
 from .parts import DAMPING_UNITS, STIFFNESS_UNITS, LinearSupport
 from .rotor import N_HOUSING, N_STATION, Rotor

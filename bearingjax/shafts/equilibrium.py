@@ -18,7 +18,7 @@ from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar
 from ..rotor import Rotor
-from ..rotor.condensed import CondensedRotor, condense
+from ..rotor.condensation import CondensedRotor, condense
 from ..rotor.loads import acceleration_load
 from ..rotor.rotor import N_STATION
 from ..rotor.statics import search_equilibrium

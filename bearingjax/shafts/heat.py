@@ -26,7 +26,7 @@ from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real, unit
-from ..rotor.held import map_parts
+from ..rotor.like_parts import map_parts
 from .bearing_oil import BearingOil
 from .equilibrium import system_state
 from .heat_balance import (

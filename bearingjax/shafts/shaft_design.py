@@ -28,7 +28,6 @@ from ..optimise.smooth import smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
-from .doubts import load_doubts
 from .duty import (
     LIVES,
     DutyResult,
@@ -42,6 +41,7 @@ from .parts import Gear
 from .power import power_flow
 from .seats import in_place, speed_of, with_preload_offsets
 from .system import ShaftSystem
+from .warning import load_doubts
 
 
 class ShaftCases(eqx.Module):

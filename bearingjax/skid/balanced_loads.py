@@ -22,7 +22,7 @@ from ..element.rolling_element import RingMotion, split_rings
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from .ball_motion import LoadedBall
-from .loaded import loaded_ball
+from .contact_loads import loaded_ball
 from .model import SkidModel
 
 

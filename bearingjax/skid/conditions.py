@@ -14,7 +14,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.units import unit
 from .ball_motion import BallState, sliding, tractions
-from .loaded import loaded_ball
+from .contact_loads import loaded_ball
 from .model import SkidModel
 from .ring_speed import SpeedTable
 

@@ -19,7 +19,7 @@ from ..numerics.linear import solve
 from ..numerics.types import Scalar
 
 
-class Coupled(NamedTuple):
+class CoupledState(NamedTuple):
     """State of a system, or its time derivative.
 
     Attributes:
@@ -44,10 +44,10 @@ class Masses(NamedTuple):
     own: Float[Array, " k"]
     shared: Float[Array, " m"]
 
-    def times(self, change: Coupled) -> Coupled:
+    def times(self, change: CoupledState) -> CoupledState:
         """Return M x of a change x; sums have the mass 1."""
         own = self.own[None, :] * change.own
-        return Coupled(own, self.shared * change.shared, change.sums)
+        return CoupledState(own, self.shared * change.shared, change.sums)
 
 
 class AbstractSystem(eqx.Module):
@@ -87,17 +87,17 @@ class AbstractSystem(eqx.Module):
     def masses(self) -> "Masses":
         """Masses of all unknowns."""
 
-    def rates(self, time: Scalar, state: Coupled) -> Coupled:
+    def rates(self, time: Scalar, state: CoupledState) -> CoupledState:
         """Return all rates; for an unknown without mass, its residual."""
         rates, shared, sums = jax.vmap(self.body, (0, None, 0, None))(
             self.bodies, time, state.own, state.shared
         )
         of_shared, of_sums = self.shared_rates(time, state.shared)
-        return Coupled(
+        return CoupledState(
             rates, of_shared + jnp.sum(shared, axis=0), of_sums + jnp.sum(sums, axis=0)
         )
 
-    def slopes(self, time: Scalar, state: Coupled) -> "Slopes":
+    def slopes(self, time: Scalar, state: CoupledState) -> "Slopes":
         """Return the Jacobian of `rates` in blocks."""
         k, m = state.own.shape[1], state.shared.shape[0]
 
@@ -117,7 +117,7 @@ class AbstractSystem(eqx.Module):
             body[:, :k, k:-1],
             body[:, k:, :k],
             rest[:, :m],
-            Coupled(body[:, :k, -1], rest[:m, m], rest[m:, m]),
+            CoupledState(body[:, :k, -1], rest[:m, m], rest[m:, m]),
         )
 
 
@@ -136,9 +136,11 @@ class Slopes(NamedTuple):
     across: Float[Array, "body k m"]
     down: Float[Array, "body row k"]
     shared: Float[Array, "row m"]
-    time: Coupled
+    time: CoupledState
 
-    def solver(self, masses: Masses, scale: Scalar) -> Callable[[Coupled], Coupled]:
+    def solver(
+        self, masses: Masses, scale: Scalar
+    ) -> Callable[[CoupledState], CoupledState]:
         """Function that solves (M scale - J) x = right for x.
 
         Args:
@@ -158,7 +160,7 @@ class Slopes(NamedTuple):
             of_own = alone + jax.vmap(_times, (0, None))(follow, of_shared)
             sums = jnp.sum(jax.vmap(_times)(self.down[:, m:], of_own), axis=0)
             sums = right.sums + sums + _times(self.shared[m:], of_shared)
-            return Coupled(of_own, of_shared, sums / scale)
+            return CoupledState(of_own, of_shared, sums / scale)
 
         return solve
 

@@ -25,7 +25,7 @@ from ..numerics.units import unit
 from . import ball_motion, roller_motion
 from .balanced_loads import BalancedLoads
 from .ball_motion import BallState, LoadedBall
-from .coupled import AbstractSystem, Coupled, Masses
+from .coupled import AbstractSystem, CoupledState, Masses
 from .load_table import LoadTable
 from .model import SkidModel
 from .ring_speed import SpeedTable
@@ -258,7 +258,7 @@ class SkidSystem(AbstractSystem):
         shared = [self.speed, one] + [loads.unit * one] * loads.n_shared
         return jnp.stack(own), jnp.stack(shared)
 
-    def pack(self, state: SkidState) -> Coupled:
+    def pack(self, state: SkidState) -> CoupledState:
         """Return the unknowns of a motion, with zero work."""
         of_balls = state.orbit[:, None], state.lead[:, None]
         own = jnp.concatenate([state.spin, *of_balls, state.centre], axis=1)
@@ -266,9 +266,9 @@ class SkidSystem(AbstractSystem):
         shared = jnp.concatenate([of_cage, state.ring])
         units = self._units
         own = own / units[0][None, :]
-        return Coupled(own, shared / units[1], jnp.zeros(3, own.dtype))
+        return CoupledState(own, shared / units[1], jnp.zeros(3, own.dtype))
 
-    def unpack(self, packed: Coupled) -> tuple[SkidState, Work]:
+    def unpack(self, packed: CoupledState) -> tuple[SkidState, Work]:
         """Return the motion and the work done."""
         work = Work(*(packed.sums * self.energy))
         return self._state(packed.own, packed.shared), work

@@ -43,7 +43,7 @@ Names
   `RollerSolution`, `Stats`.
 - Preload and seats: `Installed`, `preload`, `remaining_preload`, `SetPreload`.
 - Stiffness: `linearise`, `OperatingPoint`, `restrained_freedoms`.
-- Half-space contact of one roller: `refine`, `Refined`.
+- Half-space contact of one roller: `refine`, `RefinedContact`.
 - Warnings: `warnings`, `seat_warnings`, `speed_warnings`.
 """
 
@@ -52,7 +52,7 @@ from .linearise import OperatingPoint, linearise
 from .load import solve_load
 from .options import SolveOptions
 from .preload import SetPreload, preload, remaining_preload
-from .refine import Refined, refine
+from .refine import RefinedContact, refine
 from .service_warning import seat_warnings, speed_warnings
 from .solution import BallSolution, RollerSolution, Solution, Stats
 from .support import Support, restrained_freedoms
@@ -62,5 +62,5 @@ __all__ = [
     "solve_load", "Support", "SolveOptions", "Solution", "BallSolution",
     "RollerSolution", "Stats", "Installed", "preload", "remaining_preload",
     "SetPreload", "linearise", "OperatingPoint", "restrained_freedoms", "refine",
-    "Refined", "warnings", "seat_warnings", "speed_warnings",
+    "RefinedContact", "warnings", "seat_warnings", "speed_warnings",
 ]  # fmt: skip

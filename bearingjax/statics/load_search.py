@@ -16,7 +16,7 @@ from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ..design import AbstractBallBearing, SetRow
-from ..element.bearing_model import BearingModel, Solved
+from ..element.bearing_model import BearingModel, SolvedElements
 from ..numerics.compiled import batched_loop
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.linear import null_space, solve
@@ -44,7 +44,7 @@ class SearchMemory(NamedTuple):
         stiffness: Stiffness of the free unknowns, zero for held ones (6, 6) [N/m].
     """
 
-    solved: Solved
+    solved: SolvedElements
     stiffness: Annotated[Float[Array, "6 6"], unit("N/m")]
 
 
@@ -141,7 +141,7 @@ class _Inputs(NamedTuple):
     options: SolveOptions
 
 
-def _problem(given: _Inputs, shapes: Solved) -> Problem:
+def _problem(given: _Inputs, shapes: SolvedElements) -> Problem:
     model, balance, begin, options = given
     # Nothing carries a load, so no solve starts from it.
     unsolved = jax.tree.map(lambda a: jnp.zeros(a.shape, a.dtype), shapes)

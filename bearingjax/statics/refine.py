@@ -14,7 +14,7 @@ from ..contact.halfspace import (
 )
 from ..contact.line import peak_pressure
 from ..contact.line_contact import AbstractLineContact
-from ..contact.slices import Compared, Slices
+from ..contact.slices import SliceComparison, Slices
 from ..design import AbstractRollerBearing, rows_of
 from ..design.checks import one_of
 from ..element.bearing_element import BearingElement, check_element
@@ -30,7 +30,7 @@ _SAME = 1e-4
 load solved again here; it allows for single precision."""
 
 
-class Refined(Compared):
+class RefinedContact(SliceComparison):
     """Contact of a roller on the half-space, compared with the slices of the bearing.
 
     y runs along the generatrix as the `position` of a `RollerSolution` does, also in
@@ -59,7 +59,7 @@ def refine(
     grid: Grid | None = None,
     solver: AbstractPressureSolver | None = None,
     throw: bool = True,
-) -> Refined:
+) -> RefinedContact:
     """Contact of one roller of a solved bearing, both bodies elastic half-spaces.
 
     Load and tilt are those of the solution, which works with slices. The half-space
@@ -78,7 +78,7 @@ def refine(
         throw: Whether to raise if it does not converge.
 
     Returns:
-        Refined: pressure field, edge factor against the slices.
+        RefinedContact: pressure field, edge factor against the slices.
 
     Raises:
         TypeError: For balls.
@@ -124,7 +124,7 @@ def refine(
         loads[roller], tilt=tilt, grid=grid, solver=solver, throw=throw
     )
     sliced = _slices(row, ring, a, b, solved.grid.y)
-    return Refined(solved, sliced, contact, roller, raceway)
+    return RefinedContact(solved, sliced, contact, roller, raceway)
 
 
 def roller_contact(

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from ..design import AbstractBearing, BearingSet
 from ..design.bearing_set import bearings_of
 from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel, Evaluated, Solved
+from ..element.bearing_model import BearingModel, BearingResponse, SolvedElements
 from ..element.choices import BallChoices, RollerChoices
 from ..element.frame import (
     FREEDOMS,
@@ -262,9 +262,9 @@ def describe(
     model: BearingModel,
     q: Ring,
     points: int,
-    solved: Solved,
+    solved: SolvedElements,
     rolling: BearingModel | None = None,
-) -> tuple[dict, Evaluated]:
+) -> tuple[dict, BearingResponse]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
     Args:

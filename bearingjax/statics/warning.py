@@ -9,7 +9,7 @@ from ..design.checks import is_traced
 from ..numerics.types import array_namespace
 from ..numerics.warning import Warning, warnings_of_cases
 from .solution import Solution
-from .warning_kinds import KINDS
+from .warning_kinds import SOLUTION_KINDS
 
 
 def warnings(found: Any) -> list[Warning]:
@@ -58,12 +58,14 @@ def solution_warnings(solution: Solution) -> list[Warning]:
         ]
         found = [sizes(one) for one in ones]
         warned = {name: np.array([f[name] for f in found]) for name in found[0]}
-        return warnings_of_cases(warned, KINDS)
+        return warnings_of_cases(warned, SOLUTION_KINDS)
     with np.errstate(all="ignore"):
         return [
-            KINDS[name].warning(name, float(size), KINDS[name].where(held))
+            SOLUTION_KINDS[name].warning(
+                name, float(size), SOLUTION_KINDS[name].where(held)
+            )
             for name, size in sizes(held).items()
-            if size > KINDS[name].limit
+            if size > SOLUTION_KINDS[name].limit
         ]
 
 
@@ -78,6 +80,6 @@ def sizes(solution: Solution) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         return {
             name: xp.where(solved, kind.size(solution), xp.nan)
-            for name, kind in KINDS.items()
+            for name, kind in SOLUTION_KINDS.items()
             if kind.applies(solution.element, solution.speed)
         }

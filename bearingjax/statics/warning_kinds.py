@@ -82,7 +82,7 @@ def _of_raceways(solution: Solution, concerned: Any) -> str:
     return f" ({where})" if where else ""
 
 
-KINDS: dict[str, SolutionKind] = {
+SOLUTION_KINDS: dict[str, SolutionKind] = {
     "implausible_number": SolutionKind(
         0.0,
         "far outside the sizes of rolling bearings: {where}; are these SI units?",

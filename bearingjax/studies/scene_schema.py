@@ -53,7 +53,14 @@ from .optimise.read_optimise import OptimiseKeys
 from .optimise.read_shaft_optimise import ShaftOptimiseKeys
 from .rotor.mounts import SpringKeys
 from .rotor.read import RotorKeys
-from .shaft.read import PARTS, DriveKeys, HousingKeys, SeatKeys, ShaftKeys, SystemKeys
+from .shaft.read import (
+    PART_CLASSES,
+    DriveKeys,
+    HousingKeys,
+    SeatKeys,
+    ShaftKeys,
+    SystemKeys,
+)
 from .shaft.read_heat import HeatKeys
 from .skid.read_dynamics import DynamicsKeys
 
@@ -183,7 +190,7 @@ def _shaft_scene() -> dict[str, Any]:
         },
     }
     tables = {"shaft": _by_name(table_schema(ShaftKeys))}
-    for key, kind in PARTS.items():
+    for key, kind in PART_CLASSES.items():
         here = dict(place) if key != "coupling" else {"shaft": place["shaft"]}
         if kind is ShaftLoad:
             here |= table_schema(LoadKeys)["properties"]

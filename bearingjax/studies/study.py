@@ -76,11 +76,10 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
-        By the tables of the scene: `ShaftRun` of [shaft.NAME], `Optimised` if it has
-        [optimise] too, `RotorRun` of [rotor],
-        a list of `Compared` of [roller], `NoiseRun` of [vibration], `SkidRun` of
-        [dynamics], `Optimised` of [optimise], `LifeRun` of [cases] and [life], `Sweep`
-        of [cases], else the
+        By the tables of the scene: `ShaftRun` of [shaft.NAME], `OptimisedDesign` if it
+        has [optimise] too, `RotorRun` of [rotor], a list of `SliceComparison` of
+        [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `OptimisedDesign`
+        of [optimise], `LifeRun` of [cases] and [life], `Sweep` of [cases], else the
         `Solution` of the bearing under its load. Read its result code: a failed solve
         does not raise, except at the start of an optimisation.
 

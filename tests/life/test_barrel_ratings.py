@@ -17,7 +17,7 @@ from tolerances import DIFFERENCE, ROUNDING
 
 import bearingjax as bj
 from bearingjax.element.constants import relative_radii
-from bearingjax.fits.mounted import radial_clearance, row_shifts, with_radial_clearance
+from bearingjax.fits.mounting import radial_clearance, row_shifts, with_radial_clearance
 from bearingjax.friction.friction import _of_row
 from bearingjax.friction.friction_skf import _TYPES, _variables
 from bearingjax.life import row_rating

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float, Int
 
 from bearingjax.numerics import labels
 from bearingjax.numerics.labels import (
-    Labelled,
+    LabelledArray,
     axes_of,
     labelled_fields,
     make_dataset,
@@ -81,20 +81,25 @@ def test_columns_have_names_along_their_last_axes():
     found = labelled_fields(example(6))
     headers = [header for header, *_ in found["motion"].columns("motion")]
     assert headers[1:4] == ["motion_0_v [m]", "motion_0_w [rad]", "motion_1_u [m]"]
-    counted = Labelled(np.arange(8).reshape(1, 2, 4), ("case", "side", "item"), "N")
+    counted = LabelledArray(
+        np.arange(8).reshape(1, 2, 4), ("case", "side", "item"), "N"
+    )
     (header, names, values), *_ = list(counted.columns("load"))[5:]
     assert (header, names, values) == ("load_1_1 [N]", ("1", "1"), 5)
-    assert next(Labelled(np.ones((3, 2)), ("case", "side"), "N").columns(""))[0] == (
-        "left [N]"
-    )
+    assert next(LabelledArray(np.ones((3, 2)), ("case", "side"), "N").columns(""))[
+        0
+    ] == ("left [N]")
 
 
 def test_values_of_another_shape_than_the_class_states_have_no_names():
     for shape in ((2,), (4, 3), (4, 2, 2)):
-        found = Labelled.field(Example, "load", np.zeros(shape))
+        found = LabelledArray.field(Example, "load", np.zeros(shape))
         named = ("load_0", "load_1", "load_2")[: len(shape)]
         assert found.axes == named and found.units == "N"
-    assert Labelled.field(Example, "load", np.zeros((4, 2))).axes == ("item", "side")
+    assert LabelledArray.field(Example, "load", np.zeros((4, 2))).axes == (
+        "item",
+        "side",
+    )
 
 
 def test_to_xarray_has_names_units_and_words():
@@ -112,10 +117,10 @@ def test_to_xarray_has_names_units_and_words():
 
 def test_make_dataset_keeps_axes_apart():
     """A name that an array has too, and one axis name of two lengths."""
-    one = Labelled(np.zeros((3, 2)), ("motion", "side"))
-    two = {"motion": Labelled(np.zeros((2, 2)), ("motion", "side")), "free": one}
-    two["none"] = Labelled(np.zeros((0, 2)), ("seat", "side"))
-    two["time"] = Labelled(np.arange(4.0), ("time",), "s")
+    one = LabelledArray(np.zeros((3, 2)), ("motion", "side"))
+    two = {"motion": LabelledArray(np.zeros((2, 2)), ("motion", "side")), "free": one}
+    two["none"] = LabelledArray(np.zeros((0, 2)), ("seat", "side"))
+    two["time"] = LabelledArray(np.arange(4.0), ("time",), "s")
     found = make_dataset(two, {"side": ("a", "b")})
     assert found.motion.dims == ("motion_axis", "side")
     assert found.free.dims == ("motion_axis_of_free", "side")

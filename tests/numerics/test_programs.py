@@ -386,7 +386,7 @@ def test_store_evicts_least_recently_used_program(kept, monkeypatch):
     kept(word="used")
     (used,) = set(kept.folder.iterdir()) - {old}
     os.utime(used, (2, 2))
-    monkeypatch.setattr(programs, "LARGEST", int(2.5 * old.stat().st_size))
+    monkeypatch.setattr(programs, "LARGEST_STORE", int(2.5 * old.stat().st_size))
     kept(word="old")  # from its file, which is thereby the youngest
     kept(word="new")
     names = set(kept.folder.iterdir())

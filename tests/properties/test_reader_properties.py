@@ -17,7 +17,7 @@ from tolerances import ROUNDING
 from bearingjax.catalogue.designation import split_designation
 from bearingjax.catalogue.entry import _names
 from bearingjax.files import SceneError, shipped_scenes
-from bearingjax.files.quantity import KINDS, to_si
+from bearingjax.files.quantity import QUANTITIES, to_si
 from bearingjax.studies.study import STUDIES, study_of
 
 _DEG, _TURN = math.pi / 180, 2 * math.pi
@@ -70,7 +70,7 @@ def test_units_give_the_same_number(unit, number, space):
     kind, name = unit
     value = to_si(f"{number!r}{space}{name}", kind)
     assert math.isclose(value, number * UNITS[kind][name], rel_tol=ROUNDING)
-    assert to_si(f"{value!r} {KINDS[kind][0]}", kind) == value
+    assert to_si(f"{value!r} {QUANTITIES[kind][0]}", kind) == value
 
 
 _PIECES = st.sampled_from(
@@ -92,7 +92,7 @@ _QUANTITIES = st.one_of(
 )
 
 
-@holds_for(text=_QUANTITIES, kind=st.sampled_from(list(KINDS)))
+@holds_for(text=_QUANTITIES, kind=st.sampled_from(list(QUANTITIES)))
 @example("1 m^9^9^9^9", "length")
 def test_any_text_is_a_quantity_or_refused_in_a_line(text, kind):
     value = answer(to_si, text, kind)

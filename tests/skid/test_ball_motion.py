@@ -28,7 +28,7 @@ from bearingjax.skid.ball_motion import (
     sliding,
     tractions,
 )
-from bearingjax.skid.loaded import loaded_ball
+from bearingjax.skid.contact_loads import loaded_ball
 from bearingjax.skid.model import Oil
 
 GAMMA, ALPHA = 0.238339, np.radians(25.0)

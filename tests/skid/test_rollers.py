@@ -14,7 +14,7 @@ from bearingjax.element.inertia import Speed, roller_speeds
 from bearingjax.lubrication import Eyring, Newtonian, mil_l_23699
 from bearingjax.numerics.result import Result
 from bearingjax.skid import Cage, Drag, SkidModel, ball_motion
-from bearingjax.skid.loaded import loaded_roller
+from bearingjax.skid.contact_loads import loaded_roller
 from bearingjax.skid.model import Oil
 from bearingjax.skid.roller_motion import (
     RollerState,

@@ -144,7 +144,7 @@ def test_least_torque_has_as_much_slip_as_is_allowed():
     assert found.after.exact < found.before.exact
     assert float(found.element.preload) == found.values[0]
     assert found.element.model.bearing.n_balls == BEARING.n_balls
-    figure = bj.plot.optimised(found)
+    figure = bj.plot.optimise_overview(found)
     peaks, history = figure.axes[:2]
     assert len(peaks.patches) == 4
     assert np.asarray(history.get_lines()[0].get_ydata())[-1] < 1.0

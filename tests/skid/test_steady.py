@@ -17,7 +17,7 @@ from bearingjax.element.inertia import Speed
 from bearingjax.lubrication import mil_l_23699
 from bearingjax.numerics.result import Result, SolveError
 from bearingjax.skid import Drag, SkidModel, conditions, skid_warnings
-from bearingjax.skid.loaded import ring_forces
+from bearingjax.skid.contact_loads import ring_forces
 from bearingjax.skid.orbits import orbit_search
 from bearingjax.skid.orbits.orbit_search import derivatives
 from bearingjax.skid.orbits.steady_results import Power

@@ -19,7 +19,7 @@ from bearingjax.lubrication import iso_vg
 from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.statics import load_result, warnings
 from bearingjax.statics.warning import sizes
-from bearingjax.statics.warning_kinds import KINDS
+from bearingjax.statics.warning_kinds import SOLUTION_KINDS
 
 RADIAL = [0.0, -4000.0, 0.0, 1.0, 0.0, 0.0]
 FREE = ["ux", "uy", "gx", "gy"]
@@ -288,7 +288,7 @@ def test_solve_load_batch_equals_single_solutions(bearing):
             close = np.allclose(value, stacked, 1e-6, 1e-7 * size, equal_nan=True)
             assert close, (what, name)
     assert warnings(batch) == warnings_of_cases(
-        jax.tree.map(np.asarray, together["warnings"]), KINDS
+        jax.tree.map(np.asarray, together["warnings"]), SOLUTION_KINDS
     )
     for function in (
         lambda s: bj.friction_torque(s, 2e-5),

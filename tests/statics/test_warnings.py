@@ -17,7 +17,7 @@ from bearingjax.numerics.warning import Kind, exceeded_kinds
 from bearingjax.statics import seat_warnings, speed_warnings
 from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning import sizes
-from bearingjax.statics.warning_kinds import KINDS
+from bearingjax.statics.warning_kinds import SOLUTION_KINDS
 from bearingjax.statics.warning_sizes import (
     idle_numbers,
     number_ranges,
@@ -261,7 +261,7 @@ def test_warnings_negative_clearance_of_single_bearing(deep, rollers):
         assert bj.warnings(solved(pressed, load, STILL, **kept)) == []
         usual = changed(element, **{name: 5e-6})
         assert bj.warnings(solved(usual, load, running, **kept)) == []
-    applies = KINDS["negative_clearance"].applies
+    applies = SOLUTION_KINDS["negative_clearance"].applies
     single = balls(7, bj.AngularContactBallBearing, contact_angle=0.4)
     pair = bj.BearingSet.back_to_back(single, 0.03)
     for bearing in (single, pair, bearings()["taper, large rib"]):
@@ -411,7 +411,7 @@ def test_sweep_warnings_match_single_solutions(deep):
         *(solved(deep, load, throw=False) for load in LOADS),
     )
     assert len(bj.warnings(both)) == len(counts)
-    assert set(swept.warning_sizes) <= set(KINDS)
+    assert set(swept.warning_sizes) <= set(SOLUTION_KINDS)
 
 
 def test_message_for_displacement_far_outside_the_bearing(deep):

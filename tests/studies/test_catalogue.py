@@ -13,7 +13,7 @@ import pytest
 from tolerances import SOLVER
 
 import bearingjax as bj
-from bearingjax.catalogue.entry import UNITS
+from bearingjax.catalogue.entry import ENTRY_UNITS
 from bearingjax.design import rows_of
 from bearingjax.design.keywords import BALLS, ROLLERS
 from bearingjax.files import SceneError, shipped_scenes
@@ -79,9 +79,9 @@ def test_catalogue_units_are_those_of_the_fields():
         kind = {**BALLS, **ROLLERS}[entry.type]
         for key, value in entry.design.items():
             if isinstance(value, float) and key != "axial_internal_clearance":
-                assert alike[UNITS.get(key, "mm")] == unit_of(kind, key), key
+                assert alike[ENTRY_UNITS.get(key, "mm")] == unit_of(kind, key), key
     for key in {key for entry in ENTRIES for key in entry.printed}:
-        assert key in UNITS or key.endswith(shown), key
+        assert key in ENTRY_UNITS or key.endswith(shown), key
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=NAMES)

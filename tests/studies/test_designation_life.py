@@ -312,6 +312,7 @@ def test_rows_with_bearings_of_their_own_have_their_published_ratings(read):
     assert text.startswith(
         "set: every row has a `bearing` of its own, so that [bearing]"
     )
+    assert scene.catalogue is None and scene.installed.limiting_speed is None
     mixed = rows.replace(f'{own}position = "20', '[[set.rows]]\nposition = "20')
     scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{mixed}')
     assert scene.warnings == ()

@@ -10,7 +10,7 @@ import pytest
 
 import bearingjax as bj
 from bearingjax.files import SceneError
-from bearingjax.files.quantity import KINDS, to_si
+from bearingjax.files.quantity import QUANTITIES, to_si
 from bearingjax.studies.bearing.read_scene import read_scene
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.contact.read import read_contact
@@ -40,9 +40,9 @@ def echoed(path, scene):
     return read_scene(path)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", QUANTITIES)
 def test_echo_units_are_si(kind):
-    assert to_si(f"0.1 {KINDS[kind][0]}", kind) == 0.1
+    assert to_si(f"0.1 {QUANTITIES[kind][0]}", kind) == 0.1
 
 
 @pytest.mark.parametrize("number", ["10", "25", "1.7e1", "-0.3", ".5", "+12.", "7e-3"])

@@ -24,7 +24,7 @@ from bearingjax.fits import (
     radial_clearance,
     with_bearing_dimensions,
 )
-from bearingjax.fits.mounted import raceway_diameters
+from bearingjax.fits.mounting import raceway_diameters
 from bearingjax.optimise.design_problem import Problem
 from bearingjax.statics.options import SolveOptions
 from bearingjax.studies.bearing.catalogue_keys import as_keys

@@ -8,7 +8,7 @@ from tolerances import ROUNDING
 
 from bearingjax.files.quantity import (
     _UNITS,
-    KINDS,
+    QUANTITIES,
     SceneError,
     _registry,
     scene_number,
@@ -84,9 +84,9 @@ def test_names_of_units_have_no_prefixes_and_endings_but_those_listed():
                 to_si(f"5 {other}", "unbalance")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", QUANTITIES)
 def test_suggested_unit_is_of_its_kind(kind):
-    unit, example = KINDS[kind]
+    unit, example = QUANTITIES[kind]
     assert to_si(f"1 {unit}", kind) == 1.0
     assert to_si(f"5 {example}", kind) > 0.0
 

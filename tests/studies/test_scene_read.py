@@ -670,6 +670,17 @@ def test_ball_scene():
     assert type(plain.raceway_control) is bj.element.OuterControl
 
 
+@pytest.mark.parametrize("table, count", [("", 1), ("[cases.grid]", 0)])
+def test_raceway_control_without_speed_is_said_to_do_nothing(tmp_path, table, count):
+    path = tmp_path / "scene.toml"
+    control = 'inner_speed = "9 rpm"\nraceway_control = "inner"'
+    text = f'[bearing]\ndesignation = "6205"\n[operating]\n{control}'
+    path.write_text(f"{text}\n{table}")
+    for settings, wanted in ((), 0), (["operating.inner_speed=0 rpm"], count):
+        kinds = [w.kind for w in bj.read_scene(path, settings).warnings]
+        assert kinds.count("unused_control") == wanted
+
+
 @pytest.mark.parametrize(
     "arrangement, mirrored",
     [

@@ -12,7 +12,7 @@ import pytest
 
 from bearingjax import SceneError, read_scene, studies
 from bearingjax.files import shipped_scenes
-from bearingjax.files.quantity import KINDS
+from bearingjax.files.quantity import QUANTITIES
 from bearingjax.files.schema import Keys, fields_of, read_keys
 from bearingjax.files.table import Table
 from bearingjax.studies.contact.read import read_contact
@@ -140,7 +140,7 @@ def bad_values(field):
     if key.reader is not None or key.of:
         return
     if kinds == (float,) and key.kind:
-        unit, example = KINDS[key.kind]
+        unit, example = QUANTITIES[key.kind]
         yield 3, "has no unit"
         yield f"3 {example}lots", "has the unknown unit"
         other = "kg" if unit != "kg" else "mm"

@@ -30,7 +30,7 @@ Names
 - Any two bodies: `solve_pressure`, `ContactSolution`, `influence`, `AbstractInfluence`.
 - Cells: `Grid`, `even_grid`, `graded_grid`.
 - Pressure solvers: `ConjugateGradients`, `Strips`, `AbstractPressureSolver`, `Problem`,
-  `Pressed`.
+  `PressureSolution`.
 - Stress below the surface: `stress_below`, `Stress`.
 """
 
@@ -39,7 +39,7 @@ from .gradients import AbstractPressureSolver, ConjugateGradients
 from .grid import Grid, even_grid, graded_grid
 from .influence import AbstractInfluence, influence
 from .pressure import ContactSolution, solve_pressure
-from .problem import Pressed, Problem
+from .problem import PressureSolution, Problem
 from .roller import RollerContact
 from .stress import Stress, stress_below
 from .strips import Strips
@@ -47,5 +47,6 @@ from .strips import Strips
 __all__ = [
     "RollerContact", "FreeEnds", "solve_pressure", "ContactSolution", "influence",
     "AbstractInfluence", "Grid", "even_grid", "graded_grid", "ConjugateGradients",
-    "Strips", "AbstractPressureSolver", "Problem", "Pressed", "stress_below", "Stress",
+    "Strips", "AbstractPressureSolver", "Problem", "PressureSolution", "stress_below",
+    "Stress",
 ]  # fmt: skip

@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 from ...numerics.compiled.batched_loop import Loop
 from ...numerics.linear import dot, solve_symmetric
 from ...numerics.result import Result
-from .problem import Pressed, Problem
+from .problem import PressureSolution, Problem
 
 
 def _rounding(dtype) -> float:
@@ -43,7 +43,7 @@ class AbstractPressureSolver(eqx.Module):
         """Whether to stop: solved, out of steps or not finite."""
 
     @abc.abstractmethod
-    def finish(self, problem: Problem, state: Any) -> Pressed:
+    def finish(self, problem: Problem, state: Any) -> PressureSolution:
         """Pressure and status.
 
         Fails: `STEP_LIMIT`, `NO_LOAD_PATH` (a load that is not positive, a moment that
@@ -79,8 +79,8 @@ class ConjugateGradients(AbstractPressureSolver):
     overlap enter. Where cells come or go the directions start afresh.
 
     Attributes:
-        tolerance: Residual at which to stop, see `Pressed`; `None` picks 1e-10 in
-            float64 and in float32 2e-5, beyond a thousand cells so many times more:
+        tolerance: Residual at which to stop, see `PressureSolution`; `None` picks 1e-10
+            in float64 and in float32 2e-5, beyond a thousand cells so many times more:
             below that products are round-off.
         max_steps: Step limit.
         preconditioned: Whether directions are estimated pressures, so that a score of
@@ -177,13 +177,13 @@ class ConjugateGradients(AbstractPressureSolver):
         going = state.residual > self._goal(state.pressure)
         return ~(going & (state.steps < self.max_steps))
 
-    def finish(self, problem: Problem, state: Any) -> Pressed:
+    def finish(self, problem: Problem, state: Any) -> PressureSolution:
         done = state.residual <= self._goal(state.pressure)
         result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
         finite = jnp.isfinite(state.residual) & jnp.all(jnp.isfinite(state.rigid))
         result = jnp.where(finite, result, int(Result.NON_FINITE))
         result = jnp.where(_is_carried(problem), result, int(Result.NO_LOAD_PATH))
-        return Pressed(
+        return PressureSolution(
             state.pressure,
             state.touching & (state.pressure > 0),
             state.rigid,

@@ -96,7 +96,7 @@ class Problem(eqx.Module):
         return approach, tilt
 
 
-class Pressed(NamedTuple):
+class PressureSolution(NamedTuple):
     """Result of a pressure solver.
 
     Attributes:

@@ -12,7 +12,7 @@ from ...numerics.lapack import solve_any
 from ...numerics.result import Result
 from .gradients import AbstractPressureSolver
 from .influence import EvenInfluence, cosine_sums, padded_size
-from .problem import Pressed, Problem
+from .problem import PressureSolution, Problem
 
 _INNER = 40
 """Limit of changes of the active set within a strip."""
@@ -140,7 +140,7 @@ class Strips(AbstractPressureSolver):
         going = going & (jnp.max(state.pressure) < _far_too_large(problem))
         return ~(going & (state.steps < self.max_steps))
 
-    def finish(self, problem: Problem, state: Any) -> Pressed:
+    def finish(self, problem: Problem, state: Any) -> PressureSolution:
         done = state.change <= self.tolerance
         finite = jnp.isfinite(state.change)
         result = jnp.where(done, int(Result.CONVERGED), int(Result.STEP_LIMIT))
@@ -153,7 +153,7 @@ class Strips(AbstractPressureSolver):
         off = jnp.max(jnp.where(inside, jnp.abs(distance), jnp.maximum(-distance, 0)))
         load = jnp.sum(state.pressure)
         mean = jnp.sum(state.pressure * problem.influence(state.pressure)) / load
-        return Pressed(
+        return PressureSolution(
             state.pressure,
             inside,
             rigid,

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ...contact.hertz import EXPONENT
+from ...contact.hertz import POINT_EXPONENT
 from ...contact.point_law import at_angle
 from ...numerics.expansion import Expansion
 from ...numerics.power import positive_power
@@ -21,7 +21,7 @@ from .ball_geometry import AbstractBallGeometry
 from .ball_inertia import BallInertia, CarriedLoads, carried_loads
 from .ball_speed import BallKinematics
 
-_N, _D = EXPONENT
+_N, _D = POINT_EXPONENT
 
 
 class Ball(AbstractRollingElement):

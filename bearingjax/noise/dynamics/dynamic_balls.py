@@ -14,7 +14,7 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ...contact.hertz import EXPONENT
+from ...contact.hertz import POINT_EXPONENT
 from ...element.balls.ball import Ball
 from ...element.balls.ball_contacts import add
 from ...numerics.power import positive_power
@@ -22,7 +22,7 @@ from ...numerics.units import unit
 from .dynamic_element import DynamicElement
 from .element_positions import Section
 
-_N, _D = EXPONENT
+_N, _D = POINT_EXPONENT
 
 
 def is_written_out(balls: DynamicElement) -> bool:

@@ -49,7 +49,7 @@ def step_weights(steps: int) -> np.ndarray:
     return (found / found.sum()).reshape(2 * REACH, steps)
 
 
-class Stepped(NamedTuple):
+class SampledMotion(NamedTuple):
     """Motion at equidistant samples.
 
     Attributes:
@@ -72,7 +72,7 @@ def step_motion(
     samples: int,
     kept: Callable[[Vector], Any] = lambda acceleration: acceleration,
     given: Callable[[Scalar], Any] = lambda time: time,
-) -> Stepped:
+) -> SampledMotion:
     """Integrate a motion from time zero on.
 
     Args:
@@ -138,4 +138,4 @@ def step_motion(
     )
     (end, _), (motion, seen) = lax.scan(sample, (start, nothing), numbers)
     seen = jax.tree.map(lambda a: a[later:], seen)
-    return Stepped(motion[:samples], seen, end)
+    return SampledMotion(motion[:samples], seen, end)

@@ -39,7 +39,7 @@ OPTIONS = tuple(
 """XLA's options for programs whose runs are short compared with their compilation, by
 levels."""
 
-LARGEST = 512 * 1024 * 1024
+LARGEST_STORE = 512 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
 
 _MARK = b"bearingjax program\n"
@@ -465,6 +465,6 @@ def _drop_oldest(place: int) -> None:
     total = 0
     for _, size, name in sorted(found, reverse=True):
         total += size
-        if total > LARGEST:
+        if total > LARGEST_STORE:
             with contextlib.suppress(OSError):
                 os.unlink(name, dir_fd=place)

@@ -20,7 +20,7 @@ from .continuation import (
     BranchPoint,
     ChangeOfParameter,
     Steps,
-    Traced,
+    TracedBranch,
     place,
     trace,
 )
@@ -155,7 +155,7 @@ def follow(
 
 
 @program(quick=True, level=1)
-def _trace(system, method, motion, begin, end, parameter, steps) -> Traced:
+def _trace(system, method, motion, begin, end, parameter, steps) -> TracedBranch:
     z, unit = method.unknowns(motion), system.reference_frequency
     return trace(
         system,

@@ -108,7 +108,7 @@ class Steps(eqx.Module):
     points: int = eqx.field(static=True, default=500)
 
 
-class Traced(NamedTuple):
+class TracedBranch(NamedTuple):
     """Points of a branch in arrays of fixed size: the first `count` are valid.
 
     Attributes:
@@ -139,7 +139,7 @@ class Traced(NamedTuple):
 
 
 class BranchPoint(NamedTuple):
-    """Point of a branch; fields as in `Traced`."""
+    """Point of a branch; fields as in `TracedBranch`."""
 
     x: Float[Array, " x"]
     tangent: Float[Array, " x"]
@@ -218,7 +218,7 @@ def trace(
     end: Scalar,
     parameter: Arclength | ChangeOfParameter,
     steps: Steps,
-) -> Traced:
+) -> TracedBranch:
     """Follow a branch; compiled by the caller.
 
     Args:
@@ -230,7 +230,7 @@ def trace(
         steps: Lengths of steps, and their most.
 
     Returns:
-        `Traced`; it has no derivatives: see `solve_orbit`.
+        `TracedBranch`; it has no derivatives: see `solve_orbit`.
     """
     points = steps.points
     along = along_frequency(begin.shape[0] - 1, begin.dtype)
@@ -328,4 +328,4 @@ def trace(
         jnp.int32(_GOING),
     )  # fmt: skip
     done = lax.while_loop(lambda state: state.ending == _GOING, attempt, state)
-    return Traced(*done.points, done.n_points, done.refused, done.ending)
+    return TracedBranch(*done.points, done.n_points, done.refused, done.ending)

@@ -59,7 +59,7 @@ class PeriodicOrbit(eqx.Module):
     result: Int[Array, ""]
 
 
-class Corrected(NamedTuple):
+class CorrectedPoint(NamedTuple):
     """Result of Newton's method.
 
     Attributes:
@@ -85,7 +85,7 @@ def correct(
     x: Float[Array, " x"],
     direction: Float[Array, " x"],
     limit: int | Int[Array, ""],
-) -> Corrected:
+) -> CorrectedPoint:
     """Solve for an orbit in the plane through `x` across `direction`.
 
     The frequency is an unknown like the others; `direction` says what is held: with
@@ -100,7 +100,7 @@ def correct(
         limit: Most Newton steps.
 
     Returns:
-        `Corrected`, without derivatives.
+        `CorrectedPoint`, without derivatives.
 
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
@@ -120,7 +120,7 @@ def newton(
     linearised: Callable[[Any], tuple[Any, Any, Any]],
     x: Float[Array, " x"],
     limit: int | Int[Array, ""],
-) -> Corrected:
+) -> CorrectedPoint:
     """Run Newton's method, with steps halved where the residual more than doubles.
 
     Args:
@@ -130,7 +130,7 @@ def newton(
         limit: Most steps.
 
     Returns:
-        `Corrected`, without derivatives.
+        `CorrectedPoint`, without derivatives.
 
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
@@ -175,7 +175,7 @@ def newton(
     codes = int(Result.CONVERGED), int(Result.STEP_LIMIT)
     result = jnp.where(is_solved(here), *codes)
     result = jnp.where(jnp.isfinite(size), result, int(Result.NON_FINITE))
-    return Corrected(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
+    return CorrectedPoint(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
 
 
 def along_frequency(size: int, dtype: Any) -> Float[Array, " x"]:

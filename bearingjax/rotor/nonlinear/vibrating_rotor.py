@@ -16,7 +16,7 @@ from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
 from ...numerics.types import Scalar, as_real
 from ...numerics.units import unit
-from ..held import map_parts
+from ..like_parts import map_parts
 from ..linear.reduction import craig_bampton, held_motions
 from ..loads import RotorLoads
 from ..parts import AbstractSupport

@@ -23,7 +23,7 @@ from ..ball_motion import (
     sliding,
     tractions,
 )
-from ..loaded import contact_loads, loaded_ball
+from ..contact_loads import contact_loads, loaded_ball
 from .orbit_search import AbstractOrbit
 from .steady_results import Power, SteadyMotion, SteadySkid, driving
 

@@ -25,7 +25,7 @@ from ...numerics.result import Result
 from ...numerics.types import Scalar
 from ...numerics.units import unit, units
 from ...statics.balance import Balance
-from ..loaded import orbiting_model, ring_forces
+from ..contact_loads import orbiting_model, ring_forces
 from ..model import SkidModel
 from .steady_results import SteadyMotion
 

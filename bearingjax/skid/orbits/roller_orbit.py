@@ -20,7 +20,7 @@ from ...element.inertia import Speed, mass_and_inertia
 from ...element.solved_row import RowResults, SolvedRow
 from ...numerics.types import Scalar
 from ..conditions import conditions_of
-from ..loaded import loaded_rollers
+from ..contact_loads import loaded_rollers
 from ..roller_motion import (
     LoadedRoller,
     RollerState,

@@ -15,14 +15,14 @@ from ...numerics.types import Scalar
 from ...statics.balance import Balance
 from ...statics.solution import BallSolution, RollerSolution
 from ..balanced_loads import BalancedLoads
-from ..load_table import LoadTable, load_table
-from ..loaded import (
+from ..contact_loads import (
     at_places,
     contact_ellipses,
     contact_loads,
     loaded_ball,
     loaded_rollers,
 )
+from ..load_table import LoadTable, load_table
 from ..model import SkidModel
 from ..motion import SkidState, Surroundings, equations_of_motion
 from ..ring_speed import SpeedTable

@@ -19,7 +19,7 @@ _FIRST = 1e-5
 """First step over the duration [1]."""
 
 
-class Integrated(NamedTuple):
+class IntegratedMotion(NamedTuple):
     """A motion, leading axis time; NaN where it was not reached.
 
     Attributes:
@@ -43,7 +43,7 @@ def integrate_motion(
     times: Float[Array, " time"],
     duration: Scalar,
     options: in_time.IntegrationOptions,
-) -> Integrated:
+) -> IntegratedMotion:
     """Integrate the motion of balls and cage.
 
     Args:
@@ -67,7 +67,7 @@ def integrate_motion(
         in_time.Stepping(Rodas(), _STEP, _FIRST * duration, _knots(environment)),
     )
     state, work = jax.vmap(system.unpack)(found.state)
-    return Integrated(state, work, found.steps, found.rejected, found.result)
+    return IntegratedMotion(state, work, found.steps, found.rejected, found.result)
 
 
 def _knots(environment):

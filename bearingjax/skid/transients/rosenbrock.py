@@ -77,7 +77,7 @@ class Cubic(diffrax.AbstractLocalInterpolation):
 class Rodas(diffrax.AbstractAdaptiveSolver):
     """RODASP: six stages, order 4, error of order 3, stiffly accurate.
 
-    The `args` of the equation are its `AbstractSystem`, the state is a `Coupled`.
+    The `args` of the equation are its `AbstractSystem`, the state is a `CoupledState`.
 
     Source: Steinebach (1995); the transformed form, without products with the Jacobian,
         of Hairer & Wanner, Solving Ordinary Differential Equations II, IV.7; unknowns

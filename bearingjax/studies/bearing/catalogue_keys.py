@@ -7,7 +7,7 @@ from typing import Any
 
 from ...catalogue.entry import (
     CLEARANCE,
-    UNITS,
+    ENTRY_UNITS,
     CatalogueEntry,
     catalogue_entry,
     in_catalogue_unit,
@@ -43,7 +43,7 @@ def as_keys(values: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in values.items():
         if isinstance(value, Mapping):
             found[key] = as_keys(value)
-        elif isinstance(value, float) and UNITS.get(key, "mm"):
+        elif isinstance(value, float) and ENTRY_UNITS.get(key, "mm"):
             found[key] = in_catalogue_unit(key, value)
         else:
             found[key] = value

@@ -51,17 +51,18 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
     found = {
         name: "given in [life]" for name, source in sources.items() if source == GIVEN
     }
-    if scene.catalogue is None:
-        return found
-    entry, bearing = scene.catalogue.entry, scene.element.bearing
-    words = f"published for {entry.designation}"
-    if any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
-        words = "published for the bearing of its rows"
-    rows = ""
+    bearing, rows, listed = scene.element.bearing, "", ""
+    words = "published for the bearing of its rows"
+    if not any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
+        if scene.catalogue is None:
+            return found
+        words = f"published for {scene.catalogue.entry.designation}"
     if has_separate_rings(bearing):
         rows = f", of one row; for {len(rows_of(bearing))} rows"
-    # A plain size has the ratings of the improved design that it is listed as.
-    listed = "".join(f"; {note}" for note in entry.notes if " is listed as " in note)
+    if scene.catalogue is not None:
+        # A plain size has the ratings of the improved design that it is listed as.
+        notes = scene.catalogue.entry.notes
+        listed = "".join(f"; {note}" for note in notes if " is listed as " in note)
     for name, source in sources.items():
         if source == PUBLISHED:
             how = f"{rows} {_OF_ROWS[name][1]}" if rows else ""

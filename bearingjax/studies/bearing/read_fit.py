@@ -44,7 +44,7 @@ from ...fits import (
     with_radial_clearance,
 )
 from ...fits.fit_limits import CLEARANCE_PARTS, MOTOR_CLASS
-from ...fits.fits import PARTS, smoothing
+from ...fits.fits import WARM_PARTS, smoothing
 from ...fits.iso286 import limit_classes
 from .catalogue_keys import CLEARED_ROLLERS, FromCatalogue
 
@@ -252,9 +252,12 @@ class TemperatureKeys(Keys):
         Args:
             speed: Ring speeds; `None`: at rest.
         """
-        warm = {"reference": self.reference, **dict.fromkeys(PARTS, self.reference)}
+        warm = {
+            "reference": self.reference,
+            **dict.fromkeys(WARM_PARTS, self.reference),
+        }
         warm |= self.given
-        self.fill(**{part: warm[part] for part in PARTS})
+        self.fill(**{part: warm[part] for part in WARM_PARTS})
         if speed is None:
             return FitConditions(**warm)
         speeds = {"speed": float(speed.inner), "outer_speed": float(speed.outer)}

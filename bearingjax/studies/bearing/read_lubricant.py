@@ -27,7 +27,7 @@ from ...lubrication import (
 from ...numerics.units import CELSIUS, unit_of
 from ...numerics.warning import Warning
 
-LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
+VISCOSITY_LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
 """Laws of viscosity over pressure; the first includes the temperature."""
 
 TRACTIONS = {
@@ -63,7 +63,7 @@ class LubricantKeys(Keys):
     name: str | None = scene_key("one of these oils", choices=tuple(OILS))
     law: str | None = scene_key(
         "law of viscosity over pressure, in place of a `name`",
-        choices=tuple(LAWS),
+        choices=tuple(VISCOSITY_LAWS),
         without={"name": ""},
     )
     coefficient: float | None = scene_key(
@@ -164,7 +164,7 @@ class LubricantKeys(Keys):
             # Raises if it is missing.
             coefficient = self.table.quantity("coefficient", "pressure coefficient")
             with self.table.building():
-                pressure = LAWS[self.law or ""](coefficient)
+                pressure = VISCOSITY_LAWS[self.law or ""](coefficient)
         density = {
             "value": DENSITY if self.density is None else self.density,
             "slope": self.density_slope,

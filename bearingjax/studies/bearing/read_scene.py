@@ -222,17 +222,23 @@ def scene_of(
     warned = bearing.warnings
     if found is not None:
         warned += leftover_warnings(*found, varied)
-    scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
-    top.finish()
-    inputs, warned = top.echo(), scene.warnings
-    rows = inputs.get("set", {}).get("rows", ())
+    rows = data.get("set", {}).get("rows", ())
     if rows and all("bearing" in row for row in rows):
         words = (
             "set: every row has a `bearing` of its own, so that [bearing] is none of"
-            " them; write that of a row there, and leave it out of the row"
+            " them, and nothing that the catalogue says of it counts; write that of a"
+            " row there, and leave it out of the row"
         )
-        warned = (*warned, Warning("unused_bearing", words))
-    return dataclasses.replace(scene, inputs=inputs, warnings=warned)
+        warned, catalogue = (*warned, Warning("unused_bearing", words)), None
+    scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
+    top.finish()
+    warned = scene.warnings
+    # Bearings of machines and of sweeps may get their speeds elsewhere.
+    alone = places is None and "cases" not in data
+    if alone and scene.speed is None and "raceway_control" in top.table("operating"):
+        words = "operating.raceway_control: balls at rest have no gyroscopic moment;"
+        warned += (Warning("unused_control", f"{words} it acts at a speed alone"),)
+    return dataclasses.replace(scene, inputs=top.echo(), warnings=warned)
 
 
 def check_equilibrium(

@@ -22,8 +22,8 @@ from ...cases.sweep import SUMMARIES, stack_designs
 from ...design import rows_of
 from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ...element.frame import LOAD_UNITS, MOTION_UNITS
-from ...files.column_list import LARGEST, read_list
-from ...files.quantity import KINDS, SceneError, kind_of, to_si
+from ...files.column_list import MOST_CASES, read_list
+from ...files.quantity import QUANTITIES, SceneError, kind_of, to_si
 from ...files.scene_errors import error_at
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
@@ -52,7 +52,7 @@ OPERATING = {
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
 """Tables of the scene whose keys define the design."""
 
-_SI_UNITS = {unit for unit, _ in KINDS.values()}
+_SI_UNITS = {unit for unit, _ in QUANTITIES.values()}
 
 MOST_DESIGNS = 10**5
 """Most designs of a scene: each is read and checked separately, in about 5 ms."""
@@ -116,7 +116,7 @@ class CaseTable:
 
 
 @dataclasses.dataclass(frozen=True)
-class Varied:
+class VariedKey:
     """Values of one key: case k takes `values[index[k]]`."""
 
     key: str
@@ -165,7 +165,7 @@ class CasesKeys(Keys):
             problem = "must have one of `grid`, `file` or `spectrum`"
             raise self.table.own_error(problem)
 
-    def columns(self, path: Path) -> list["Varied"]:
+    def columns(self, path: Path) -> list["VariedKey"]:
         """Return the values of each key that varies.
 
         Args:
@@ -177,7 +177,7 @@ class CasesKeys(Keys):
             found = _spectrum(self.table, self.spectrum)
         else:
             lists = read_list(self.table, path.parent, OPERATING).items()
-            found = [Varied(key, v, np.arange(len(v))) for key, v in lists]
+            found = [VariedKey(key, v, np.arange(len(v))) for key, v in lists]
         self.table.finish()
         return found
 
@@ -237,7 +237,7 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
 
 
 def _fill_first_values(
-    data: dict[str, Any], columns: list[Varied], file: str
+    data: dict[str, Any], columns: list[VariedKey], file: str
 ) -> dict[str, Any]:
     """Fill in the first value of each varied key that the scene does not give: a
     varied interference need not be repeated in [fit]."""
@@ -387,7 +387,7 @@ def _flat(table, where: str, data: dict) -> dict[str, Any]:
     return out
 
 
-def _grid(table, data) -> list[Varied]:
+def _grid(table, data) -> list[VariedKey]:
     if not isinstance(data, dict) or not data:
         raise table.error("grid", f"{data!r} is not a table of keys with their values")
     axes = {}
@@ -399,12 +399,12 @@ def _grid(table, data) -> list[Varied]:
             raise table.error(f"grid.{key}", problem)
         axes[key] = value
     sizes = [len(values) for values in axes.values()]
-    if math.prod(sizes) > LARGEST:
-        problem = f"has {math.prod(sizes)} cases; at most {LARGEST}"
+    if math.prod(sizes) > MOST_CASES:
+        problem = f"has {math.prod(sizes)} cases; at most {MOST_CASES}"
         raise table.error("grid", problem)
     grid = np.indices(sizes).reshape(len(sizes), -1)
     pairs = zip(axes.items(), grid, strict=True)
-    return [Varied(key, values, index) for (key, values), index in pairs]
+    return [VariedKey(key, values, index) for (key, values), index in pairs]
 
 
 def _range(table, key, data) -> Any:
@@ -418,7 +418,7 @@ def _range(table, key, data) -> Any:
         raise table.error(path, f"`count` is {count!r}; a whole number from 2 to 10^6")
     ends = [data["start"], data["stop"]]
     if key in OPERATING:
-        start, stop = _numbers(table, Varied(key, ends, np.arange(2)))
+        start, stop = _numbers(table, VariedKey(key, ends, np.arange(2)))
         return np.linspace(start, stop, count)
     # The kind of design numbers is not known here: the unit is kept.
     parts = [_split_unit(end) for end in ends]
@@ -443,7 +443,7 @@ def _split_unit(value) -> Any:
         return None
 
 
-def _spectrum(table, data) -> list[Varied]:
+def _spectrum(table, data) -> list[VariedKey]:
     tables = isinstance(data, list) and all(isinstance(e, dict) for e in data)
     if not data or not tables:
         problem = "must be a list of tables, [[cases.spectrum]], one at least"
@@ -458,7 +458,7 @@ def _spectrum(table, data) -> list[Varied]:
     if "hours" not in keys:
         raise table.error("spectrum[0].hours", "is missing; a spectrum has hours")
     index = np.arange(len(entries))
-    return [Varied(key, [entry[key] for entry in entries], index) for key in keys]
+    return [VariedKey(key, [entry[key] for entry in entries], index) for key in keys]
 
 
 def _designs(data, path, columns, scene):

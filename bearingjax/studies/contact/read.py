@@ -17,7 +17,7 @@ from ...numerics.warning import Warning
 from ..bearing.read_choices import LineContactKeys
 from ..bearing.read_design import read_material, read_profile
 
-LAWS = ("palmgren", "iso16281")
+SLICE_LAWS = ("palmgren", "iso16281")
 """Line laws of independent slices."""
 
 SIDES = {"inner": 1.0, "outer": -1.0}
@@ -207,7 +207,7 @@ class SliceLawKeys(Keys):
     about = "[contact]: the slices that a contact is compared with"
 
     line_law: str = scene_key(
-        "approach and load of a slice", choices=LAWS, default="palmgren"
+        "approach and load of a slice", choices=SLICE_LAWS, default="palmgren"
     )
     line_constant: float | None = scene_key(
         "constant of q = K δ^(10/9), in place of the law's", "line constant"

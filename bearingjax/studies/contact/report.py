@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...contact.slices import Compared, compared_warnings
+from ...contact.slices import SliceComparison, compared_warnings
 from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...numerics.warning import Warning
@@ -16,7 +16,9 @@ PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 """Positions at which the report gives the pressure: from the small end, over length."""
 
 
-def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[Warning]:
+def contact_warnings(
+    scene: ContactScene, cases: list[SliceComparison]
+) -> list[Warning]:
     """Return the warnings of a solved contact.
 
     Args:
@@ -27,7 +29,9 @@ def contact_warnings(scene: ContactScene, cases: list[Compared]) -> list[Warning
     return [*scene.warnings, *compared_warnings(scene.contact, cases, narrowed)]
 
 
-def contact_as_dict(scene: ContactScene, cases: list[Compared]) -> dict[str, Any]:
+def contact_as_dict(
+    scene: ContactScene, cases: list[SliceComparison]
+) -> dict[str, Any]:
     """Return a solved contact as plain numbers and lists, in SI.
 
     Args:
@@ -71,7 +75,7 @@ def _status(solution) -> dict[str, Any]:
     }
 
 
-def _numbers(scene, case: Compared) -> dict[str, Any]:
+def _numbers(scene, case: SliceComparison) -> dict[str, Any]:
     solution, slices, peak = case.solution, case.slices, case.peak
     grid = solution.grid
     numbers = {
@@ -104,7 +108,7 @@ def _numbers(scene, case: Compared) -> dict[str, Any]:
     return numbers
 
 
-def contact_report(scene: ContactScene, cases: list[Compared]) -> Report:
+def contact_report(scene: ContactScene, cases: list[SliceComparison]) -> Report:
     """Return the readable report of a solved contact.
 
     Args:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 
 from ...contact.halfspace import ConjugateGradients, FreeEnds
 from ...contact.line import Palmgren
-from ...contact.slices import Compared, slices
+from ...contact.slices import SliceComparison, slices
 from ...element import RINGS
 from ...files.quantity import SceneError
 from ...files.scene_errors import problem_of
@@ -22,7 +22,7 @@ from ..bearing.read_scene import Scene
 from .read import ContactNumericsKeys, ContactOperatingKeys, ContactScene
 
 
-def run_contact(scene: ContactScene) -> list[Compared]:
+def run_contact(scene: ContactScene) -> list[SliceComparison]:
     """Solve the contact of a scene for each of its loads.
 
     Args:
@@ -43,7 +43,9 @@ def run_contact(scene: ContactScene) -> list[Compared]:
     sizes = (asked.across, asked.along, asked.grading)
     solved = _solve(contact, jnp.asarray(widths), given, solver, sizes)
     sliced = _slice(contact, solved, scene.law)
-    return [Compared(_case(solved, k), _case(sliced, k)) for k in range(len(cases))]
+    return [
+        SliceComparison(_case(solved, k), _case(sliced, k)) for k in range(len(cases))
+    ]
 
 
 def run_refined(
@@ -52,7 +54,7 @@ def run_refined(
     roller: int | None = None,
     raceway: str | None = None,
     free_ends: bool = False,
-) -> tuple[ContactScene, list[Compared]]:
+) -> tuple[ContactScene, list[SliceComparison]]:
     """Solve the contact of one roller of a bearing's scene, on the default grid.
 
     Args:

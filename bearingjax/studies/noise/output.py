@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from ...element.frame import DIRECTIONS
 from ...noise import SourceContributions, write_sound
 from ...noise.natural import LOOSE
 from ...report.json_output import run_json
 from .read_tolerance import Tighter
 from .run import NoiseRun, RandomBearings
-from .scene import AXES
 
 
 def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
@@ -56,10 +56,10 @@ def _analysis(run: NoiseRun) -> dict[str, Any]:
     assert analysis is not None  # checked by the caller
     states = analysis.states
     return {
-        "direction": AXES,
+        "direction": DIRECTIONS,
         "time": analysis.record.time,
         "acceleration": analysis.acceleration,
-        "displacement": np.asarray(analysis.record.displacement)[:, : len(AXES)],
+        "displacement": np.asarray(analysis.record.displacement)[:, : len(DIRECTIONS)],
         "level": analysis.level,
         "bands": {"centre": run.task.bands.centre, "level": analysis.band_level},
         "lines": [
@@ -121,7 +121,7 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
         ("acceleration", "m/s²", analysis.acceleration),
         ("displacement", "m", np.asarray(analysis.record.displacement)),
     ):
-        for k, direction in enumerate(AXES):
+        for k, direction in enumerate(DIRECTIONS):
             columns[f"{name}_{direction} [{unit}]"] = values[:, k]
     return columns
 
@@ -137,7 +137,7 @@ def loudest_direction(run: NoiseRun) -> np.ndarray:
         direction = np.asarray(sensor.direction)
         return direction / np.linalg.norm(direction)
     assert run.analysis is not None
-    return np.eye(len(AXES))[int(np.argmax(run.analysis.level))]
+    return np.eye(len(DIRECTIONS))[int(np.argmax(run.analysis.level))]
 
 
 def write_noise_sound(path: str | Path, run: NoiseRun) -> float:

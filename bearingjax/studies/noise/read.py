@@ -11,6 +11,7 @@ from ...design import FormErrors, rows_of
 from ...design.bearing_set import bearings_of, with_bearings
 from ...element import FREEDOMS, RINGS
 from ...element.bearing_element import BearingElement
+from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
 from ...files.schema import Keys, direction_json, read_keys, scene_key
 from ...files.table import Table
@@ -27,7 +28,7 @@ from ...noise.level import NORM
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
 from .read_deviations import read_deviations
 from .read_tolerance import ToleranceKeys, read_tolerance
-from .scene import AXES, NoiseScene
+from .scene import NoiseScene
 
 BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
 WINDOWS = {"hann": Hann, "rectangular": Rectangular}
@@ -76,7 +77,7 @@ class VibrationKeys(Keys):
         needs=("sensor_stiffness", "sensor_damping"),
         otherwise="y",
         reader=lambda table, name: _direction(table, name),
-        json=direction_json(AXES),
+        json=direction_json(DIRECTIONS),
     )
     turns: int = scene_key("turns of the record", default=8)
     settle: int = scene_key("turns that settle before it", default=2, least=0)
@@ -293,7 +294,7 @@ def _direction(table: Table, name: str) -> list[float]:
         real = [isinstance(x, int | float) and not isinstance(x, bool) for x in given]
         if real == [True] * 3:
             return [float(one) for one in given]
-    elif given in AXES:
-        return [float(given == axis) for axis in AXES]
+    elif given in DIRECTIONS:
+        return [float(given == axis) for axis in DIRECTIONS]
     problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
     raise table.error(name, problem)

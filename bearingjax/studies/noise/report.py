@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...element.frame import DIRECTIONS
 from ...noise import ring_modes
 from ...noise.level import LOWEST_LEVEL
 from ...noise.scatter import SOURCES
@@ -10,7 +11,6 @@ from ...report.report_model import Column, Grid, Report, load_text
 from ..solve.report import bearing_text
 from .output import PERCENTILES, parts_of
 from .run import LARGEST_LINES, NoiseRun
-from .scene import AXES
 
 _WORTH = 0.1
 """Part of a band above which its largest source is named [1]."""
@@ -87,7 +87,7 @@ def _by_direction(levels):
     held = np.where(levels > LOWEST_LEVEL, levels, np.nan)
     return [
         Column(name, values, "dB", ".1f")
-        for name, values in zip(AXES, held.T, strict=True)
+        for name, values in zip(DIRECTIONS, held.T, strict=True)
     ]
 
 
@@ -148,8 +148,10 @@ def _sources(task, found):
     where = "in all directions"
     if sensor is not None:
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
-        named = [k for k, d in enumerate(np.eye(len(AXES))) if np.allclose(d, along)]
-        text = AXES[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
+        named = [
+            k for k, d in enumerate(np.eye(len(DIRECTIONS))) if np.allclose(d, along)
+        ]
+        text = DIRECTIONS[named[0]] if named else ", ".join(f"{a:.3g}" for a in along)
         where = f"along the sensor ({text})"
     total = float(found.mean_square)
     parts, errors = parts_of(found), np.asarray(found.error) / total

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ...design import rows_of
+from ...element.frame import DIRECTIONS
 from ...noise import (
     ContactStates,
     ContributionOptions,
@@ -45,7 +46,7 @@ from ...noise.vibration import rounding
 from ...numerics.labels import labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning
-from .scene import AXES, NoiseScene
+from .scene import NoiseScene
 
 LARGEST_LINES = 12
 """Number of largest spectral lines reported regardless of their neighbours."""
@@ -81,7 +82,7 @@ class NoiseAnalysis:
     @property
     def acceleration(self) -> np.ndarray:
         """Acceleration of the moving ring (time, direction) [m/s²]."""
-        return np.asarray(self.record.acceleration)[:, : len(AXES)]
+        return np.asarray(self.record.acceleration)[:, : len(DIRECTIONS)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -258,7 +259,7 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         record: The vibration.
         modes: Natural modes, in NumPy.
     """
-    acceleration = np.asarray(record.acceleration)[:, : len(AXES)]
+    acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
     shaft = float(record.shaft_frequency)
     found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
     bearing = task.model.element.bearing

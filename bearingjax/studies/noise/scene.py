@@ -9,9 +9,6 @@ from ...noise import AbstractWindow, Bands, NoiseModel, Tolerances
 from ...numerics.warning import Warning
 from ..bearing.read_scene import Scene
 
-AXES = ("x", "y", "z")
-"""Directions of the reported acceleration."""
-
 
 @dataclasses.dataclass(frozen=True)
 class NoiseScene:

@@ -52,9 +52,9 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         best = with_set_preload(best)
 
     def draw():
-        from ...plot import optimised
+        from ...plot import optimise_overview
 
-        return optimised(found, title=name)
+        return optimise_overview(found, title=name)
 
     def draw_bearing():
         from ...plot import drawing

@@ -12,7 +12,7 @@ from ...files.quantity import SceneError, kind_of, scene_number
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, not_among
-from ...fits.fits import PARTS
+from ...fits.fits import WARM_PARTS
 from ...numerics.units import unit_of
 from ...optimise.constraint import Constraint
 from ...optimise.life import RatingLife
@@ -25,7 +25,7 @@ from ...optimise.measure import (
     StiffnessTarget,
 )
 from ...optimise.search import METHODS
-from ...optimise.smooth import EXPONENT
+from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...optimise.variable import Variable, check_variables, design_numbers
 from ..bearing.life_ratings import life_conditions
 from ..bearing.read_design import PITCH_FOLLOWS, pitch_follows
@@ -52,7 +52,7 @@ OF_FITS = (
 )
 """Numbers of a [fit] that may be variables."""
 
-WARMTH = {f"temperature.{part}": part for part in PARTS}
+WARMTH = {f"temperature.{part}": part for part in WARM_PARTS}
 """Temperatures that may be variables in addition to a [fit]."""
 
 
@@ -171,7 +171,7 @@ class SearchKeys(Keys):
     objective: str
     exponent: float = scene_key(
         "of the norm that stands for a maximum over rolling elements and cases",
-        default=EXPONENT,
+        default=SMOOTHING_EXPONENT,
     )
     variables: Any = scene_key(
         "free numbers by their key in the scene, in quotes: `{ from, to, start }`",

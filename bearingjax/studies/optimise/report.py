@@ -8,7 +8,7 @@ from ...numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ...numerics.warning import Warning, warnings_of
 from ...optimise.design_problem import Outcome
 from ...optimise.measure import AbstractMeasure, EdgeLoad, label_of
-from ...optimise.optimise import Optimised
+from ...optimise.optimise import OptimisedDesign
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Report
 from ..bearing.read_scene import Scene
@@ -22,7 +22,7 @@ Task = Optimisation | ShaftOptimisation
 _STIFFNESSES = {"N/m": (1e-6, "kN/mm"), "N m": (1e-3, "N m/mrad")}
 
 
-def optimisation_report(task: Task, found: Optimised, best: Any = None) -> Report:
+def optimisation_report(task: Task, found: OptimisedDesign, best: Any = None) -> Report:
     """Return the readable report of the design before and after.
 
     Args:
@@ -78,7 +78,7 @@ _SHOWN_FACTS = {
 """Facts of `bearing_facts` in reports: word, SI unit and format."""
 
 
-def bearing_facts(found: Optimised) -> dict[str, dict[str, np.ndarray]]:
+def bearing_facts(found: OptimisedDesign) -> dict[str, dict[str, np.ndarray]]:
     """Return the worst numbers of each bearing of a system of shafts, before and after.
 
     Args:
@@ -111,7 +111,7 @@ def _warned_before(task, found) -> list[Warning]:
 
 
 def optimisation_as_dict(
-    task: Task, found: Optimised, best: Any = None
+    task: Task, found: OptimisedDesign, best: Any = None
 ) -> dict[str, Any]:
     """Return an optimised scene as plain numbers and lists, in SI.
 

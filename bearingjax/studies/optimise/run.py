@@ -5,7 +5,7 @@ from functools import partial
 
 from ...files.scene_errors import scene_errors
 from ...optimise.life import OfLife, RatingLife
-from ...optimise.optimise import Optimised, SearchOptions, optimise
+from ...optimise.optimise import OptimisedDesign, SearchOptions, optimise
 from ...statics.support import RESTRAINED, Support
 from ..bearing.life_ratings import life_conditions
 from ..cases.read_cases import turns_of
@@ -15,7 +15,7 @@ from .read_shaft_optimise import ShaftOptimisation
 
 def run_optimisation(
     task: Optimisation | ShaftOptimisation, progress: bool = False
-) -> Optimised:
+) -> OptimisedDesign:
     """Optimise the bearing, or the system of shafts, of a scene.
 
     Args:
@@ -54,7 +54,7 @@ def run_optimisation(
     )
 
 
-def _with_life_warnings(task: Optimisation, found: Optimised) -> Optimised:
+def _with_life_warnings(task: Optimisation, found: OptimisedDesign) -> OptimisedDesign:
     """Add the warnings about rating lives that `solve` gives for the same designs,
     with [life], whatever the measures."""
     scene = task.scene

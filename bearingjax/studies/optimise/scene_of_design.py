@@ -19,7 +19,7 @@ def scene_of_design(task: Optimisation | ShaftOptimisation, design: Any) -> Any:
 
     Args:
         task: The optimisation task.
-        design: Best or first design: `Optimised.element`, `initial`.
+        design: Best or first design: `OptimisedDesign.element`, `initial`.
 
     Returns:
         Scene with the bearing, preload, seats and temperatures of the design, at the

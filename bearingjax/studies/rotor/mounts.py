@@ -20,7 +20,11 @@ from ...statics.installed import Installed
 from ..bearing.placed_bearing import bearing_inputs, read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene, scene_of
 
-LAWS = {"fixed_angle": FixedAngle, "moving_angle": MovingAngle, "cubic": CubicExpansion}
+FORCE_LAWS = {
+    "fixed_angle": FixedAngle,
+    "moving_angle": MovingAngle,
+    "cubic": CubicExpansion,
+}
 
 _OF_BEARING: Any = {
     "needs": ("bearing",),
@@ -131,7 +135,7 @@ class MountKeys(Keys):
     )
     law: str | None = scene_key(
         "published law of a preloaded bearing in its place",
-        choices=tuple(LAWS),
+        choices=tuple(FORCE_LAWS),
         otherwise="the bearing itself",
         **_OF_BEARING,
     )

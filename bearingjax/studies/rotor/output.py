@@ -14,7 +14,7 @@ from .motion import RotorResponse, RotorTransient
 from .run import RotorRun
 from .scene import RotorScene
 
-UNITS: dict[str, str] = dict(
+STATION_UNITS: dict[str, str] = dict(
     zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
 )
 """Units of the motions of a station."""
@@ -165,7 +165,7 @@ def coordinates(count: int) -> list[str]:
 def _of_motions(values):
     """Return the columns of (row, station, 5)."""
     names = coordinates(values.shape[1])
-    headers = [f"{name} [{UNITS[name.partition('_')[0]]}]" for name in names]
+    headers = [f"{name} [{STATION_UNITS[name.partition('_')[0]]}]" for name in names]
     flat = values.reshape(len(values), -1).T
     return dict(zip(headers, flat, strict=True))
 

@@ -32,7 +32,7 @@ from .mounts import MountKeys, read_mounts
 from .scene import RotorScene
 from .tasks import CampbellKeys, ResponseKeys, TransientKeys
 
-AXES = {
+GRAVITY_BY_AXIS = {
     "horizontal": (0.0, -GRAVITY, 0.0),
     "vertical": (0.0, 0.0, -GRAVITY),
     "none": (0.0, 0.0, 0.0),
@@ -186,7 +186,7 @@ class RotorKeys(Keys):
     rigid: bool = scene_key("whether the shaft does not bend", default=False)
     axis: str = scene_key(
         "where weight pulls: `horizontal` along -y, `vertical` along -z",
-        choices=tuple(AXES),
+        choices=tuple(GRAVITY_BY_AXIS),
         default="horizontal",
     )
     damping_ratio: float | None = scene_key(
@@ -279,7 +279,7 @@ def _scene(top: Table, path: Path) -> RotorScene:
     shaft = _shaft(keys)
     discs = tuple(disc.part for disc in keys.discs)
     mounts, warned = read_mounts(top, keys.bearings, shaft, keys.speed, path)
-    loads = keys.excitation.loads(AXES[keys.axis])
+    loads = keys.excitation.loads(GRAVITY_BY_AXIS[keys.axis])
     response, transient = keys.response, keys.transient
     if response is not None:
         response = response.with_defaults(station=keys.shown_station)

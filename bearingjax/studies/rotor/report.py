@@ -9,7 +9,7 @@ from ...rotor.nonlinear import BranchEnd
 from ..bearing.fit_report import fit_report
 from ..solve.report import without_round_off
 from .motion import RotorResponse, RotorTransient
-from .output import UNITS, mode_numbers
+from .output import STATION_UNITS, mode_numbers
 from .run import RotorRun
 
 _HZ = 0.5 / np.pi
@@ -112,7 +112,7 @@ def _stations(run):
         *(
             Column(name, values, unit, ".3f")
             for name, values, unit in zip(
-                STATION_FREEDOMS, moved.T, UNITS.values(), strict=True
+                STATION_FREEDOMS, moved.T, STATION_UNITS.values(), strict=True
             )
         ),
     ]

@@ -14,7 +14,7 @@ from ...rotor import (
     preload_offset,
 )
 from ...rotor.nonlinear import LawSupport
-from .mounts import LAWS, Mount
+from .mounts import FORCE_LAWS, Mount
 
 _AT_LEAST = 1e-5
 """Least unit of length, for rotors without preload or load [m]."""
@@ -39,7 +39,7 @@ def support_of(mount: Mount) -> AbstractSupport:
     if keys.preload is not None:
         offset = preload_offset(element, as_array(keys.preload, float))
     if keys.law is not None:
-        law = LAWS[keys.law].of_bearing(element, offset)
+        law = FORCE_LAWS[keys.law].of_bearing(element, offset)
         return LawSupport(
             keys.station, law, damping, housing=housing, turned=keys.turned
         )

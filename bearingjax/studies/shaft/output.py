@@ -8,12 +8,12 @@ import numpy as np
 
 from ...cases.output_labels import label_output
 from ...element.frame import LOAD_UNITS
-from ...numerics.labels import Labelled, summaries
+from ...numerics.labels import LabelledArray, summaries
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...shafts import DutyResult
-from ...shafts.doubts import axial_load
 from ...shafts.duty import LIVES
+from ...shafts.warning import axial_load
 from ...statics.solution import BallSolution, Solution
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict
@@ -236,7 +236,7 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         most = {"peak_pressure": run.duty.peak_pressure.ravel()}
         lives = {key: of.ravel() for key, of in run.duty.lives.items()}
     columns = [
-        *Labelled(np.asarray(load), ("row", "component"), LOAD_UNITS).columns("")
+        *LabelledArray(np.asarray(load), ("row", "component"), LOAD_UNITS).columns("")
     ]
     for key, values in (most | lives).items():
         columns += label_output(key, np.asarray(values, float)).columns(key)

@@ -35,12 +35,12 @@ from ...shafts.duty import align_systems
 from ..bearing.life_ratings import life_conditions
 from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
-from ..cases.read_cases import CasesKeys, Varied
+from ..cases.read_cases import CasesKeys, VariedKey
 from ..rotor.mounts import SpringKeys
 from ..rotor.read import SegmentKeys as RotorSegmentKeys
 from .read_heat import heat_warnings, read_heat
 
-AXES = {
+VECTORS = {
     sign + name: tuple(factor * np.eye(3)[k])
     for sign, factor in (("", 1.0), ("-", -1.0))
     for k, name in enumerate("xyz")
@@ -54,15 +54,14 @@ _NAMES = {"bearing": "bearings"} | {
 
 
 def _vector(table: Table, key: str) -> tuple[float, ...]:
-    """Read a direction: a name of `AXES`, or three bare numbers."""
+    """Read a direction: a name of `VECTORS`, or three bare numbers."""
     value = table.raw(key, "z")
     if isinstance(value, str):
-        return AXES[table.choice(key, tuple(AXES), "z")]
+        return VECTORS[table.choice(key, tuple(VECTORS), "z")]
     numbers = isinstance(value, list) and len(value) == 3
     if not numbers or not all(isinstance(x, int | float) for x in value):
-        problem = (
-            f"{value!r} is not a direction; one of {', '.join(AXES)}, or [x, y, z]"
-        )
+        names = ", ".join(VECTORS)
+        problem = f"{value!r} is not a direction; one of {names}, or [x, y, z]"
         raise table.error(key, problem)
     if not any(value):
         raise table.error(key, "has no direction: all three numbers are 0")
@@ -70,7 +69,7 @@ def _vector(table: Table, key: str) -> tuple[float, ...]:
 
 
 def _axis(about: str) -> Any:
-    json = direction_json(AXES)
+    json = direction_json(VECTORS)
     return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
 
 
@@ -107,7 +106,7 @@ class ShaftKeys(Keys):
             return ShaftLine(name, *columns, **ends, rigid=self.rigid)
 
 
-PARTS: dict[str, type[Any]] = {
+PART_CLASSES: dict[str, type[Any]] = {
     "gear": Gear,
     "belt": Pulley,
     "coupling": Coupling,
@@ -230,7 +229,7 @@ class SystemKeys(Keys):
 
     gravity: str = scene_key(
         "direction of the weight of the shafts in global axes",
-        choices=("none", *AXES),
+        choices=("none", *VECTORS),
         default="none",
     )
 
@@ -291,7 +290,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
         problem = "the scene of a system of shafts has [shaft.NAME] and [bearings.NAME]"
         raise error_at(path, "shaft", problem)
     known: dict[str, Any] = {}
-    columns: list[Varied] = []
+    columns: list[VariedKey] = []
     if "cases" in data:
         columns = read_keys(CasesKeys, Table(data, path).table("cases")).columns(path)
     elsewhere = ("cases", "optimise")
@@ -381,7 +380,7 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
     tables = top.table("shaft")
     shafts = {name: read_keys(ShaftKeys, tables.table(name)) for name in tables.keys()}
     parts: dict[str, list[Any]] = {}
-    for key, kind in PARTS.items():
+    for key, kind in PART_CLASSES.items():
         tables = top.table(key)
         parts[key] = [
             _part(tables.table(name), kind, name, shafts) for name in tables.keys()
@@ -400,7 +399,7 @@ def _scene(top: Table, path: Path, known: dict[str, Any]) -> ShaftScene:
     system = read_keys(SystemKeys, top.table("system"))
     pull = (0.0, 0.0, 0.0)
     if system.gravity != "none":
-        pull = tuple(GRAVITY * x for x in AXES[system.gravity])
+        pull = tuple(GRAVITY * x for x in VECTORS[system.gravity])
     housing = _housing(top, seats, path)
     made = [keys.seat(name, shafts, alone[name]) for name, keys in seats.items()]
     with top.building():

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...files.schema import Keys, build, read_keys, scene_key
 from ...files.table import Table
-from ...fits.fits import PARTS
+from ...fits.fits import WARM_PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
 from ...numerics.warning import Warning
 from ...shafts import BearingOil, HeatNetwork, ThermalPaths, usual_conductance
@@ -97,7 +97,7 @@ def heat_warnings(bearings: Mapping[str, Scene | None]) -> Iterator[Warning]:
     for name, one in scenes.items():
         given = one.installed.conditions
         if given is not None and any(
-            float(getattr(given, part)) != float(given.reference) for part in PARTS
+            float(getattr(given, part)) != float(given.reference) for part in WARM_PARTS
         ):
             words = "its `temperature` is not used: [heat] finds temperatures"
             yield Warning("unused_temperature", words).about(name)

@@ -16,7 +16,7 @@ from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
 from ...numerics.compiled.programs import call_stored
-from ...numerics.labels import Labelled, labelled_fields, make_dataset
+from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
 from ...shafts import (
@@ -31,12 +31,12 @@ from ...shafts import (
     system_life,
     warm_up,
 )
-from ...shafts.doubts import load_doubts
 from ...shafts.duty import case_damage
 from ...shafts.equilibrium import searched_system, system_state
 from ...shafts.heat import with_temperatures
 from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving_part
+from ...shafts.warning import load_doubts
 from ...statics.solution import Solution
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
@@ -128,8 +128,10 @@ class ShaftRun:
         else:
             found = labelled_fields(self.duty)
             for name, values in self.duty.lives.items():
-                found[name] = Labelled.field(Life, name, values, ("case", "bearing"))
-        found["hours"] = Labelled(self.hours, ("bearing",), "h")
+                found[name] = LabelledArray.field(
+                    Life, name, values, ("case", "bearing")
+                )
+        found["hours"] = LabelledArray(self.hours, ("bearing",), "h")
         if self.thermal is not None:
             warm = labelled_fields(self.thermal)
             found |= {name: warm[name] for name in ("inner_ring", "outer_ring")}

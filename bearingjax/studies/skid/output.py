@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from ...numerics.labels import Labelled
+from ...numerics.labels import LabelledArray
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...skid.conditions import by_raceway
 from ...skid.transients.transient import CAUSES
 from .run import SkidRun
 
-UNITS = {
+BALL_UNITS = {
     "azimuth": "rad",
     "orbit_speed": "rad/s",
     "rolling_orbit_speed": "rad/s",
@@ -62,9 +62,9 @@ def skid_as_dict(run: SkidRun) -> dict[str, Any]:
 
     Returns:
         cage_speed, rolling_cage_speed, friction_torque (on the faster ring),
-        ring_torque (outer, inner), power, and the quantities of `UNITS` for each ball
-        or roller, those of contacts per raceway (outer, inner), of two arcs for the
-        more loaded one. For a steady state they are at the positions in the solved
+        ring_torque (outer, inner), power, and the quantities of `BALL_UNITS` for each
+        ball or roller, those of contacts per raceway (outer, inner), of two arcs for
+        the more loaded one. For a steady state they are at the positions in the solved
         bearing, `orbit` has them at all positions, and balls have `wander`. For a
         motion in time all have a leading axis `time`, with in addition the quantities
         of `OF_TIME`, `work`, and `mean_friction_torque` over the last complete cage
@@ -102,11 +102,11 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
         whole["ring_torque"] = whole.pop("ring_torque")  # after the powers
         for name, values in whole.items():
             axes = ("time", "raceway")[: values.ndim]
-            arrays[name] = Labelled(values, axes, units[name])
+            arrays[name] = LabelledArray(values, axes, units[name])
     for name, values in each_ball(run).items():
         last = "spin_axis" if name == "spin" else "raceway"
         axes = (*lead, last)[: values.ndim]
-        arrays[name] = Labelled(values, axes, UNITS[name])
+        arrays[name] = LabelledArray(values, axes, BALL_UNITS[name])
     reached = slice(None) if steady else np.isfinite(run.found.cage_speed)
     return {
         header: column[reached]
@@ -116,13 +116,15 @@ def skid_columns(run: SkidRun) -> dict[str, np.ndarray]:
 
 
 def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
-    """Return the quantities of `UNITS` at all positions or times, contacts by raceway.
+    """Return the quantities of `BALL_UNITS` at all positions or times.
+
+    Those of contacts are by raceway.
 
     Args:
         run: From `run_skid`.
     """
     found, results = run.found, {}
-    for name in UNITS:
+    for name in BALL_UNITS:
         values = getattr(found, name, None)
         if name == "least_film" and run.state is not None:
             values = run.state.least_film

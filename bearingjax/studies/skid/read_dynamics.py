@@ -12,7 +12,7 @@ from ...files.schema import Keys, scene_key
 from ...skid import Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable, ramp
 from ..bearing.read_operating import LoadKeys
 
-AXES = ("vertical", "horizontal")
+SHAFT_AXES = ("vertical", "horizontal")
 STARTS = ("rolling", "rest")
 MOST_TIMES = 20_000
 """Most times of a run: about 8 kB each as JSON."""
@@ -142,7 +142,7 @@ class DynamicsKeys(Keys):
     n_times: int = scene_key(
         "number of output times", default=501, least=2, most=MOST_TIMES
     )
-    axis: str = scene_key("axis of the bearing", choices=AXES, default="vertical")
+    axis: str = scene_key("axis of the bearing", choices=SHAFT_AXES, default="vertical")
     start: str = scene_key(
         "how balls or rollers begin", choices=STARTS, default="rolling"
     )

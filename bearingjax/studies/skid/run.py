@@ -8,7 +8,12 @@ import numpy as np
 
 from ... import skid
 from ...files.scene_errors import scene_errors
-from ...numerics.labels import Labelled, array_fields, labelled_fields, make_dataset
+from ...numerics.labels import (
+    LabelledArray,
+    array_fields,
+    labelled_fields,
+    make_dataset,
+)
 from ...numerics.result import Result
 from ...numerics.warning import Warning
 from ...skid import conditions, rest_state, skid_warnings
@@ -69,7 +74,7 @@ class SkidRun:
         contacts = arrays["contact_load"].axes
         state = {} if self.state is None else array_fields(self.state)
         for name, values in state.items():
-            arrays[name] = Labelled.field(self.state, name, values, contacts)
+            arrays[name] = LabelledArray.field(self.state, name, values, contacts)
         return make_dataset(arrays)
 
 

@@ -11,7 +11,7 @@ from ..design import rows_of
 from ..numerics.units import shown_count
 from ..optimise.life import Damage
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
-from ..optimise.optimise import Optimised
+from ..optimise.optimise import OptimisedDesign
 from ..optimise.system import element_of, loads_of
 from ..shafts import ShaftDesign
 from .panel import ALONG, PRESSURE, Axis, Bars, Curve, Panel
@@ -35,7 +35,7 @@ _FAR = 50.0
 _SIDES = {"before": (GREY, "--"), "after": (ROLLER, "-")}
 
 
-def optimised(found: Optimised, title: str = "") -> Figure:
+def optimise_overview(found: OptimisedDesign, title: str = "") -> Figure:
     """Plot profile, pressure and history of the search, before and after.
 
     Top left the profile, roller and the busier raceway together; top right the

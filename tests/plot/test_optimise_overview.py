@@ -32,7 +32,7 @@ def found():
 
 @pytest.mark.slow
 def test_before_and_after(found):
-    figure = plot.optimised(found, title="a name")
+    figure = plot.optimise_overview(found, title="a name")
     assert figure.get_suptitle() == "a name"
     profile, pressure, cases, history = figure.axes
     before, after = (np.asarray(line.get_ydata()) for line in profile.get_lines())
@@ -56,7 +56,7 @@ def test_miss_of_constraints_is_shown(found):
     miss = np.linspace(1.0, 0.0, len(found.history.objective))
     history = found.history._replace(violation=miss)
     missed = type(found)(**{**vars(found), "history": history})
-    figure = plot.optimised(missed)
+    figure = plot.optimise_overview(missed)
     assert figure.get_suptitle() == "Optimised design"
     (line,) = figure.axes[-1].get_lines()
     assert np.array_equal(line.get_ydata(), miss)

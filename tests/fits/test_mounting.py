@@ -22,7 +22,7 @@ from bearingjax.fits import (
     with_bearing_dimensions,
     with_radial_clearance,
 )
-from bearingjax.fits.mounted import raceway_diameters, row_shifts
+from bearingjax.fits.mounting import raceway_diameters, row_shifts
 
 MICRON = 1e-6
 BALLS = {

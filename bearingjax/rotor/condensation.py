@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from ..numerics.lapack import solve_any
 from ..numerics.types import Scalar
-from .held import map_parts
+from .like_parts import map_parts
 from .linear.reduction import held_motions
 from .parts import AbstractSupport
 from .rotor import N_HOUSING, N_STATION, Rotor
