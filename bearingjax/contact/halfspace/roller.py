@@ -125,9 +125,9 @@ class RollerContact(eqx.Module):
         if not apart > limit:
             return ()
         words = (
-            f"RollerContact: `half_angle` is {np.rad2deg(angle):.4g} deg, but"
-            f" diameters of {small:g} and {large:g} m over {length:g} m make"
-            f" {np.rad2deg(taper):.4g} deg; both are used as they are."
+            f"the half angle is {np.rad2deg(angle):.4g}°, but diameters of"
+            f" {1e3 * small:g} and {1e3 * large:g} mm over {1e3 * length:g} mm make"
+            f" {np.rad2deg(taper):.4g}°; both are used as they are"
         )
         return (Warning("half_angle", words, float(apart), float(limit)),)
 
