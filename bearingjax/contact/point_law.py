@@ -184,8 +184,10 @@ class PointConstant(AbstractPointLaw):
     Traced: all fields.
     """
 
-    outer: Real = eqx.field(**real("N/m^(3/2)"))
-    inner: Real = eqx.field(**real("N/m^(3/2)"))
+    outer: Real = eqx.field(
+        **real("N/m^(3/2)", "constant of Q = K δ^(3/2) on the outer raceway")
+    )
+    inner: Real = eqx.field(**real("N/m^(3/2)", "constant on the inner raceway"))
 
     def __check_init__(self):
         for name in ("outer", "inner"):

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from ..numerics.types import Real, Scalar, as_real
-from ..numerics.units import real
+from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
@@ -31,8 +31,12 @@ class PreloadSpring(eqx.Module):
     Traced: all fields.
     """
 
-    force: Real = eqx.field(**real("N"))
-    stiffness: Real = eqx.field(**real("N/m"), default=0.0)
+    force: Real = eqx.field(
+        **real("N", "force of the spring that preloads, where the row just touches")
+    )
+    stiffness: Real = eqx.field(
+        **real("N/m", "force that it loses per travel"), default=0.0
+    )
 
     def __check_init__(self):
         positive(self, "force")
@@ -70,9 +74,18 @@ class SetRow(eqx.Module):
     """
 
     bearing: AbstractBearing
-    position: Real = eqx.field(**real("m"), default=0.0)
-    mirrored: bool = eqx.field(static=True, default=False)
-    inner_offset: Real = eqx.field(**real("m"), default=0.0)
+    position: Real = eqx.field(**real("m", "place along the axis"), default=0.0)
+    mirrored: bool = eqx.field(
+        static=True, default=False, metadata=meaning("whether it is turned round")
+    )
+    inner_offset: Real = eqx.field(
+        **real(
+            "m",
+            "axial offset of the inner ring against the outer one: preload by ground"
+            " rings",
+        ),
+        default=0.0,
+    )
     spring: PreloadSpring | None = None
 
     def __check_init__(self):

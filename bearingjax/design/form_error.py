@@ -201,9 +201,9 @@ class Spall(AbstractShape):
     Traced: all fields.
     """
 
-    angle: Real = eqx.field(**real("rad"))
-    length: Real = eqx.field(**real("m"))
-    depth: Real = eqx.field(**real("m"))
+    angle: Real = eqx.field(**real("rad", "angle of its middle"))
+    length: Real = eqx.field(**real("m", "length along the rolling direction"))
+    depth: Real = eqx.field(**real("m", "depth of its floor"))
 
     def __check_init__(self):
         for name in ("length", "depth"):

@@ -163,6 +163,20 @@ def scene_key(
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def key_of(kind: type, name: str, /, **changes: Any) -> Any:
+    """Return a field of a `Keys` class for a number that another class declares.
+
+    Args:
+        kind: That class, whose field states unit, range and meaning.
+        name: Its field.
+        **changes: What differs in the file: `default` and attributes of `Key`.
+    """
+    one = {one.attribute: one for one in fields_of(kind)}[name]
+    default = changes.pop("default", one.default)
+    metadata = {"key": dataclasses.replace(one.key, **changes)}
+    return dataclasses.field(default=default, metadata=metadata)
+
+
 def direction_json(names: Iterable[str]) -> dict[str, Any]:
     """Return the schema of a direction: one of several names, or three numbers."""
     three = {"minItems": 3, "maxItems": 3}
@@ -194,7 +208,7 @@ class Field(NamedTuple):
 
 
 @dataclass_transform(
-    kw_only_default=True, frozen_default=True, field_specifiers=(scene_key,)
+    kw_only_default=True, frozen_default=True, field_specifiers=(scene_key, key_of)
 )
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Keys:

@@ -67,21 +67,37 @@ class Mounting(eqx.Module):
     Traced: all fields.
     """
 
-    bore: Real = eqx.field(**real("m"))
-    outside_diameter: Real = eqx.field(**real("m"))
-    housing_diameter: Real = eqx.field(**real("m"))
+    bore: Real = eqx.field(**real("m", "bore of the bearing"))
+    outside_diameter: Real = eqx.field(**real("m", "outside diameter of the bearing"))
+    housing_diameter: Real = eqx.field(
+        **real("m", "outside diameter of the housing around the bearing")
+    )
     shaft_interference: Real = eqx.field(**real("m"))
     housing_interference: Real = eqx.field(**real("m"))
-    inner_raceway: RealOrNone = eqx.field(**real("m"), default=None)
-    outer_raceway: RealOrNone = eqx.field(**real("m"), default=None)
+    inner_raceway: RealOrNone = eqx.field(
+        **real("m", "mean outside diameter up to which the inner ring counts"),
+        default=None,
+    )
+    outer_raceway: RealOrNone = eqx.field(
+        **real("m", "mean inside diameter from which the outer ring counts"),
+        default=None,
+    )
     radial_clearance: RealOrNone = eqx.field(**real("m"), default=None)
     contact_angle: RealOrNone = eqx.field(**real("rad"), default=None)
-    shaft_bore: Real = eqx.field(**real("m"), default=0.0)
+    shaft_bore: Real = eqx.field(**real("m", "bore of a hollow shaft"), default=0.0)
     shaft_smoothing: Real = eqx.field(**real("m"), default=0.0)
     housing_smoothing: Real = eqx.field(**real("m"), default=0.0)
-    ring_width: RealOrNone = eqx.field(**real("m"), default=None)
+    ring_width: RealOrNone = eqx.field(
+        **real("m", "width of a ring, B or T; sets need it"), default=None
+    )
     bore_taper: Real = eqx.field(**real("1"), default=0.0)
-    drive_up: Real = eqx.field(**real("m"), default=0.0)
+    drive_up: Real = eqx.field(
+        **real(
+            "m",
+            "travel of the inner ring up a tapered seat, from where it just touches",
+        ),
+        default=0.0,
+    )
     shaft: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     inner_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)
     outer_ring: WarmMaterial = eqx.field(default_factory=WarmMaterial)

@@ -74,7 +74,7 @@ class NoiseModel(eqx.Module):
     """
 
     element: BearingElement
-    mass: Real = eqx.field(**real("kg"))
+    mass: Real = eqx.field(**real("kg", "mass of the moving ring"))
     load: Float[Array, "6"] = eqx.field(
         converter=as_real, metadata=unit(("N", "N", "N", "N m", "N m", "N m"))
     )
@@ -82,7 +82,14 @@ class NoiseModel(eqx.Module):
     errors: FormErrors | tuple[FormErrors, ...] = eqx.field(default_factory=FormErrors)
     tilting_inertia: RealOrNone = eqx.field(**real("kg m²"), default=None)
     sensor: Sensor | None = None
-    retardation: Real = eqx.field(**real("s"), default=1e-5)
+    retardation: Real = eqx.field(
+        **real(
+            "s",
+            "retardation time of the contacts' damping; whole bearings have 2.5 to 25"
+            " us (Krämer 1993)",
+        ),
+        default=1e-5,
+    )
     moving_ring: str = eqx.field(static=True, default="outer")
     tilts: bool = eqx.field(static=True, default=True)
     cage: GuidedCage | None = None

@@ -21,7 +21,7 @@ from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result
-from ..numerics.units import unit
+from ..numerics.units import meaning, unit
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
@@ -105,10 +105,16 @@ class RecordOptions:
         batch: Number of bearings at once.
     """
 
-    turns: int = 8
-    settle: int = 2
-    samples: int = 2048
-    steps: int | None = None
+    turns: int = dataclasses.field(default=8, metadata=meaning("turns of the record"))
+    settle: int = dataclasses.field(
+        default=2, metadata=meaning("turns that settle before it")
+    )
+    samples: int = dataclasses.field(
+        default=2048, metadata=meaning("samples of a turn, an even number")
+    )
+    steps: int | None = dataclasses.field(
+        default=None, metadata=meaning("steps of the integration between two samples")
+    )
     batch: int = 16
 
 
@@ -126,7 +132,7 @@ class LevelOptions:
     bands: Bands | None = None
     window: AbstractWindow | None = None
     reference: Any = dataclasses.field(
-        default=REFERENCE_ACCELERATION, metadata=unit("m/s²")
+        default=REFERENCE_ACCELERATION, metadata=unit("m/s²", "acceleration of 0 dB")
     )
 
 

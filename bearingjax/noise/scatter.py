@@ -155,8 +155,14 @@ class Tolerances(eqx.Module):
 
     diameter: RealOrNone = eqx.field(**real("m"), default=None)
     spacing: RealOrNone = eqx.field(**real("rad"), default=None)
-    outer_eccentricity: RealOrNone = eqx.field(**real("m"), default=None)
-    inner_eccentricity: RealOrNone = eqx.field(**real("m"), default=None)
+    outer_eccentricity: RealOrNone = eqx.field(
+        **real("m", "standard deviation of the outer raceway's eccentricity"),
+        default=None,
+    )
+    inner_eccentricity: RealOrNone = eqx.field(
+        **real("m", "standard deviation of the inner raceway's eccentricity"),
+        default=None,
+    )
     outer_axial: RandomWaves | None = None
     outer_outwards: RandomWaves | None = None
     inner_axial: RandomWaves | None = None

@@ -23,8 +23,10 @@ class Sensor(eqx.Module):
     Traced: all fields.
     """
 
-    stiffness: Real = eqx.field(**real("N/m"))
-    damping: Real = eqx.field(**real("N s/m"), default=0.0)
+    stiffness: Real = eqx.field(
+        **real("N/m", "stiffness of the sensor that holds the moving ring")
+    )
+    damping: Real = eqx.field(**real("N s/m", "damping of the sensor"), default=0.0)
     direction: Float[Array, "3"] = eqx.field(
         converter=as_real, metadata=unit("1"), default=(0.0, 1.0, 0.0)
     )

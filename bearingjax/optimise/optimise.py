@@ -14,7 +14,7 @@ import numpy as np
 from ..cases.cases import Cases
 from ..design.checks import of_class
 from ..life.rating import check_alike
-from ..numerics.units import shown_number, unit
+from ..numerics.units import meaning, shown_number, unit
 from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.support import RESTRAINED, Support, check_held
@@ -127,8 +127,10 @@ class SearchOptions:
     """
 
     method: Any = None
-    max_steps: int = 200
-    tolerance: float = 1e-5
+    max_steps: int = dataclasses.field(default=200, metadata=meaning("step limit"))
+    tolerance: float = dataclasses.field(
+        default=1e-5, metadata=meaning("gradient at which the search ends")
+    )
     solve: SolveOptions | None = None
     progress: bool = False
 

@@ -11,7 +11,7 @@ from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_count, as_real
-from ..numerics.units import unit
+from ..numerics.units import meaning, unit
 from ..statics.warning_sizes import stiffness_scale
 from .parts import (
     DAMPING_UNITS,
@@ -80,9 +80,17 @@ class BearingSupport(AbstractSupport):
     )
     housing: Housing | None = eqx.field(default=None, kw_only=True)
     turned: Bool[Array, ""] | bool = eqx.field(
-        converter=_flag, default=False, kw_only=True
+        converter=_flag,
+        default=False,
+        kw_only=True,
+        metadata=meaning("whether the bearing faces the other way"),
     )
-    inertia: bool = eqx.field(static=True, default=False, kw_only=True)
+    inertia: bool = eqx.field(
+        static=True,
+        default=False,
+        kw_only=True,
+        metadata=meaning("whether its rolling elements feel the speed"),
+    )
     passage: bool = eqx.field(static=True, default=False, kw_only=True)
 
     def __check_init__(self):

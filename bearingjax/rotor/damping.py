@@ -79,7 +79,7 @@ class ModalDamping(AbstractDamping):
     Traced: ratio.
     """
 
-    ratio: Real = eqx.field(**real("1"))
+    ratio: Real = eqx.field(**real("1", "damping ratio of all modes"))
 
     def __check_init__(self):
         non_negative(self, "ratio")

@@ -74,9 +74,15 @@ class Disc(AbstractPart):
     """
 
     station: int = eqx.field(static=True, converter=as_count)
-    mass: Real = eqx.field(**real("kg"))
-    polar_inertia: Real = eqx.field(**real("kg m²"))
-    diametral_inertia: Real = eqx.field(**real("kg m²"))
+    mass: Real = eqx.field(
+        **real("kg", "mass, in place of sizes; alone that of a point")
+    )
+    polar_inertia: Real = eqx.field(
+        **real("kg m²", "moment of inertia about the shaft")
+    )
+    diametral_inertia: Real = eqx.field(
+        **real("kg m²", "moment of inertia about a diameter")
+    )
 
     def __check_init__(self):
         check_station(self, self.station)
@@ -192,7 +198,7 @@ class Housing(eqx.Module):
     Traced: all fields.
     """
 
-    mass: Real = eqx.field(**real("kg"))
+    mass: Real = eqx.field(**real("kg", "mass of the housing"))
     stiffness: Float[Array, "3 3"] = eqx.field(
         converter=square_matrix, metadata=unit((("N/m",) * 3,) * 3)
     )

@@ -12,6 +12,7 @@ from jaxtyping import Array, Complex, Float
 from ..design.checks import instance
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
+from ..numerics.units import meaning
 from ..numerics.warning import Warning
 from .damping import AbstractDamping
 from .like_parts import map_parts
@@ -130,7 +131,9 @@ class Rotor(eqx.Module):
     discs: tuple[AbstractPart, ...] = eqx.field(converter=as_parts, default=())
     supports: tuple[AbstractSupport, ...] = eqx.field(converter=as_parts, default=())
     damping: AbstractDamping | None = None
-    rigid: bool = eqx.field(static=True, default=False)
+    rigid: bool = eqx.field(
+        static=True, default=False, metadata=meaning("whether the shaft does not bend")
+    )
 
     def __check_init__(self):
         instance(self, "shaft", Shaft)

@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 from ..design.checks import check, is_traced, of_shape
 from ..design.material import Material
 from ..numerics.types import as_real
-from ..numerics.units import unit
+from ..numerics.units import meaning, unit
 from ..rotor import Shaft
 
 _SAME = 1e-9
@@ -81,7 +81,9 @@ class ShaftLine(eqx.Module):
     origin: Float[Array, "3"] | None = eqx.field(
         converter=as_real, metadata=unit(3 * ("m",)), default=None
     )
-    rigid: bool = eqx.field(static=True, default=False)
+    rigid: bool = eqx.field(
+        static=True, default=False, metadata=meaning("whether the shaft does not bend")
+    )
 
     def __check_init__(self):
         allowed = "(segment,), the length of each segment in m"

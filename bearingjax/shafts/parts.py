@@ -354,7 +354,7 @@ class Drive(eqx.Module):
     """
 
     into: str = eqx.field(static=True)
-    speed: Real = eqx.field(**real("rad/s"), default=0.0)
+    speed: Real = eqx.field(**real("rad/s", "speed of that shaft"), default=0.0)
     torque: RealOrNone = eqx.field(**real("N m"), default=None)
     power: RealOrNone = eqx.field(**real("W"), default=None)
 

@@ -14,7 +14,7 @@ from ..design.checks import instance, positive
 from ..element.bearing_element import BearingElement
 from ..lubrication import AbstractTraction, Lubricant, Newtonian, WarmInlet
 from ..numerics.types import Real, Scalar
-from ..numerics.units import real, unit
+from ..numerics.units import meaning, real, unit
 from .surroundings import Cage, Drag
 
 _KINDS = AbstractBallBearing, CylindricalRollerBearing, NeedleRollerBearing
@@ -77,8 +77,15 @@ class SkidModel(eqx.Module):
     traction: AbstractTraction = eqx.field(default_factory=Newtonian)
     drag: Drag = eqx.field(default_factory=Drag)
     cage: Cage = eqx.field(default_factory=Cage)
-    least_film: Real = eqx.field(**real("m"), default=1e-8)
-    inlet_heating: bool = eqx.field(static=True, default=False)
+    least_film: Real = eqx.field(
+        **real("m", "film that remains at rest, such as the composite roughness"),
+        default=1e-8,
+    )
+    inlet_heating: bool = eqx.field(
+        static=True,
+        default=False,
+        metadata=meaning("whether oil sheared warm in the inlets makes films thinner"),
+    )
 
     def __check_init__(self):
         instance(self, "element", BearingElement)

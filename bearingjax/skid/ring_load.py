@@ -60,8 +60,8 @@ class SinusoidalLoad(eqx.Module):
 
     mean: Float[Array, "6"] = eqx.field(converter=as_real, metadata=_LOADS)
     amplitude: Float[Array, "6"] = eqx.field(converter=as_real, metadata=_LOADS)
-    speed: Real = eqx.field(**real("rad/s"))
-    phase: Real = eqx.field(**real("rad"), default=0.0)
+    speed: Real = eqx.field(**real("rad/s", "angular frequency of the sine"))
+    phase: Real = eqx.field(**real("rad", "phase of the sine"), default=0.0)
 
     def __check_init__(self):
         for name in ("mean", "amplitude"):

@@ -59,10 +59,12 @@ class RollerContact(eqx.Module):
         (13), with the exact ellipse in place of (12).
     """
 
-    roller_length: Real = eqx.field(**real("m"))
-    small_diameter: Real = eqx.field(**real("m"))
-    large_diameter: Real = eqx.field(**real("m"))
-    half_angle: RealOrNone = eqx.field(**real("rad"), default=None, kw_only=True)
+    roller_length: Real = eqx.field(**real("m", "effective length"))
+    small_diameter: Real = eqx.field(**real("m", "diameter at the small end"))
+    large_diameter: Real = eqx.field(**real("m", "diameter at the large end"))
+    half_angle: RealOrNone = eqx.field(
+        **real("rad", "half cone angle"), default=None, kw_only=True
+    )
     raceway_radius: Real = eqx.field(**real("m"), default=np.inf, kw_only=True)
     raceway_half_angle: Real = eqx.field(**real("rad"), default=0.0, kw_only=True)
     arc_radii: tuple[Scalar, Scalar] | None = eqx.field(default=None, kw_only=True)

@@ -128,7 +128,9 @@ class FrictionLimited(AbstractRacewayControl):
     Traced: all fields.
     """
 
-    friction: Real = eqx.field(**real("1"), default=0.05)
+    friction: Real = eqx.field(
+        **real("1", "friction that holds the gyroscopic moment"), default=0.05
+    )
 
     def __check_init__(self):
         positive(self, "friction")

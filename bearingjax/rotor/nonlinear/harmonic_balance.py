@@ -19,7 +19,7 @@ from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
 from ...numerics.types import Scalar, as_count
-from ...numerics.units import unit
+from ...numerics.units import meaning, unit
 from .flow import transition, transition_phases
 from .method import AbstractMethod, Motion
 from .system import AbstractVibratingSystem, inertia, out_of_balance
@@ -87,9 +87,24 @@ class HarmonicBalance(AbstractMethod):
         steps: Steps of the integration of small changes, for the multipliers [1].
     """
 
-    harmonics: int = eqx.field(static=True, converter=as_count, default=7)
-    samples: int = eqx.field(static=True, converter=as_count, default=64)
-    steps: int = eqx.field(static=True, converter=as_count, default=48)
+    harmonics: int = eqx.field(
+        static=True,
+        converter=as_count,
+        default=7,
+        metadata=meaning("harmonics of the vibration"),
+    )
+    samples: int = eqx.field(
+        static=True,
+        converter=as_count,
+        default=64,
+        metadata=meaning("samples of a period, more than twice `harmonics`"),
+    )
+    steps: int = eqx.field(
+        static=True,
+        converter=as_count,
+        default=48,
+        metadata=meaning("steps of the integration over a period"),
+    )
 
     def __check_init__(self):
         if self.samples <= 2 * self.harmonics:

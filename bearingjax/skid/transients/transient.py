@@ -25,7 +25,7 @@ from ...numerics.implicit import stop_gradient
 from ...numerics.in_time import IntegrationOptions
 from ...numerics.result import Result, raise_unless_converged
 from ...numerics.types import Scalar, as_real
-from ...numerics.units import unit
+from ...numerics.units import meaning, unit
 from ...statics.balance import balance_of
 from ...statics.load import raise_if_failed, solve
 from ...statics.load_case import load_case
@@ -81,13 +81,30 @@ class SkidOptions(eqx.Module):
         TypeError, ValueError: For settings that do not exist.
     """
 
-    tolerance: Scalar = eqx.field(converter=as_real, metadata=unit("1"), default=1e-6)
-    max_steps: int = eqx.field(static=True, default=20_000)
+    tolerance: Scalar = eqx.field(
+        converter=as_real,
+        metadata=unit("1", "relative error of the integration"),
+        default=1e-6,
+    )
+    max_steps: int = eqx.field(
+        static=True, default=20_000, metadata=meaning("most steps of the integration")
+    )
     derivatives: str = eqx.field(static=True, default="reverse")
     progress: bool = eqx.field(static=True, default=False)
     axis: str = eqx.field(static=True, default="vertical")
-    balanced: bool | None = eqx.field(static=True, default=None)
-    places: int | None = eqx.field(static=True, default=None)
+    balanced: bool | None = eqx.field(
+        static=True,
+        default=None,
+        metadata=meaning("whether the ring of balls is in balance at every time"),
+    )
+    places: int | None = eqx.field(
+        static=True,
+        default=None,
+        metadata=meaning(
+            "places along an orbit; 1 or 6 and more, of the end state 1 or a multiple"
+            " of the number of balls or rollers"
+        ),
+    )
     load_speed: Speed | None = None
 
     def __check_init__(self):

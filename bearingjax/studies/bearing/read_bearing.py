@@ -1,12 +1,13 @@
 """The [bearing] and [set] tables of a scene: the design as drawn."""
 
+import dataclasses
 import difflib
 from typing import Any
 
 from ...catalogue.entry import catalogue_entry
 from ...design import AbstractBearing, BearingSet, PreloadSpring, SetRow
 from ...design.bearing_set import shares_rings
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, text_of
 from ...statics.preload import check_preload
 from .catalogue_keys import FromCatalogue, merge_catalogue_keys
@@ -116,14 +117,9 @@ def _complete(
 class SpringKeys(Keys):
     about = "Spring that presses a row"
 
-    spring_force: float | None = scene_key(
-        "force of the spring that preloads, where the row just touches", "force"
-    )
-    spring_stiffness: float = scene_key(
-        "force that it loses per travel",
-        "stiffness",
-        default=0.0,
-        needs=("spring_force",),
+    spring_force: float | None = key_of(PreloadSpring, "force")
+    spring_stiffness: float = key_of(
+        PreloadSpring, "stiffness", needs=("spring_force",)
     )
 
     @property
@@ -138,13 +134,9 @@ class SpringKeys(Keys):
 class RowKeys(SpringKeys):
     about = "[[set.rows]]: a row in its place"
 
-    position: float = scene_key("place along the axis", "length")
-    mirrored: bool = scene_key("whether it is turned round", default=False)
-    inner_offset: float = scene_key(
-        "axial offset of the inner ring against the outer one: preload by ground rings",
-        "length",
-        default=0.0,
-    )
+    position: float = key_of(SetRow, "position", default=dataclasses.MISSING)
+    mirrored: bool = key_of(SetRow, "mirrored")
+    inner_offset: float = key_of(SetRow, "inner_offset")
 
     def row(self, common: AbstractBearing) -> SetRow:
         """Build the row.

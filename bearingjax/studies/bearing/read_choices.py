@@ -26,7 +26,7 @@ from ...element import (
     OuterControl,
 )
 from ...element.choices import usual_kinematics
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table
 from ...numerics import BFGS, ContactMapped, Midpoint, TrustRegionNewton
 from ...numerics.quadrature import AbstractQuadrature
@@ -98,12 +98,8 @@ class PointContactKeys(Keys):
         choices=tuple(POINT_LAWS),
         default="free_angle",
     )
-    outer_constant: float | None = scene_key(
-        "constant of Q = K δ^(3/2) on the outer raceway", "point constant"
-    )
-    inner_constant: float | None = scene_key(
-        "constant on the inner raceway", "point constant"
-    )
+    outer_constant: float | None = key_of(PointConstant, "outer")
+    inner_constant: float | None = key_of(PointConstant, "inner")
 
     def check(self) -> None:
         for name, other in _BOTH:
@@ -131,8 +127,8 @@ class ControlKeys(Keys):
         choices=tuple(CONTROLS),
         default="outer",
     )
-    friction_coefficient: float | None = scene_key(
-        "friction that holds the gyroscopic moment"
+    friction_coefficient: float | None = key_of(
+        FrictionLimited, "friction", default=None
     )
 
     def check(self) -> None:

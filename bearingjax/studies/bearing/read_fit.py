@@ -20,7 +20,7 @@ from ...design.bearing_set import (
 )
 from ...element import Speed
 from ...files.quantity import SceneError, scene_number
-from ...files.schema import Keys, build, read_keys, scene_key
+from ...files.schema import Keys, build, key_of, read_keys, scene_key
 from ...files.schema_text import number_schema, table_schema
 from ...files.table import Table
 from ...fits import (
@@ -125,15 +125,11 @@ _DRIVEN = ("drive_up", "clearance_reduction")
 class FitKeys(Keys):
     about = "[fit]: the seats of a bearing"
 
-    bore: float | None = scene_key(
-        "bore of the bearing", "length", otherwise=_CATALOGUE
+    bore: float | None = key_of(Mounting, "bore", otherwise=_CATALOGUE)
+    outside_diameter: float | None = key_of(
+        Mounting, "outside_diameter", otherwise=_CATALOGUE
     )
-    outside_diameter: float | None = scene_key(
-        "outside diameter of the bearing", "length", otherwise=_CATALOGUE
-    )
-    housing_diameter: float = scene_key(
-        "outside diameter of the housing around the bearing", "length"
-    )
+    housing_diameter: float = key_of(Mounting, "housing_diameter")
     shaft: str | None = scene_key("tolerance class of the shaft", **_of_seat(True))
     housing: str | None = scene_key("tolerance class of the housing", **_of_seat(False))
     shaft_interference: float | None = _interference("of shaft and bore")
@@ -143,18 +139,14 @@ class FitKeys(Keys):
         choices=tuple(TAPERS),
         otherwise="that of the `designation` (K, K30)",
     )
-    drive_up: float | None = scene_key(
-        "travel of the inner ring up a tapered seat, from where it just touches",
-        "length",
-        least=0,
-    )
+    drive_up: float | None = key_of(Mounting, "drive_up", least=0, default=None)
     clearance_reduction: float | None = scene_key(
         "radial clearance that driving up takes, in place of `drive_up`",
         "length",
         least=0,
         without={"drive_up": ""},
     )
-    shaft_bore: float = scene_key("bore of a hollow shaft", "length", default=0.0)
+    shaft_bore: float = key_of(Mounting, "shaft_bore")
     clearance: str | None = scene_key(
         "class of the clearance before mounting",
         choices=[
@@ -183,19 +175,13 @@ class FitKeys(Keys):
     shaft_roughness: float | None = _roughness("shaft")
     housing_roughness: float | None = _roughness("housing's bore")
     ring_roughness: float | None = _roughness("seats of the rings")
-    inner_raceway: float | None = scene_key(
-        "mean outside diameter up to which the inner ring counts",
-        "length",
-        otherwise="the smallest of the raceway",
+    inner_raceway: float | None = key_of(
+        Mounting, "inner_raceway", otherwise="the smallest of the raceway"
     )
-    outer_raceway: float | None = scene_key(
-        "mean inside diameter from which the outer ring counts",
-        "length",
-        otherwise="the largest of the raceway",
+    outer_raceway: float | None = key_of(
+        Mounting, "outer_raceway", otherwise="the largest of the raceway"
     )
-    ring_width: float | None = scene_key(
-        "width of a ring, B or T; sets need it", "length", otherwise=_CATALOGUE
-    )
+    ring_width: float | None = key_of(Mounting, "ring_width", otherwise=_CATALOGUE)
 
     def check(self) -> None:
         for seat, example in (("shaft", '"k5"'), ("housing", '"H7"')):

@@ -11,7 +11,7 @@ from ...contact.halfspace import FreeEnds, RollerContact
 from ...contact.line import AbstractLineLaw
 from ...design import AbstractProfile, Material
 from ...files.scene_file import find_scene, parse_scene
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, written_numbers
 from ...numerics.warning import Warning
 from ..bearing.read_choices import LineContactKeys
@@ -39,8 +39,8 @@ _MATERIAL = {"$ref": "#/$defs/material"}
 class RollerKeys(Keys):
     about = "[roller]: a cylindrical or tapered roller"
 
-    length: float = scene_key(
-        "effective length", "length", above=0, refusal="must be above 0"
+    length: float = key_of(
+        RollerContact, "roller_length", above=0, refusal="must be above 0"
     )
     diameter: float | None = scene_key(
         "diameter of a cylindrical roller",
@@ -48,14 +48,14 @@ class RollerKeys(Keys):
         above=0,
         without={"small_diameter": _EITHER},
     )
-    small_diameter: float | None = scene_key(
-        "diameter at the small end", "length", above=0, needs=("large_diameter",)
+    small_diameter: float | None = key_of(
+        RollerContact, "small_diameter", above=0, needs=("large_diameter",)
     )
-    large_diameter: float | None = scene_key(
-        "diameter at the large end", "length", above=0, needs=("small_diameter",)
+    large_diameter: float | None = key_of(
+        RollerContact, "large_diameter", above=0, needs=("small_diameter",)
     )
-    half_angle: float | None = scene_key(
-        "half cone angle", "angle", otherwise="that of its diameters"
+    half_angle: float | None = key_of(
+        RollerContact, "half_angle", otherwise="that of its diameters"
     )
     profile: AbstractProfile = scene_key(
         "shape along it", default="straight", reader=_profile, json=_PROFILE

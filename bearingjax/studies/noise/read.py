@@ -13,12 +13,14 @@ from ...element import FREEDOMS, RINGS
 from ...element.bearing_element import BearingElement
 from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
-from ...files.schema import Keys, direction_json, read_keys, scene_key
+from ...files.schema import Keys, direction_json, key_of, read_keys, scene_key
 from ...files.table import Table
 from ...noise import (
     REFERENCE_ACCELERATION,
     Hann,
+    LevelOptions,
     NoiseModel,
+    RecordOptions,
     Rectangular,
     Sensor,
     octave_bands,
@@ -43,7 +45,7 @@ MOST_SAMPLES = 200_000
 class VibrationKeys(Keys):
     about = "[vibration]: the test rig of a bearing, the record and its evaluation"
 
-    mass: float = scene_key("mass of the moving ring", "mass")
+    mass: float = key_of(NoiseModel, "mass")
     moving_ring: str | None = scene_key(
         "ring that the load acts on",
         choices=RINGS,
@@ -61,16 +63,11 @@ class VibrationKeys(Keys):
         " otherwise shorter waves are met as they are, with a warning",
         default=False,
     )
-    retardation: float | None = scene_key(
-        "retardation time of the contacts' damping; whole bearings have 2.5 to 25 us"
-        " (Krämer 1993)",
-        "time",
-        otherwise="10 us",
+    retardation: float | None = key_of(
+        NoiseModel, "retardation", otherwise="10 us", default=None
     )
-    sensor_stiffness: float | None = scene_key(
-        "stiffness of the sensor that holds the moving ring", "stiffness"
-    )
-    sensor_damping: float | None = scene_key("damping of the sensor", "damping")
+    sensor_stiffness: float | None = key_of(Sensor, "stiffness")
+    sensor_damping: float | None = key_of(Sensor, "damping", default=None)
     sensor_direction: list[float] = scene_key(
         "line of the sensor: x, y, z, or its three components",
         default=None,
@@ -79,21 +76,13 @@ class VibrationKeys(Keys):
         reader=lambda table, name: _direction(table, name),
         json=direction_json(DIRECTIONS),
     )
-    turns: int = scene_key("turns of the record", default=8)
-    settle: int = scene_key("turns that settle before it", default=2, least=0)
-    samples: int = scene_key(
-        "samples of a turn, an even number", default=2048, least=16
+    turns: int = key_of(RecordOptions, "turns")
+    settle: int = key_of(RecordOptions, "settle", least=0)
+    samples: int = key_of(RecordOptions, "samples", least=16)
+    steps: int | None = key_of(
+        RecordOptions, "steps", otherwise="as many as the stiffest contact needs"
     )
-    steps: int | None = scene_key(
-        "steps of the integration between two samples",
-        otherwise="as many as the stiffest contact needs",
-    )
-    reference: float = scene_key(
-        "acceleration of 0 dB",
-        "acceleration",
-        default=REFERENCE_ACCELERATION,
-        above=0.0,
-    )
+    reference: float = key_of(LevelOptions, "reference", above=0.0)
     bands: str = scene_key(
         "bands of the levels", choices=tuple(BANDS), default="octave"
     )

@@ -13,7 +13,7 @@ from ...design.form_error import (
     Spall,
 )
 from ...files.column_list import read_list
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, format_number
 
 RACEWAYS = {"outer raceway": "outer", "inner raceway": "inner"}
@@ -235,9 +235,9 @@ class SpallKeys(DeviationKeys):
 
     common: ClassVar[bool] = True
 
-    angle: float = scene_key("angle of its middle", "angle", default=0.0)
-    length: float = scene_key("length along the rolling direction", "length", above=0)
-    depth: float = scene_key("depth of its floor", "length", above=0)
+    angle: float = key_of(Spall, "angle", default=0.0)
+    length: float = key_of(Spall, "length", above=0)
+    depth: float = key_of(Spall, "depth", above=0)
 
     def check(self) -> None:
         if "direction" in self.table:

@@ -13,7 +13,7 @@ from ...design.tolerance import (
     element_grade,
     running_accuracy,
 )
-from ...files.schema import Keys, scene_key
+from ...files.schema import Keys, key_of, scene_key
 from ...noise import RandomWaves, Tolerances
 from .read_deviations import MOST_ORDER
 
@@ -81,15 +81,11 @@ class ToleranceKeys(Keys):
     spacing: float | None = scene_key(
         "standard deviation of the elements' azimuths", "angle"
     )
-    outer_eccentricity: float | None = scene_key(
-        "standard deviation of the outer raceway's eccentricity",
-        "length",
-        otherwise="that of the class",
+    outer_eccentricity: float | None = key_of(
+        Tolerances, "outer_eccentricity", otherwise="that of the class"
     )
-    inner_eccentricity: float | None = scene_key(
-        "standard deviation of the inner raceway's eccentricity",
-        "length",
-        otherwise="that of the class",
+    inner_eccentricity: float | None = key_of(
+        Tolerances, "inner_eccentricity", otherwise="that of the class"
     )
     seed: int = scene_key("seed of the random numbers", default=0, least=0)
 

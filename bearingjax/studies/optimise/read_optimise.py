@@ -10,10 +10,11 @@ from ...design import BearingSet, rows_of
 from ...element import FREEDOMS, BearingElement
 from ...files.quantity import SceneError, kind_of, scene_number
 from ...files.scene_file import assign, find_scene, parse_bearing
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...fits.fits import WARM_PARTS
 from ...numerics.units import unit_of
+from ...optimise import SearchOptions
 from ...optimise.constraint import Constraint
 from ...optimise.life import RatingLife
 from ...optimise.measure import (
@@ -182,10 +183,8 @@ class SearchKeys(Keys):
     method: str | None = scene_key(
         "search", choices=METHODS, otherwise="by the constraints and variables"
     )
-    max_steps: int = scene_key("step limit", default=200)
-    tolerance: float = scene_key(
-        "gradient at which the search ends", default=1e-5, above=0, below=0.1
-    )
+    max_steps: int = key_of(SearchOptions, "max_steps")
+    tolerance: float = key_of(SearchOptions, "tolerance", above=0, below=0.1)
 
     def check(self) -> None:
         if self.constraints and self.method not in (None, "slsqp"):

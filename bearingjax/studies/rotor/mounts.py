@@ -9,11 +9,11 @@ from ...design import AbstractBallBearing
 from ...element import BearingElement, Speed
 from ...files.quantity import SceneError
 from ...files.scene_file import bearing_place, find_scene, parse_bearing, shipped_scenes
-from ...files.schema import Keys, scene_key
+from ...files.schema import Keys, key_of, scene_key
 from ...files.schema_text import number_schema, object_schema
 from ...files.table import Table, not_among
 from ...numerics.warning import Warning, warnings_of
-from ...rotor import Housing, Shaft
+from ...rotor import BearingSupport, Housing, Shaft
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
 from ...statics.installed import Installed
@@ -95,7 +95,7 @@ class HousingKeys(Keys):
         "[rotor.bearings.housing]: a mass on springs, between the bearing and ground"
     )
 
-    mass: float = scene_key("mass of the housing", "mass", above=0)
+    mass: float = key_of(Housing, "mass", above=0)
     stiffness: list[float] = _of_axes(
         "springs against ground, along each axis", "stiffness"
     )
@@ -139,12 +139,8 @@ class MountKeys(Keys):
         otherwise="the bearing itself",
         **_OF_BEARING,
     )
-    turned: bool = scene_key(
-        "whether the bearing faces the other way", default=False, **_OF_BEARING
-    )
-    inertia: bool = scene_key(
-        "whether its rolling elements feel the speed", default=False, **_OF_BEARING
-    )
+    turned: bool = key_of(BearingSupport, "turned", **_OF_BEARING)
+    inertia: bool = key_of(BearingSupport, "inertia", **_OF_BEARING)
     damping: DamperKeys = scene_key("dampers beside it", default=DamperKeys)
     housing: HousingKeys | None = scene_key(
         "mass on springs on which it stands", otherwise="ground"

@@ -11,7 +11,7 @@ from ...design import Material
 from ...element.frame import LOADS
 from ...files.quantity import scene_number
 from ...files.scene_file import find_scene, is_rotor, parse_scene
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, written_numbers
 from ...numerics.gravity import GRAVITY
 from ...numerics.warning import Warning
@@ -22,6 +22,7 @@ from ...rotor import (
     ModalDamping,
     PointMass,
     ProportionalDamping,
+    Rotor,
     RotorLoads,
     Shaft,
     StationForce,
@@ -90,15 +91,9 @@ class DiscKeys(Keys):
     about = "[[rotor.discs]]: discs, by their sizes or inertia, and point masses"
 
     station: int = scene_key("station of the shaft", least=0)
-    mass: float | None = scene_key(
-        "mass, in place of sizes; alone that of a point", "mass", least=0
-    )
-    polar_inertia: float | None = scene_key(
-        "moment of inertia about the shaft", "moment of inertia", **_OF_MASS
-    )
-    diametral_inertia: float | None = scene_key(
-        "moment of inertia about a diameter", "moment of inertia", **_OF_MASS
-    )
+    mass: float | None = key_of(Disc, "mass", least=0)
+    polar_inertia: float | None = key_of(Disc, "polar_inertia", **_OF_MASS)
+    diametral_inertia: float | None = key_of(Disc, "diametral_inertia", **_OF_MASS)
     outer_diameter: float | None = scene_key(
         "outer diameter", "length", above=0, **_OF_DISC
     )
@@ -183,15 +178,13 @@ class RotorKeys(Keys):
     about = "[rotor]: a shaft on its bearings"
 
     speed: float = scene_key("speed of the rotor, from x to y", "speed", default=0.0)
-    rigid: bool = scene_key("whether the shaft does not bend", default=False)
+    rigid: bool = key_of(Rotor, "rigid")
     axis: str = scene_key(
         "where weight pulls: `horizontal` along -y, `vertical` along -z",
         choices=tuple(GRAVITY_BY_AXIS),
         default="horizontal",
     )
-    damping_ratio: float | None = scene_key(
-        "damping ratio of all modes", least=0, below=1
-    )
+    damping_ratio: float | None = key_of(ModalDamping, "ratio", least=0, below=1)
     damping: ProportionalDamping | None = scene_key(
         "damping in proportion to mass and stiffness of the shaft",
         without={"damping_ratio": ""},

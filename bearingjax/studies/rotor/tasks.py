@@ -6,7 +6,8 @@ import numpy as np
 
 from ...element.frame import FREEDOMS
 from ...files.quantity import scene_number
-from ...files.schema import Keys, scene_key
+from ...files.schema import Keys, key_of, scene_key
+from ...rotor.nonlinear import HarmonicBalance
 
 METHODS = ("linear", "harmonic_balance", "shooting")
 MOST_SPEEDS, MOST_POINTS, MOST_SAMPLES, MOST_TIMES = 2000, 5000, 1024, 20_000
@@ -53,11 +54,12 @@ class ResponseKeys(Keys):
         choices=METHODS,
         default="harmonic_balance",
     )
-    harmonics: int = scene_key(
-        "harmonics of the vibration", default=7, most=MOST_SAMPLES // 4, **_BALANCE
+    harmonics: int = key_of(
+        HarmonicBalance, "harmonics", most=MOST_SAMPLES // 4, **_BALANCE
     )
-    samples: int = scene_key(
-        "samples of a period, more than twice `harmonics`",
+    samples: int = key_of(
+        HarmonicBalance,
+        "samples",
         default=None,
         least=4,
         most=MOST_SAMPLES,
@@ -65,12 +67,8 @@ class ResponseKeys(Keys):
         follows=lambda values: max(64, 4 * values["harmonics"]),
         **_BALANCE,
     )
-    steps: int = scene_key(
-        "steps of the integration over a period",
-        default=48,
-        least=8,
-        most=MOST_SAMPLES,
-        **_PERIODIC,
+    steps: int = key_of(
+        HarmonicBalance, "steps", least=8, most=MOST_SAMPLES, **_PERIODIC
     )
     points: int = scene_key(
         "most points of the curve; of a linear one their number",

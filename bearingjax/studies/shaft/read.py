@@ -14,7 +14,15 @@ from ...files.output_files import read_matrix
 from ...files.quantity import SceneError, to_si
 from ...files.scene_errors import error_at, problem_of
 from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
-from ...files.schema import Keys, build, direction_json, fields_of, read_keys, scene_key
+from ...files.schema import (
+    Keys,
+    build,
+    direction_json,
+    fields_of,
+    key_of,
+    read_keys,
+    scene_key,
+)
 from ...files.table import Table
 from ...life.life import LifeConditions
 from ...numerics.gravity import GRAVITY
@@ -87,7 +95,7 @@ class ShaftKeys(Keys):
         "length",
         otherwise="not known: meshes are placed by `mesh_angle`",
     )
-    rigid: bool = scene_key("whether the shaft does not bend", default=False)
+    rigid: bool = key_of(ShaftLine, "rigid")
     speed: float | None = scene_key(
         "speed, from local x towards local y, in place of `drive.speed`", "speed"
     )
@@ -167,7 +175,7 @@ class DriveKeys(Keys):
         "shaft, driven through a coupling, or wheel without a mate",
         otherwise="the first shaft",
     )
-    speed: float | None = scene_key("speed of that shaft", "speed")
+    speed: float | None = key_of(Drive, "speed", default=None)
     torque: float | None = _source("on that shaft, about its z", "moment", "power")
     power: float | None = _source("into that shaft", "power", "torque")
 

@@ -8,8 +8,16 @@ import numpy as np
 
 from ...element import Speed
 from ...element.frame import LOADS
-from ...files.schema import Keys, scene_key
-from ...skid import Drag, LoadHistory, SinusoidalLoad, SkidModel, SpeedTable, ramp
+from ...files.schema import Keys, key_of, scene_key
+from ...skid import (
+    Drag,
+    LoadHistory,
+    SinusoidalLoad,
+    SkidModel,
+    SkidOptions,
+    SpeedTable,
+    ramp,
+)
 from ..bearing.read_operating import LoadKeys
 
 SHAFT_AXES = ("vertical", "horizontal")
@@ -77,12 +85,8 @@ class LoadSeriesKeys(SeriesKeys):
     My: tuple[float, ...] | None = _component("moment about y", "moment")
     Mz: tuple[float, ...] | None = _component("moment about the axis", "moment")
     amplitude: LoadKeys | None = scene_key("amplitudes of a sine")
-    speed: float | None = scene_key(
-        "angular frequency of the sine", "speed", needs=("amplitude",)
-    )
-    phase: float = scene_key(
-        "phase of the sine", "angle", default=0.0, needs=("amplitude",)
-    )
+    speed: float | None = key_of(SinusoidalLoad, "speed", needs=("amplitude",))
+    phase: float = key_of(SinusoidalLoad, "phase", needs=("amplitude",))
 
     def loads(self, constant: Sequence[float]) -> LoadHistory | SinusoidalLoad:
         """Build the load over time.
@@ -116,23 +120,13 @@ class LoadSeriesKeys(SeriesKeys):
 class DynamicsKeys(Keys):
     about = "[dynamics]: what surrounds balls or rollers that skid, and their motion"
 
-    drag_coefficient: float = scene_key(
-        "drag coefficient of a ball or roller", default=Drag.coefficient
-    )
-    oil_share: float = scene_key(
-        "share of oil in the space between the rings", name="fill", default=Drag.fill
-    )
-    least_film: float = scene_key(
-        "film that remains at rest, such as the composite roughness",
-        "length",
-        default=SkidModel.least_film,
-    )
-    inlet_heating: bool = scene_key(
-        "whether oil sheared warm in the inlets makes films thinner", default=False
-    )
-    places: int | None = scene_key(
-        "places along an orbit; 1 or 6 and more, of the end state 1 or a multiple of"
-        " the number of balls or rollers",
+    drag_coefficient: float = key_of(Drag, "coefficient")
+    oil_share: float = key_of(Drag, "fill", name="fill")
+    least_film: float = key_of(SkidModel, "least_film")
+    inlet_heating: bool = key_of(SkidModel, "inlet_heating")
+    places: int | None = key_of(
+        SkidOptions,
+        "places",
         most=MOST_PLACES,
         otherwise="as many as the bearing needs",
     )
@@ -146,10 +140,8 @@ class DynamicsKeys(Keys):
     start: str = scene_key(
         "how balls or rollers begin", choices=STARTS, default="rolling"
     )
-    tolerance: float = scene_key(
-        "relative error of the integration", default=1e-6, least=1e-12, most=0.01
-    )
-    max_steps: int = scene_key("most steps of the integration", default=200_000)
+    tolerance: float = key_of(SkidOptions, "tolerance", least=1e-12, most=0.01)
+    max_steps: int = key_of(SkidOptions, "max_steps", default=200_000)
     ramp: float | None = scene_key(
         "time in which rings come to their speeds, evenly from rest",
         "time",
@@ -163,9 +155,8 @@ class DynamicsKeys(Keys):
     load: LoadSeriesKeys | None = scene_key(
         "load over time, of balls", otherwise=_CONSTANT
     )
-    balanced: bool | None = scene_key(
-        "whether the ring of balls is in balance at every time",
-        otherwise="true with a `load` over time",
+    balanced: bool | None = key_of(
+        SkidOptions, "balanced", otherwise="true with a `load` over time"
     )
 
     def check(self) -> None:
