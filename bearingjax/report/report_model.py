@@ -20,6 +20,8 @@ _WHOLE = 1e6
 """Number below which digits before the point are written without an exponent."""
 _WIDTH = 100
 """Characters of a line that ends in words."""
+CASES_SHOWN = 12
+"""Most cases that a text lists."""
 DEGREES = 180.0 / np.pi, "deg"
 NEWTONS = 1.0, "N"
 """Factor from SI and unit, for angles that are not tilts and for small forces."""

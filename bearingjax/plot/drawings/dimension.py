@@ -21,7 +21,7 @@ LINE = 0.16
 """Height of a line of a label [inch]."""
 _FREE = 0.1  # between labels below one another [inch]
 _LEANING = 0.4  # contact angle beyond which its label stands at its other side [rad]
-_SHOWN = {
+_DRAWN_UNITS = {
     "m": (1e3, " mm"),
     "rad": (180.0 / np.pi, "°"),
     "N/m": (1e-6, " N/µm"),
@@ -51,7 +51,7 @@ def quantity(value: Any, unit: str) -> str:
     value = float(value)
     if unit == "m" and 0.0 < abs(value) < 1e-4:
         return f"{1e6 * value:.4g} µm"
-    factor, name = _SHOWN.get(unit, (1.0, f" {unit}" if unit else ""))
+    factor, name = _DRAWN_UNITS.get(unit, (1.0, f" {unit}" if unit else ""))
     return f"{factor * value + 0.0:.5g}{name}"
 
 

@@ -18,7 +18,7 @@ _SOURCES = {
     "static_capacity": "static_source",
     "fatigue_load_limit": "limit_source",
 }
-_SHOWN = ("C", "C0", "C_u")
+_SYMBOLS = ("C", "C0", "C_u")
 
 
 def life_as_dict(life: Life, scene: Scene) -> dict[str, Any]:
@@ -68,7 +68,7 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
     return {
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
         f" ({origins.get(name, getattr(ratings, source))})"
-        for shown, (name, source) in zip(_SHOWN, _SOURCES.items(), strict=True)
+        for shown, (name, source) in zip(_SYMBOLS, _SOURCES.items(), strict=True)
     } | {"Y": f"factors of axial load, Y and Y0: {ratings.factors_source}"}
 
 

@@ -22,7 +22,7 @@ from ...numerics.result import Result
 from ...numerics.units import shown_count
 from ...numerics.warning import Warning
 from ...report.json_output import run_json
-from ...report.report_model import NEWTONS, Column, Grid, Part, Report
+from ...report.report_model import CASES_SHOWN, NEWTONS, Column, Grid, Part, Report
 from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published
 from ..bearing.life_report import (
     describe_turning,
@@ -37,8 +37,6 @@ from .read_cases import CaseTable
 from .sweep_run import all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
-_SHOWN = 12
-"""Most cases listed in a report."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -306,7 +304,7 @@ def _ends(values: np.ndarray) -> str:
 def _by_case(run) -> list[Part]:
     """Tabulate the worst cases, each as if it acted alone, and their distinguishing
     settings."""
-    order, shares = run.worst_cases(_SHOWN)
+    order, shares = run.worst_cases(CASES_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
     columns = [

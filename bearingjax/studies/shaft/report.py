@@ -5,7 +5,15 @@ from typing import Any
 import numpy as np
 
 from ...numerics.units import rpm, shown_count
-from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
+from ...report.report_model import (
+    CASES_SHOWN,
+    NEWTONS,
+    Column,
+    Grid,
+    Part,
+    Report,
+    Section,
+)
 from ..bearing.life_report import life_number, life_section
 from ..bearing.oil import oil_report, series_words
 from ..solve.report import fits_section
@@ -283,14 +291,11 @@ def _lives(run: ShaftRun) -> Section:
     return parts
 
 
-_SHOWN = 12
-
-
 def _cases(run: ShaftRun) -> Section:
     duty, task = run.duty, run.task
     if duty is None:
         return []
-    cases = range(min(_SHOWN, len(task.cases)))
+    cases = range(min(CASES_SHOWN, len(task.cases)))
     columns = [Column("case", list(cases))]
     if all(case.hours is not None for case in task.cases):
         columns.append(Column("hours", [task.cases[k].hours for k in cases]))
@@ -311,6 +316,6 @@ def _cases(run: ShaftRun) -> Section:
         for k, seat in enumerate(task.system.seats)
     ]
     parts: list[Part] = [Grid(columns, "load of each bearing")]
-    if len(task.cases) > _SHOWN:
-        parts.append(f"and {len(task.cases) - _SHOWN} more; `--table` has all")
+    if len(task.cases) > CASES_SHOWN:
+        parts.append(f"and {len(task.cases) - CASES_SHOWN} more; `--table` has all")
     return parts
