@@ -167,7 +167,7 @@ def key_of(kind: type, name: str, /, **changes: Any) -> Any:
     """Return a field of a `Keys` class for a number that another class declares.
 
     Args:
-        kind: That class, whose field states unit, range and meaning.
+        kind: Class of the thing, whose field states unit, range and meaning.
         name: Its field.
         **changes: What differs in the file: `default` and attributes of `Key`.
     """

@@ -18,7 +18,7 @@ class LaminaLoads(NamedTuple):
     """Loads of laminae from the pressures of half-spaces.
 
     Attributes:
-        load: Of each lamina on both raceways (roller, raceway, lamina) [N].
+        load: Load of each lamina on both raceways (roller, raceway, lamina) [N].
         warnings: A warning if the pressure is largest at the ends of contacts.
     """
 

@@ -13,8 +13,9 @@ import pytest
 from bearingjax import SceneError, read_scene, studies
 from bearingjax.files import shipped_scenes
 from bearingjax.files.quantity import QUANTITIES
-from bearingjax.files.schema import Keys, fields_of, read_keys
+from bearingjax.files.schema import Keys, fields_of, key_of, read_keys
 from bearingjax.files.table import Table
+from bearingjax.numerics.units import unit
 from bearingjax.studies.contact.read import read_contact
 from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.rotor.read import read_rotor
@@ -177,3 +178,38 @@ def test_every_key_refuses_wrong_values(kind):
             if "is missing" not in message and "goes with" not in message:
                 assert message.startswith(f"x.toml: `t.{field.name}`: "), message
                 assert told in message and "\n" not in message
+
+
+@dataclasses.dataclass
+class Weight:
+    mass: float = dataclasses.field(
+        default=2.0, metadata=unit("kg", "mass of it", above=0.0)
+    )
+
+
+class WeightKeys(Keys):
+    about = "[weight]: keys of the domain, one of them changed"
+
+    mass: float = key_of(Weight, "mass")
+    heavy: float | None = key_of(Weight, "mass", default=None, most=9.0)
+
+
+class OtherKeys(Keys):
+    about = "[other]: a key of another table"
+
+    heavy: float = key_of(WeightKeys, "heavy", default=dataclasses.MISSING)
+
+
+def test_keys_of_another_class(tmp_path):
+    mass, heavy = fields_of(WeightKeys)
+    assert (mass.key.about, mass.key.kind, mass.default) == ("mass of it", "mass", 2.0)
+    assert (mass.key.above, mass.key.most) == (0.0, None)
+    assert (heavy.name, heavy.default, heavy.key.most) == ("heavy", None, 9.0)
+    (other,) = fields_of(OtherKeys)
+    assert other.required and other.key == heavy.key
+    table = Table({"mass": "3 g"}, tmp_path / "a.toml")
+    assert read_keys(WeightKeys, table).given == {"mass": 3e-3}
+    with pytest.raises(SceneError, match="`mass`: 0 kg is not allowed; above 0 kg"):
+        read_keys(WeightKeys, Table({"mass": "0 kg"}, tmp_path / "a.toml"))
+    with pytest.raises(KeyError, match="weight"):
+        key_of(Weight, "weight")

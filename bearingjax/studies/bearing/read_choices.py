@@ -166,10 +166,8 @@ class BallNumericsKeys(Keys):
 class RollerNumericsKeys(BallNumericsKeys):
     about = "[numerics] of rollers"
 
-    kinematics: str = scene_key(
-        "how rings displace the raceways",
-        choices=tuple(KINEMATICS),
-        default="linearised",
+    kinematics: str = key_of(
+        BallNumericsKeys, "kinematics", default="linearised", otherwise=""
     )
     quadrature: str = scene_key(
         "rule along the rollers", choices=tuple(QUADRATURES), default="contact_mapped"
@@ -201,9 +199,9 @@ class RollerNumericsKeys(BallNumericsKeys):
 class BarrelNumericsKeys(RollerNumericsKeys):
     about = "[numerics] of barrel rollers"
 
-    kinematics: str | None = scene_key(
-        "how rings displace the raceways",
-        choices=tuple(KINEMATICS),
+    kinematics: str | None = key_of(
+        BallNumericsKeys,
+        "kinematics",
         otherwise="`finite`, or `linearised` with coupled slices or measured profiles",
     )
 

@@ -104,11 +104,9 @@ class RacewayKeys(Keys):
         needs=("diameter",),
         hint="without it the raceway is a plane",
     )
-    profile: AbstractProfile = scene_key(
-        "shape along it", default="straight", reader=_profile, json=_PROFILE
-    )
-    material: Material | None = scene_key(
-        "material", otherwise="that of the roller", reader=read_material, json=_MATERIAL
+    profile: AbstractProfile = key_of(RollerKeys, "profile")
+    material: Material | None = key_of(
+        RollerKeys, "material", otherwise="that of the roller"
     )
 
     @property
@@ -206,12 +204,8 @@ class ContactNumericsKeys(Keys):
 class SliceLawKeys(Keys):
     about = "[contact]: the slices that a contact is compared with"
 
-    line_law: str = scene_key(
-        "approach and load of a slice", choices=SLICE_LAWS, default="palmgren"
-    )
-    line_constant: float | None = scene_key(
-        "constant of q = K δ^(10/9), in place of the law's", "line constant"
-    )
+    line_law: str = key_of(LineContactKeys, "line_law", choices=SLICE_LAWS)
+    line_constant: float | None = key_of(LineContactKeys, "line_constant", only={})
 
     @property
     def law(self) -> AbstractLineLaw:

@@ -14,8 +14,9 @@ from ...design.tolerance import (
     running_accuracy,
 )
 from ...files.schema import Keys, key_of, scene_key
+from ...fits import Mounting
 from ...noise import RandomWaves, Tolerances
-from .read_deviations import MOST_ORDER
+from .read_deviations import MOST_ORDER, SpectrumKeys
 
 _WAVES = {
     "waviness": ("outer_outwards", "inner_outwards"),
@@ -43,9 +44,9 @@ class ToleranceKeys(Keys):
         name="class",
         choices=TOLERANCE_CLASSES,
     )
-    bore: float | None = scene_key("bore", "length", needs=("class",))
-    outside_diameter: float | None = scene_key(
-        "outside diameter", "length", needs=("class",)
+    bore: float | None = key_of(Mounting, "bore", needs=("class",))
+    outside_diameter: float | None = key_of(
+        Mounting, "outside_diameter", needs=("class",)
     )
     waviness: float | None = scene_key(
         "root mean square of the waves of both raceways", "length"
@@ -70,9 +71,7 @@ class ToleranceKeys(Keys):
         least=2,
         most=MOST_ORDER["element"],
     )
-    slope: float = scene_key(
-        "amplitudes fall with this power of the order", default=1.0
-    )
+    slope: float = key_of(SpectrumKeys, "slope", default=1.0)
     diameter: float | None = scene_key(
         "standard deviation of the elements' diameters",
         "length",

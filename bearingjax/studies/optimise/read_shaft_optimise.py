@@ -9,7 +9,7 @@ import numpy as np
 
 from ...files.quantity import kind_of
 from ...files.scene_file import find_scene, is_shafts, parse_scene
-from ...files.schema import read_keys, scene_key
+from ...files.schema import key_of, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...optimise.variable import design_numbers
 from ...shafts import (
@@ -28,6 +28,7 @@ from ..shaft.read import ShaftScene, read_shafts
 from ..shaft.read_heat import bearing_oil
 from .read_optimise import (
     BoundKeys,
+    ConstraintKeys,
     SearchKeys,
     SearchTask,
     bound_key,
@@ -56,7 +57,7 @@ def _part_key() -> Any:
 class ShaftConstraintKeys(BoundKeys):
     about = "[[optimise.constraints]]: a bound on a measure"
 
-    measure: str = scene_key("what is bounded", choices=SHAFT_OBJECTIVES)
+    measure: str = key_of(ConstraintKeys, "measure", choices=SHAFT_OBJECTIVES)
     at_least: Any = bound_key("lower", "static_safety")
     at_most: Any = bound_key("upper", "static_safety")
     of: str | None = _part_key()

@@ -13,7 +13,7 @@ from ...files.schema import Keys, key_of, scene_key
 from ...files.schema_text import number_schema, object_schema
 from ...files.table import Table, not_among
 from ...numerics.warning import Warning, warnings_of
-from ...rotor import BearingSupport, Housing, Shaft
+from ...rotor import BearingSupport, Housing, Shaft, Unbalance
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
 from ...statics import restrained_freedoms
 from ...statics.installed import Installed
@@ -116,7 +116,7 @@ class HousingKeys(Keys):
 class MountKeys(Keys):
     about = "[[rotor.bearings]]: supports of the shaft, each a bearing or springs"
 
-    station: int = scene_key("station of the shaft", least=0)
+    station: int = key_of(Unbalance, "station")
     bearing: str | None = scene_key(
         "NAME of [bearings.NAME], or name or path of the scene of a bearing"
     )

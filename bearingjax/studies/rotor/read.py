@@ -29,6 +29,7 @@ from ...rotor import (
     Unbalance,
 )
 from ..bearing.read_design import read_material
+from ..bearing.read_operating import LoadKeys
 from .mounts import MountKeys, read_mounts
 from .scene import RotorScene
 from .tasks import CampbellKeys, ResponseKeys, TransientKeys
@@ -90,7 +91,7 @@ _OF_MASS: Any = {"least": 0, "needs": ("mass",)}
 class DiscKeys(Keys):
     about = "[[rotor.discs]]: discs, by their sizes or inertia, and point masses"
 
-    station: int = scene_key("station of the shaft", least=0)
+    station: int = key_of(Unbalance, "station")
     mass: float | None = key_of(Disc, "mass", least=0)
     polar_inertia: float | None = key_of(Disc, "polar_inertia", **_OF_MASS)
     diametral_inertia: float | None = key_of(Disc, "diametral_inertia", **_OF_MASS)
@@ -101,8 +102,8 @@ class DiscKeys(Keys):
     bore: float = scene_key(
         "bore", "length", default=0.0, least=0, needs=("outer_diameter",), **_OF_DISC
     )
-    material: Material = scene_key(
-        "material, or its numbers", needs=("outer_diameter",), **MATERIAL, **_OF_DISC
+    material: Material = key_of(
+        SegmentKeys, "material", needs=("outer_diameter",), **_OF_DISC
     )
 
     @property
@@ -125,12 +126,12 @@ class DiscKeys(Keys):
 class ForceKeys(Keys):
     about = "[[rotor.excitation.forces]]: constant forces and moments"
 
-    station: int = scene_key("station of the shaft", least=0)
-    Fx: float = scene_key("force along x", "force", default=0.0)
-    Fy: float = scene_key("force along y", "force", default=0.0)
-    Fz: float = scene_key("force along z", "force", default=0.0)
-    Mx: float = scene_key("moment about x", "moment", default=0.0)
-    My: float = scene_key("moment about y", "moment", default=0.0)
+    station: int = key_of(Unbalance, "station")
+    Fx: float = key_of(LoadKeys, "Fx", default=0.0)
+    Fy: float = key_of(LoadKeys, "Fy", default=0.0)
+    Fz: float = key_of(LoadKeys, "Fz", default=0.0, about="force along z")
+    Mx: float = key_of(LoadKeys, "Mx", default=0.0)
+    My: float = key_of(LoadKeys, "My", default=0.0)
 
     def check(self) -> None:
         if not any(self.force):

@@ -123,15 +123,9 @@ class TransientKeys(Keys):
         "tolerance of the integration", default=1e-6, least=1e-12, most=1e-2
     )
     max_steps: int = scene_key("most steps of the integration", default=200_000)
-    reduction: int | None = scene_key(
-        "Craig-Bampton modes that stand for the shaft",
-        least=0,
-        otherwise="all freedoms",
-    )
+    reduction: int | None = key_of(ResponseKeys, "reduction", only={})
     passage: bool = scene_key(
         "whether rolling elements orbit with the cage", default=False
     )
-    station: int | None = scene_key("station shown in report and picture", **_STATION)
-    coordinate: str = scene_key(
-        "coordinate shown there", choices=FREEDOMS[:5], default="uy"
-    )
+    station: int | None = key_of(ResponseKeys, "station")
+    coordinate: str = key_of(ResponseKeys, "coordinate")

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...files.schema import Keys, build, read_keys, scene_key
+from ...files.schema import Keys, build, key_of, read_keys, scene_key
 from ...files.table import Table
 from ...fits.fits import WARM_PARTS
 from ...friction.friction_skf import skf_series, skf_series_of
@@ -23,9 +23,9 @@ class HeatKeys(Keys):
 
     numbers = {"": HeatNetwork}
 
-    ambient: float = scene_key(
-        "temperature of the surroundings",
-        "temperature",
+    ambient: float = key_of(
+        HeatNetwork,
+        "ambient",
         default=None,
         least=-60,
         most=200,
