@@ -371,8 +371,15 @@ class Table:
                     if owners:
                         break
             where = f"[{table._path}]: " if table._path else ""
-            place = place_of(self._file, table._path)
+            place = place_of(self._file, table._path or self._part_in(problem))
             raise SceneError(f"{place}: {where}{problem}") from error
+
+    def _part_in(self, problem: str) -> str:
+        """Return the path of the table [KIND.NAME] that an error names first, or ""."""
+        parts = [part for kind in self._children for part in kind._children]
+        names = {part._path.rpartition(".")[2]: part._path for part in parts}
+        words = re.findall(r"[^\s`'\",;:.]+", problem.replace("'s ", " "))
+        return next((names[word] for word in words if word in names), "")
 
     def _owners(self, key: str, part: str) -> "list[Table]":
         """Return this table if it has a key, or else those below that have it.

@@ -313,9 +313,11 @@ class ShaftSystem(eqx.Module):
         for name in ("normal_module", "pressure_angle", "helix_angle"):
             known = floats(getattr(one, name), getattr(other, name))
             if known and abs(known[0] - known[1]) > 1e-6 * max(map(abs, known)):
+                scale, unit = (1e3, "mm") if "module" in name else (180 / np.pi, "deg")
                 raise ValueError(
-                    f"ShaftSystem: `{name}` is {known[0]:.9g} of {one.name} and"
-                    f" {known[1]:.9g} of {other.name}; meshing gears have the same."
+                    f"ShaftSystem: `{name}` is {scale * known[0]:.8g} {unit} of"
+                    f" {one.name} and {scale * known[1]:.8g} {unit} of {other.name};"
+                    " meshing gears have the same."
                 )
         if {one.hand, other.hand} not in ({"none"}, {"left", "right"}):
             raise ValueError(

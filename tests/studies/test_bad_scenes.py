@@ -48,11 +48,16 @@ def without_line(message):
 
 def assert_names(path, line, message):
     """The line of a message has the key, or is that of a table in which it is missing
-    or unknown."""
+    or unknown, or of the part that a message without a key names first."""
     if line is None:
         return
     text = path.read_text(encoding="utf-8").splitlines()[line - 1]
-    key = re.sub(r"\[\d+\]", "", re.findall(r"[`\[]([\w.\[\]]+?)[`\]]:", message)[0])
+    keys = re.findall(r"[`\[]([\w.\[\]]+?)[`\]]:", message)
+    if not keys:
+        part = text.strip(" []").rpartition(".")[2]
+        assert re.search(rf"\b{part}\b", message), text
+        return
+    key = re.sub(r"\[\d+\]", "", keys[0])
     words = re.findall(r"[\w.]+", text.partition("#")[0])
     named = [part for word in words for part in (word, *word.split("."))]
     assert named and any(part in named for part in (key, *key.split("."))), text

@@ -247,6 +247,16 @@ def test_scene_error_of_machine_names_line(tmp_path):
     assert str(caught.value).startswith(f"mine.toml:{first + 2}: `{name}.contact.law`")
 
 
+def test_scene_error_of_system_names_line_of_part(tmp_path):
+    text = shipped_scenes()["shaft_gearbox"].read_text(encoding="utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace('hand = "left"', 'hand = "right"'), encoding="utf-8")
+    line = text.splitlines().index("[gear.pinion]") + 1
+    words = f"mine.toml:{line}: `hand` is 'right' of pinion and 'right' of wheel"
+    with pytest.raises(SceneError, match=f"^{words}"):
+        read_shafts(path)
+
+
 def test_table_error_places():
     table = Table(
         {"bearing": {"rows": "x"}}, "a.toml", places={"bearing": "bearings.A"}
