@@ -74,9 +74,7 @@ class Disc(AbstractPart):
     """
 
     station: int = eqx.field(static=True, converter=as_count)
-    mass: Real = eqx.field(
-        **real("kg", "mass, in place of sizes; alone that of a point")
-    )
+    mass: Real = eqx.field(**real("kg", "mass of the disc"))
     polar_inertia: Real = eqx.field(
         **real("kg m²", "moment of inertia about the shaft")
     )

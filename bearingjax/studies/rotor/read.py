@@ -92,7 +92,9 @@ class DiscKeys(Keys):
     about = "[[rotor.discs]]: discs, by their sizes or inertia, and point masses"
 
     station: int = key_of(Unbalance, "station")
-    mass: float | None = key_of(Disc, "mass", least=0)
+    mass: float | None = key_of(
+        Disc, "mass", about="mass, in place of sizes; alone that of a point", least=0
+    )
     polar_inertia: float | None = key_of(Disc, "polar_inertia", **_OF_MASS)
     diametral_inertia: float | None = key_of(Disc, "diametral_inertia", **_OF_MASS)
     outer_diameter: float | None = scene_key(
