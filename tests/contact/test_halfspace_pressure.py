@@ -34,7 +34,7 @@ HALF_WIDTH = 0.1764e-3  # 1.6 times Hertz's at 3000 N
 def taper():
     contact = RollerContact(0.015, 0.010, 0.012, half_angle=np.deg2rad(3.0), **PAIR)
     (told,) = contact.warnings
-    assert "is 3 deg, but" in told and "make 3.814 deg" in told
+    assert "is 3°, but" in told and "make 3.814°" in told
     return contact
 
 

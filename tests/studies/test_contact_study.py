@@ -91,7 +91,7 @@ def test_shipped_scene_is_the_published_case():
     assert float(contact.modulus) == near(210e9 / (2 * (1 - 0.3**2)))
     assert np.isinf(contact.raceway_radius)
     (warning,) = scene.warnings
-    assert "`half_angle` is 3 deg" in warning and "make 3.814 deg" in warning
+    assert "half angle is 3°" in warning and "make 3.814°" in warning
 
 
 def test_read_contact_cylinder_defaults(cylinder):
@@ -150,7 +150,7 @@ def test_published_numbers(paper):
     assert numbers["peak_position"] == near(0.0075 - 0.5 * 0.015 / 35)
     assert numbers["peak_cell_length"] == near(0.015 / 35)
     assert numbers["load"] == near(3000.0) and numbers["tilt"] == 0.0
-    assert any("make 3.814 deg" in text for text in numbers["warnings"])
+    assert any("make 3.814°" in text for text in numbers["warnings"])
     assert any("an end cell, 428.6 µm long" in text for text in numbers["warnings"])
     json.dumps(numbers, allow_nan=False)
 
@@ -381,7 +381,7 @@ def test_contact_command_of_five_loads(written):
     assert done.out.startswith("taper_contact: roller 10 to 12 x 15 mm")
     assert "\nconverged in " in done.out
     numeric, ends = numbers["warnings"]
-    assert "make 3.814 deg" in numeric and "end cell" in ends
+    assert "make 3.814°" in numeric and "end cell" in ends
     assert paths["--plot"].stat().st_size > 50_000
 
 
