@@ -51,11 +51,13 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
     found = {
         name: "given in [life]" for name, source in sources.items() if source == GIVEN
     }
+    published = [name for name, source in sources.items() if source == PUBLISHED]
+    if not published:
+        return found
     bearing, rows, listed = scene.element.bearing, "", ""
     words = "published for the bearing of its rows"
-    if not any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ())):
-        if scene.catalogue is None:
-            return found
+    own = any("bearing" in row for row in scene.inputs.get("set", {}).get("rows", ()))
+    if scene.catalogue is not None and not own:
         words = f"published for {scene.catalogue.entry.designation}"
     if has_separate_rings(bearing):
         rows = f", of one row; for {len(rows_of(bearing))} rows"
@@ -63,10 +65,9 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
         # A plain size has the ratings of the improved design that it is listed as.
         notes = scene.catalogue.entry.notes
         listed = "".join(f"; {note}" for note in notes if " is listed as " in note)
-    for name, source in sources.items():
-        if source == PUBLISHED:
-            how = f"{rows} {_OF_ROWS[name][1]}" if rows else ""
-            found[name] = f"{words}{how}{listed}"
+    for name in published:
+        how = f"{rows} {_OF_ROWS[name][1]}" if rows else ""
+        found[name] = f"{words}{how}{listed}"
     return found
 
 
