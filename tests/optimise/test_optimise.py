@@ -342,7 +342,7 @@ def test_many_cases_are_solved_in_chunks(straight, one_case, wanted):
     target = (bj.optimise.StiffnessTarget(wanted, "uy"), ())
     options = SolveOptions(points=2)
     one, all_ = (
-        Problem(straight, c, [play()], *target, options).run(jnp.array([0.1]), False)
+        Problem(straight, c, [play()], *target, options).run(np.array([0.1]), False)
         for c in (one_case, many)
     )
     assert np.isclose(one.measures[0], all_.measures[0], rtol=1e-9)
