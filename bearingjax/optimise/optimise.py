@@ -38,7 +38,7 @@ class History(NamedTuple):
         values: Values of the variables (step, variable) [SI].
         objective: The smooth objective (step,).
         violation: Largest violation of a constraint over the size of its bound (step,).
-        gradient: As `OptimisedDesign.optimality` (step,) [1]; NaN with a method without
+        gradient: `OptimisedDesign.optimality` (step,) [1]; NaN with a method without
             gradients.
         evaluations: Designs evaluated so far (step,).
     """

@@ -268,6 +268,14 @@ def test_every_command_tells_the_speeds_of_the_catalogue(command, tmp_path):
     assert not any("catalogue" in line for line in slow(path))
 
 
+def test_cases_at_rest_say_that_raceway_control_does_nothing(tmp_path):
+    text = '[bearing]\ndesignation = "6205"\n[operating]\nraceway_control = "inner"\n'
+    text += 'load.Fx = "1 kN"\n[cases.grid]\noperating.inner_speed = '
+    for speeds, count in ('["0 rpm"]', 1), ('["0 rpm", "9 rpm"]', 0):
+        kinds = [one.kind for one in cases(tmp_path, text + speeds).warnings]
+        assert kinds.count("unused_control") == count
+
+
 def test_sweep_over_designations_limiting_speed_warnings(tmp_path):
     text = f'[bearing]\ndesignation = "6205"\n{LOAD}inner_speed = "12000 rpm"\n'
     text += '[cases.grid]\nbearing.designation = ["6205", "6210", "6206"]\n'
@@ -312,6 +320,9 @@ def test_rows_with_bearings_of_their_own_have_their_published_ratings(read):
     assert text.startswith(
         "set: every row has a `bearing` of its own, so that [bearing]"
     )
+    assert scene.installed.limiting_speed == entry.limiting_speed
+    unlike = rows.replace("7210 B", "7209 B", 1)
+    scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{unlike}')
     assert scene.catalogue is None and scene.installed.limiting_speed is None
     mixed = rows.replace(f'{own}position = "20', '[[set.rows]]\nposition = "20')
     scene = read('designation = "7208 B"', f'[set]\narrangement = "rows"\n{mixed}')

@@ -229,16 +229,31 @@ def scene_of(
             " them, and nothing that the catalogue says of it counts; write that of a"
             " row there, and leave it out of the row"
         )
-        warned, catalogue = (*warned, Warning("unused_bearing", words)), None
+        warned = (*warned, Warning("unused_bearing", words))
+        own, *others = (row["bearing"] for row in rows)
+        alike = all(other == own for other in others)
+        found = read_designation(Table(own, path)) if alike else None
+        catalogue = None if found is None else found[1]
     scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
     top.finish()
     warned = scene.warnings
     # Bearings of machines and of sweeps may get their speeds elsewhere.
     alone = places is None and "cases" not in data
-    if alone and scene.speed is None and "raceway_control" in top.table("operating"):
-        words = "operating.raceway_control: balls at rest have no gyroscopic moment;"
-        warned += (Warning("unused_control", f"{words} it acts at a speed alone"),)
+    if alone and scene.speed is None:
+        warned += control_warnings(data)
     return dataclasses.replace(scene, inputs=top.echo(), warnings=warned)
+
+
+def control_warnings(data: Mapping[str, Any]) -> tuple[Warning, ...]:
+    """Return a warning if a scene at rest has a raceway control, which does nothing.
+
+    Args:
+        data: The scene as parsed.
+    """
+    if "raceway_control" not in data.get("operating", {}):
+        return ()
+    words = "operating.raceway_control: balls at rest have no gyroscopic moment;"
+    return (Warning("unused_control", f"{words} it acts at a speed alone"),)
 
 
 def check_equilibrium(

@@ -33,7 +33,12 @@ from ...numerics.labels import stated_axes
 from ...numerics.units import unit_of
 from ...numerics.warning import Warning
 from ...statics.solution import Solution
-from ..bearing.read_scene import Scene, check_equilibrium, scene_of
+from ..bearing.read_scene import (
+    Scene,
+    check_equilibrium,
+    control_warnings,
+    scene_of,
+)
 
 OPERATING = {
     **{
@@ -223,6 +228,8 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     if any(np.any(x) for x in (cases.inner_speed, cases.outer_speed) if x is not None):
         numerics = Table(data, path).table("numerics")
         check_equilibrium(numerics, scene.element, Speed(1.0, 1.0))
+    else:
+        warned += control_warnings(data)
     warned += speed_warnings(design_groups, cases)
     return CaseTable(
         scene=scene,
