@@ -26,6 +26,7 @@ from bearingjax.numerics.expansion import by_autodiff
 from bearingjax.numerics.power import positive_power
 from bearingjax.numerics.types import Scalar, as_real
 from bearingjax.numerics.units import unit
+from bearingjax.statics.warning_kinds import SOLUTION_KINDS
 
 
 class TorusRollerBearing(bj.CylindricalRollerBearing):
@@ -299,3 +300,11 @@ def test_an_element_without_unknowns_passes_through_the_same_machinery():
         for e in (reduced, full)
     )
     np.testing.assert_allclose(one.displacement, other.displacement, atol=1e-9 * 20e-6)
+
+
+def test_warnings_about_rollers_need_the_results_of_rollers():
+    kinds = {
+        name for name, kind in SOLUTION_KINDS.items() if kind.applies(ELEMENT, None)
+    }
+    assert "contact_pressure" in kinds
+    assert not kinds & {"edge_loaded", "contact_width", "contact_ellipse"}
