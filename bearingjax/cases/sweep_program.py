@@ -165,7 +165,7 @@ class Program:
     def _may_be_large(self, n):
         """Whether outputs may take too much; their shapes then cost a tracing."""
         rows = rows_of(self.element.bearing)
-        elements = sum(row.bearing.n_elements for row in rows)
+        elements = sum(row.bearing.n_places for row in rows)
         numbers = n * elements * (20 * self.task.options.points + 1000)
         return 8 * numbers > LARGEST_OUTPUTS
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from ..numerics.types import Scalar
 from ..numerics.warning import Warning
@@ -27,6 +27,8 @@ class AbstractBearing(eqx.Module):
         material: Material of the rolling elements.
         ring_material: Material of the rings; `None`: as the rolling elements.
         published: Ratings and factors that a catalogue prints for it, or `None`.
+        filled: Number of places with an element, the first ones (`with_places`);
+            `None`: all.
         noun: "ball" or "roller".
         is_thrust: Whether it is a thrust bearing between two washers.
         aligns: Whether it is a row of a self-aligning bearing, with the centre of its
@@ -53,6 +55,7 @@ class AbstractBearing(eqx.Module):
     material: eqx.AbstractVar[Material]
     ring_material: eqx.AbstractVar[Material | None]
     published: eqx.AbstractVar[PublishedRatings | None]
+    filled: eqx.AbstractVar[Int[Array, ""] | None]
     noun: eqx.AbstractClassVar[str]
     is_thrust: eqx.AbstractClassVar[bool]
     rated_fields: eqx.AbstractClassVar[tuple[str, ...]]
@@ -68,9 +71,14 @@ class AbstractBearing(eqx.Module):
         return ()
 
     @property
+    def n_elements(self) -> Any:
+        """Number of rolling elements, an `int`; an array if there are empty places."""
+        return self.n_places if self.filled is None else self.filled
+
+    @property
     @abc.abstractmethod
-    def n_elements(self) -> int:
-        """Number of rolling elements."""
+    def n_places(self) -> int:
+        """Number of places for rolling elements, the length of arrays of them."""
 
     @property
     @abc.abstractmethod

@@ -14,7 +14,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
@@ -71,6 +71,8 @@ class AbstractBallBearing(AbstractBearing):
         material: Material of the balls.
         ring_material: Material of the rings; `None`: as the balls.
         published: Ratings and factors that a catalogue prints for it, or `None`.
+        filled: Number of places with a ball, the first of `n_balls`
+            (`with_places`); `None`: all.
     """
 
     noun: ClassVar[str] = "ball"
@@ -146,10 +148,11 @@ class AbstractBallBearing(AbstractBearing):
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
     published: PublishedRatings | None = eqx.field(default=None, kw_only=True)
+    filled: Int[Array, ""] | None = eqx.field(default=None, kw_only=True)
 
     @property
-    def n_elements(self) -> int:
-        """Number of balls."""
+    def n_places(self) -> int:
+        """Number of places for balls."""
         return self.n_balls
 
     @property

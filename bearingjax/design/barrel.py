@@ -408,8 +408,8 @@ class CrossedRollerRow(AbstractRollerBearing):
         return 0.25 * self.radial_internal_clearance * jnp.cos(self.axis_angle)
 
     @property
-    def n_elements(self) -> int:
-        """Number of rollers of one orientation."""
+    def n_places(self) -> int:
+        """Number of places for rollers of one orientation."""
         return self.n_rollers // 2
 
     @property

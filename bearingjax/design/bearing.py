@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from ..numerics.types import Real, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
@@ -46,6 +46,8 @@ class AbstractRollerBearing(AbstractBearing):
         material: Material of the rollers.
         ring_material: Material of the rings; `None`: as the rollers.
         published: Ratings and factors that a catalogue prints for it, or `None`.
+        filled: Number of places with a roller, the first of `n_rollers`
+            (`with_places`); `None`: all.
         caged: Whether without ribs the cage, or a free end, bears what inertia pushes
             the rollers along their axes.
     """
@@ -114,6 +116,7 @@ class AbstractRollerBearing(AbstractBearing):
     material: Material = eqx.field(default_factory=Material, kw_only=True)
     ring_material: Material | None = eqx.field(default=None, kw_only=True)
     published: PublishedRatings | None = eqx.field(default=None, kw_only=True)
+    filled: Int[Array, ""] | None = eqx.field(default=None, kw_only=True)
 
     @property
     def axis_angle(self) -> Scalar:
@@ -193,8 +196,8 @@ class AbstractRollerBearing(AbstractBearing):
         return jnp.max(jnp.stack(plays))
 
     @property
-    def n_elements(self) -> int:
-        """Number of rollers."""
+    def n_places(self) -> int:
+        """Number of places for rollers."""
         return self.n_rollers
 
     @property
@@ -231,13 +234,13 @@ class AbstractRollerBearing(AbstractBearing):
 
     def _check_deviation(self):
         what = "the mean diameter of each roller less `roller_diameter` in m"
-        value = check_deviation(self, "roller_deviation", self.n_elements, what)
+        value = check_deviation(self, "roller_deviation", self.n_places, what)
         numbers = floats(self.roller_diameter)
         if numbers is None:
             return
         diameter = numbers[0]
-        check_spacing(self, self.n_elements, diameter)
-        check_raceways(self, self.n_elements, 0.5 * diameter)
+        check_spacing(self, self.n_places, diameter)
+        check_raceways(self, self.n_places, 0.5 * diameter)
         if value is not None:
             allowed = f"smaller in size than the roller diameter, {diameter:.6g} m"
             check(self, "roller_deviation", abs(value) < diameter, allowed)

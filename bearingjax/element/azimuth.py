@@ -22,7 +22,8 @@ def azimuths(bearing: AbstractBearing, q: Ring | None = None) -> Azimuth:
         q: Ring freedoms, of which both gz turn the elements [m, rad]; `None`: none.
     """
     deviation = deviation_of(bearing).azimuth
-    found = even_azimuths(bearing.first_azimuth, bearing.n_elements)
+    count, places = bearing.n_elements, bearing.n_places
+    found = even_azimuths(bearing.first_azimuth, count, places)
     if deviation is not None:
         found = found + deviation
     return found if q is None else found + turn(orbit_ratio(bearing), q)

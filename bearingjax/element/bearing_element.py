@@ -437,8 +437,17 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             place = RowPlacement(
                 *((none, sign, none) if itself else (position, sign, offset))
             )
-        radius = 0.5 * bearing.pitch_diameter
-        azimuth, ratio = azimuths(bearing), orbit_ratio(bearing)
+        absent = None
+        if bearing.filled is not None:
+            absent = jnp.arange(bearing.n_places, dtype=jnp.int32) >= bearing.filled
         return Row(
-            element, azimuth, shift, ratio, radius, place, part.spring, per_element
+            element=element,
+            azimuth=azimuths(bearing),
+            shift=shift,
+            ratio=orbit_ratio(bearing),
+            pitch_radius=0.5 * bearing.pitch_diameter,
+            place=place,
+            spring=part.spring,
+            absent=absent,
+            per_element=per_element,
         )

@@ -6,6 +6,7 @@ them, it is an energy of the ring motions alone.
 """
 
 import dataclasses
+from functools import partial
 from typing import Annotated, Any, NamedTuple
 
 import jax
@@ -89,6 +90,7 @@ def solve_element(
     magnitude: Scalar,
     minimiser: AbstractMinimiser,
     near: ElementStart | None = None,
+    absent: Bool[Array, ""] | None = None,
 ) -> tuple[LocalState, Expansion]:
     """Equilibrium of one rolling element in its own unknowns.
 
@@ -99,6 +101,8 @@ def solve_element(
             the round-off floor of the residual [m].
         minimiser: Local solver.
         near: Its state at rings near by; `None`: not known.
+        absent: Whether there is none in its place, where nothing is solved and nothing
+            carries load; `None`: there is.
 
     Returns:
         Its state, without derivatives (`own_unknowns` attaches them), and its
@@ -121,8 +125,12 @@ def solve_element(
     frozen = stop_gradient((element, rings, magnitude, near))
     if element.n_unknowns == 0:
         state = _without_unknowns(*frozen[:2])
-        return state, condense(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
-    given = _prepare(*frozen)
+        found = condense(frozen[1], SolvedElement(frozen[0], state, frozen[2]))
+        if absent is None:
+            return state, found
+        nothing = unloaded_result(frozen[1], state.x, state.contact_response)
+        return jax.tree.map(partial(jnp.where, absent), nothing, (state, found))
+    given = _prepare(*frozen, absent)
     contacts = jax.eval_shape(response, element, rings, given.start)
     loop = _loop(minimiser, contacts, given.is_open is not None)
     return batched_loop.run(loop, given, *element.hints.slots)
@@ -274,7 +282,7 @@ class _Inputs(NamedTuple):
     is_open: Bool[Array, ""] | None
 
 
-def _prepare(element, rings, magnitude, near) -> _Inputs:
+def _prepare(element, rings, magnitude, near, absent) -> _Inputs:
     hints, motions = element.hints, ring_motions(element, rings)
     start, centre = hints.start(motions), hints.midpoint(motions)
     if near is not None:
@@ -284,6 +292,8 @@ def _prepare(element, rings, magnitude, near) -> _Inputs:
         place, apart = rest
         start = jnp.where(apart, place, start)
     is_open = hints.is_open(motions)
+    if absent is not None:
+        is_open = absent if is_open is None else absent | is_open
     if is_open is not None:
         start = jnp.where(is_open, centre, start)
     radius = hints.reach(motions) + hints.gap + 1e-6 * element.diameter

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Scalar
+from ..numerics.types import Count, Scalar
 
 FREEDOMS = name_axis("freedom", ("ux", "uy", "uz", "gx", "gy", "gz"))
 LOADS = name_axis("component", ("Fx", "Fy", "Fz", "Mx", "My", "Mz"))
@@ -170,11 +170,16 @@ def rotation(
     return -0.5 * pitch_diameter / diameter * (1.0 - ratio**2) * (inner - outer)
 
 
-def even_azimuths(first: Scalar, count: int) -> Float[Array, " element"]:
+def even_azimuths(
+    first: Scalar, count: int | Count, places: int
+) -> Float[Array, " element"]:
     """Azimuths of evenly spaced rolling elements [rad].
 
     Args:
         first: Azimuth of element 0 [rad].
         count: Number of elements.
+        places: Number of azimuths; those beyond `count` go round again.
     """
-    return first + 2.0 * jnp.pi / count * jnp.arange(count, dtype=first.dtype)
+    if not isinstance(count, int):
+        count = count.astype(first.dtype)
+    return first + 2.0 * jnp.pi / count * jnp.arange(places, dtype=first.dtype)

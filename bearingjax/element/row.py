@@ -6,7 +6,7 @@ from typing import Annotated, Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from ..design import PreloadSpring
 from ..numerics.expansion import Expansion, expand
@@ -59,6 +59,7 @@ class Row(eqx.Module):
         pitch_radius: Radius of the circle of their centres [m].
         place: Its place in a set; `None`: the row is the bearing.
         spring: Preload spring, or `None`.
+        absent: Whether the place of each element is empty; `None`: none is.
         per_element: Whether `element` has a leading axis. Static.
     """
 
@@ -69,6 +70,7 @@ class Row(eqx.Module):
     pitch_radius: Scalar
     place: RowPlacement | None
     spring: PreloadSpring | None
+    absent: Bool[Array, " element"] | None
     per_element: bool = eqx.field(static=True)
 
     def map(self, function: Callable, *arrays: Any) -> Any:
@@ -83,6 +85,13 @@ class Row(eqx.Module):
             return function(self.element)
         axes = (0 if self.per_element else None,) + (0,) * len(arrays)
         return jax.vmap(function, in_axes=axes)(self.element, *arrays)
+
+    def where_present(self, values: Float[Array, "element ..."]) -> Array:
+        """Values of the elements (element, …), zero in empty places."""
+        if self.absent is None:
+            return values
+        absent = self.absent.reshape(-1, *[1] * (values.ndim - 1))
+        return jnp.where(absent, 0.0, values)
 
     def turn(self, q: Ring) -> Scalar:
         """Orbit angle of the elements when the rings turn by their gz [rad].
@@ -124,12 +133,12 @@ class Row(eqx.Module):
         magnitude = magnitude + self.pitch_radius * jnp.max(jnp.abs(tilt))
         rings = self.in_element_axes(local, azimuth)
 
-        def solve_one(element, rings, *near):
-            found = solve_element(element, rings, magnitude, minimiser, *near)
+        def solve_one(element, rings, given):
+            near, absent = given
+            found = solve_element(element, rings, magnitude, minimiser, near, absent)
             return *found, magnitude
 
-        starts = () if near is None else (near,)
-        state, energies, magnitudes = self.map(solve_one, rings, *starts)
+        state, energies, magnitudes = self.map(solve_one, rings, (near, self.absent))
         return SolvedRow(rings, magnitudes, state, energies)
 
     def _solve_with_spring(self, spring, local, azimuth, minimiser, near) -> SolvedRow:
@@ -188,7 +197,8 @@ class Row(eqx.Module):
         def energy(solved_element, rings, energies):
             return expand(condense, rings, solved_element, energies)
 
-        return jnp.sum(solved.map(self, energy, self.in_element_axes(local, azimuth)))
+        found = solved.map(self, energy, self.in_element_axes(local, azimuth))
+        return jnp.sum(self.where_present(found))
 
     def energy(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> Scalar:
         """Energy of the row as a function of the ring freedoms, solved there [J].

@@ -131,6 +131,7 @@ class RowResults(NamedTuple):
         parts = self.map(lambda element, rings, x: element.inertia(rings, x))
         if parts is None:
             return None
+        parts = self.row.where_present(parts)
         section = jax.vmap(section_matrix)(self.azimuth)
         total = jnp.einsum("lai,la->i", section, parts)
         place = self.row.place

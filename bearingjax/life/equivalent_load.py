@@ -243,7 +243,7 @@ def _pairs(*pairs) -> Array:
 
 def _pressure(row, axial):
     """Axial load over n D² of balls [MPa]."""
-    return 1e-6 * axial / (row.n_balls * row.ball_diameter**2)
+    return 1e-6 * axial / (row.n_elements * row.ball_diameter**2)
 
 
 def _of_self_aligning(row, angle, double, sharing, axial):

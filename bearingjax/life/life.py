@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple, cast
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -17,7 +18,8 @@ from jaxtyping import Array, Float
 from ..design import rows_of
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
-from ..design.checks import check, floats, in_range, of_class, positive
+from ..design.checks import check, floats, in_range, is_traced, of_class, positive
+from ..design.places import element_places, has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
 from ..element.inertia import Speed
@@ -27,6 +29,7 @@ from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.types import Real, RealOrNone, Scalar
 from ..numerics.units import meaning, real, unit
+from ..statics.empty_places import solution_with_empty_places, spread_elements
 from ..statics.service_warning import turns_against_load
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from .equivalent_load import EquivalentLoad, equivalent_load, left_out
@@ -368,7 +371,21 @@ def rating_life(
                 " lamina), of the rollers of the solution."
             )
     check_alike(bearing)
-    return _life(bearing, solution, conditions, speed, lamina_load)
+    given = bearing, solution, lamina_load
+    if not any(is_traced(leaf) for leaf in jax.tree.leaves(given)):
+        # One program for all numbers of rolling elements.
+        given = _with_empty_places(*given)
+    return _life(*given, conditions, speed)
+
+
+def _with_empty_places(bearing, solution, lamina_load):
+    if has_empty_places(bearing):
+        return bearing, solution, lamina_load
+    padded = solution_with_empty_places(solution)
+    if lamina_load is not None:
+        places, sizes = element_places(solution.row_sizes)
+        lamina_load = spread_elements(lamina_load, places, sum(sizes))
+    return with_places(bearing), padded, lamina_load
 
 
 def _rows_in_words(bearing) -> str:
@@ -444,7 +461,7 @@ def _life(bearing, solution, *others) -> Life:
     return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
 
 
-def _life_of(bearing, solution, conditions, speed, lamina_load) -> Life:
+def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
     speed = solution.speed if speed is None else speed
     loads = lamina_load
     if loads is None:

@@ -573,7 +573,7 @@ def _rated_alike(one, other) -> Any:
     """Whether two bearings are rated alike, a traced flag if a number is traced."""
     if one is other:
         return True
-    if type(one) is not type(other) or one.n_elements != other.n_elements:
+    if type(one) is not type(other) or one.n_places != other.n_places:
         return False
     numbers = (jax.tree.leaves(_row(bearing)) for bearing in (one, other))
     alike: Any = True

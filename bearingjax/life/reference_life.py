@@ -181,8 +181,11 @@ def row_fatigue(
     capacities = contact_capacities(bearing, capacity, angle)
     # The volume at risk of a lamina is less than the roller's: q_c = Q_c n^(-7/9).
     x = loads * (tracks ** (7.0 / 9.0) / capacities)[None, :, None]
-    turns = positive_power(jnp.mean(positive_power(x, *kind.load), 0), *kind.spread)
-    stands = jnp.mean(positive_power(x, *kind.share), 0)
+    # Empty places carry nothing.
+    count = bearing.n_elements
+    of_turning = jnp.sum(positive_power(x, *kind.load), 0) / count
+    turns = positive_power(of_turning, *kind.spread)
+    stands = jnp.sum(positive_power(x, *kind.share), 0) / count
     share = jnp.where(turning[:, None] > 0, turns, stands)
     thrust = is_axial(bearing.is_thrust, angle)
     whole = capacity / jnp.where(thrust, *reversed(kind.reduction))

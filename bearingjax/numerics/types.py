@@ -98,3 +98,16 @@ def as_count(value: Any) -> Any:
             for the check of the field to name.
     """
     return int(value) if isinstance(value, np.integer) else value
+
+
+def with_fields(module: T, **changes: Any) -> T:
+    """Return a module with other fields, whose checks are not run anew.
+
+    Args:
+        module: Module whose fields were checked.
+        changes: Fields that are as valid.
+    """
+    new = object.__new__(type(module))
+    for name, value in {**vars(module), **changes}.items():
+        object.__setattr__(new, name, value)
+    return new

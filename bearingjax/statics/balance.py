@@ -2,10 +2,8 @@
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
-from ..element.frame import FREEDOMS
 from ..numerics.types import Ring, Scalar
 from .load_case import LoadCase
 
@@ -87,13 +85,12 @@ def balance_of(case: LoadCase, radius: Scalar) -> Balance:
         radius: Pitch radius [m].
     """
     one = jnp.ones_like(radius)
-    free = np.array([name in case.free for name in FREEDOMS], dtype=float)
     return Balance(
         case.load,
         case.given,
         case.fixed,
         scale=jnp.concatenate([jnp.tile(one, 3), jnp.tile(1.0 / radius, 3)]),
-        free=jnp.asarray(free, dtype=case.load.dtype),
+        free=case.loose,
         radius=radius,
         outer_moves=case.moving_ring == "outer",
     )

@@ -7,6 +7,7 @@ the search for the equilibrium, and the solution with its result code.
 from typing import Any, TypedDict, Unpack, overload
 
 import jax
+import numpy as np
 
 from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
 from ..design.bearing_set import pitch_radius
@@ -17,7 +18,9 @@ from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
+from ..numerics.types import as_array, with_fields
 from .balance import balance_of
+from .empty_places import with_empty_places, without_empty_places
 from .load_case import LoadCase, Vector, load_case
 from .load_result import solution_of
 from .load_search import search, search_start
@@ -123,10 +126,23 @@ def solve(
     case = load_case(element.bearing, load, support, speed=speed, start=start)
     options = SolveOptions() if options is None else options
     options = options.for_dtype(case.load.dtype)
+    if any(is_traced(leaf) for leaf in jax.tree.leaves(case)):
+        # Within a loop over cases the model is worked out once.
+        return _solve(element, element.model(speed), case, options)
+    if any(is_traced(leaf) for leaf in jax.tree.leaves(element)):
+        return _solve(element, None, case, options)
     # Called as it is, the model is worked out in the one program that is called: to
-    # start another takes half the time of a solve. Within a loop over cases, once.
-    known = any(is_traced(leaf) for leaf in jax.tree.leaves(case))
-    return _solve(element, element.model(speed) if known else None, case, options)
+    # start another takes half the time of a solve. It serves all bearings of a kind,
+    # all supports, and solves that start anywhere (NaN: from first contact).
+    begin = (
+        as_array(np.full(6, np.nan), case.load.dtype)
+        if case.start is None
+        else case.start
+    )
+    alike = with_fields(case, free=(), held=(), start=begin)
+    found = _solve(with_empty_places(element), None, alike, options)
+    found = with_fields(found, free=case.free, held=case.held)
+    return without_empty_places(found, element)
 
 
 @program(quick=True, level=1)

@@ -29,6 +29,7 @@ class LoadCase(eqx.Module):
         start: Displacement of the moving ring from which the solve starts (6,)
             [m, rad], or `None`.
         speed: Ring speeds, or `None`.
+        loose: 1 for freedoms of the moving ring that may move, else 0 (6,) [1].
         free: Freedoms of the moving ring that may move.
         held: Freedoms that a support holds: prescribed, or left out of the free ones.
         moving_ring: The ring that the load acts on.
@@ -41,6 +42,7 @@ class LoadCase(eqx.Module):
     fixed: Float[Array, "6"]
     start: Float[Array, "6"] | None
     speed: Speed | None
+    loose: Float[Array, "6"]
     free: tuple[str, ...] = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
     moving_ring: str = eqx.field(static=True)
@@ -86,6 +88,7 @@ def load_case(
         as_array(nothing if fixed is None else fixed, dtype),
         None if start is None else six_numbers("solve_load", "start", start, dtype),
         speed,
+        loose=as_array([name in free for name in FREEDOMS], dtype),
         free=free,
         held=tuple(f for f in FREEDOMS if f in support.prescribed or f in left_out),
         moving_ring=support.moving_ring,

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ..design import Material
@@ -145,8 +144,7 @@ def without_mass(element: BearingElement) -> BearingElement:
 
 def _loaded_unheld(case: LoadCase) -> Bool[Array, "6"]:
     """Loads on freedoms that are held, or that this type of bearing cannot restrain."""
-    locked = np.array([name not in case.free for name in FREEDOMS])
-    return jnp.asarray(locked) & ~(case.load == 0)
+    return (case.loose == 0) & ~(case.load == 0)
 
 
 def _outcome(

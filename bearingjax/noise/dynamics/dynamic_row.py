@@ -109,6 +109,7 @@ class DynamicRow(NamedTuple):
             pitch_radius=rows[0].pitch_radius,
             place=None,
             spring=None,
+            absent=None,
             per_element=True,
         )
         carried, own = (

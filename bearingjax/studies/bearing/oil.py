@@ -23,6 +23,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.labels import array_fields
 from ...numerics.types import as_array
 from ...report.json_output import to_json
+from ...statics.empty_places import solution_with_empty_places, take_elements
 from ...statics.solution import Solution
 from .catalogue_keys import FromCatalogue
 from .read_lubricant import LubricantKeys, describe_oil
@@ -87,7 +88,7 @@ def oil_facts(
     """
     if solution.speed is None or float(_relative_speed(solution)) == 0.0:
         return None
-    numbers = jax.tree.map(jnp.asarray, solution)
+    numbers = solution_with_empty_places(jax.tree.map(jnp.asarray, solution))
     rough = None if oil.roughness is None else as_array(oil.roughness, float)
     temperature = as_array(oil.temperature, float)
     series, diameters = None, None
@@ -97,7 +98,9 @@ def oil_facts(
         sizes = entry.bore, entry.outside_diameter
         diameters = tuple(as_array(size, float) for size in sizes)
     known = oil.supply, rough, series, diameters
-    return jax.device_get(_facts(numbers, oil.lubricant, temperature, *known))
+    facts = _facts(numbers, oil.lubricant, temperature, *known)
+    here = take_elements(facts.films, solution.element)
+    return jax.device_get(facts._replace(films=here))
 
 
 def _relative_speed(solution):

@@ -1,0 +1,93 @@
+"""Rows with more places than rolling elements, so that bearings of a kind are alike.
+
+The number of rolling elements is the length of arrays, for which programs are compiled.
+A row may therefore have places that are empty, behind its last element. What is in them
+carries nothing, moves nothing and has no results; spacing, ratings and sums are those
+of the elements that are there.
+"""
+
+import functools
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Int
+
+from ..numerics.types import with_fields
+from .abstract import AbstractBearing
+from .bearing_set import BearingSet, bearings_of
+
+PLACES = (16, 32, 64, 128)
+"""Numbers of places of a row. Larger rows keep the number of their elements."""
+
+
+def places_for(count: int) -> int:
+    """Return the least number of `PLACES` with room for so many rolling elements."""
+    return next((size for size in PLACES if size >= count), count)
+
+
+def with_places(bearing: Any, places: int | None = None) -> Any:
+    """Return a bearing whose rows have places for more rolling elements.
+
+    Args:
+        bearing: A row or a set, whose numbers may be traced.
+        places: Number of places of every row; `None`: `places_for` of its elements.
+
+    Raises:
+        ValueError: If it is less than the number of elements of a row.
+    """
+    if isinstance(bearing, BearingSet):
+        rows = tuple(
+            with_fields(row, bearing=_pad_row(row.bearing, places))
+            for row in bearing.rows
+        )
+        return with_fields(bearing, rows=rows)
+    return _pad_row(bearing, places)
+
+
+def has_empty_places(bearing: AbstractBearing | BearingSet) -> bool:
+    """Whether a row has places that may be empty. Static."""
+    return any(row.filled is not None for row in bearings_of(bearing))
+
+
+@functools.lru_cache(maxsize=512)
+def element_places(counts: tuple[int, ...]) -> tuple[np.ndarray, tuple[int, ...]]:
+    """Return where the elements of rows are among their places.
+
+    Args:
+        counts: Number of elements of each row.
+
+    Returns:
+        Indices of the elements (element,); number of places of each row.
+    """
+    sizes = tuple(map(places_for, counts))
+    begins = np.cumsum([0, *sizes[:-1]])
+    rows = zip(begins, counts, strict=True)
+    return np.concatenate([begin + np.arange(n) for begin, n in rows]), sizes
+
+
+def _pad_row(row: AbstractBearing, places: int | None) -> AbstractBearing:
+    count = row.n_places
+    size = places_for(count) if places is None else places
+    if size < count:
+        raise ValueError(
+            f"with_places: `places` is {places}; it must be at least the number of"
+            f" rolling elements, {count}."
+        )
+    number_of = f"n_{row.noun}s"
+    # Of crossed rollers it is the number of both orientations.
+    stated = getattr(row, number_of) // count
+    changes: dict[str, Any] = {number_of: size * stated}
+    for name in (f"{row.noun}_deviation", "azimuth_deviation", "raceway_deviation"):
+        value = getattr(row, name)
+        if value is not None:
+            more = ((0, size - count),) + ((0, 0),) * (value.ndim - 1)
+            changes[name] = jnp.pad(value, more)
+    if row.filled is None:
+        changes["filled"] = _as_count(count)
+    return with_fields(row, **changes)
+
+
+@functools.lru_cache(maxsize=512)
+def _as_count(count: int) -> Int[Array, ""]:
+    return jnp.asarray(np.int32(count))
