@@ -72,8 +72,10 @@ class AbstractBearing(eqx.Module):
 
     @property
     def n_elements(self) -> Any:
-        """Number of rolling elements, an `int`; an array if there are empty places."""
-        return self.n_places if self.filled is None else self.filled
+        """Number of rolling elements, an `int`; a `Scalar` if places may be empty."""
+        if self.filled is None:
+            return self.n_places
+        return self.filled.astype(self.pitch_diameter.dtype)
 
     @property
     @abc.abstractmethod

@@ -45,6 +45,19 @@ def with_places(bearing: Any, places: int | None = None) -> Any:
     return _pad_row(bearing, places)
 
 
+def without_places(bearing: Any) -> Any:
+    """Return a bearing without the places that are empty.
+
+    Args:
+        bearing: A row or a set; the numbers of elements are not traced.
+    """
+    if isinstance(bearing, BearingSet):
+        pairs = ((row, _trim_row(row.bearing)) for row in bearing.rows)
+        rows = tuple(with_fields(row, bearing=one) for row, one in pairs)
+        return with_fields(bearing, rows=rows)
+    return _trim_row(bearing)
+
+
 def has_empty_places(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether a row has places that may be empty. Static."""
     return any(row.filled is not None for row in bearings_of(bearing))
@@ -74,17 +87,30 @@ def _pad_row(row: AbstractBearing, places: int | None) -> AbstractBearing:
             f"with_places: `places` is {places}; it must be at least the number of"
             f" rolling elements, {count}."
         )
+    filled = _as_count(count) if row.filled is None else row.filled
+
+    def pad(value):
+        return jnp.pad(value, ((0, size - count),) + ((0, 0),) * (value.ndim - 1))
+
+    return _resize(row, size, pad, filled)
+
+
+def _trim_row(row: AbstractBearing) -> AbstractBearing:
+    if row.filled is None:
+        return row
+    count = int(row.filled)
+    return _resize(row, count, lambda value: value[:count], None)
+
+
+def _resize(row, size, function, filled):
+    """Return a row of so many places, its arrays of elements by a function."""
     number_of = f"n_{row.noun}s"
     # Of crossed rollers it is the number of both orientations.
-    stated = getattr(row, number_of) // count
-    changes: dict[str, Any] = {number_of: size * stated}
+    stated = getattr(row, number_of) // row.n_places
+    changes: dict[str, Any] = {number_of: size * stated, "filled": filled}
     for name in (f"{row.noun}_deviation", "azimuth_deviation", "raceway_deviation"):
-        value = getattr(row, name)
-        if value is not None:
-            more = ((0, size - count),) + ((0, 0),) * (value.ndim - 1)
-            changes[name] = jnp.pad(value, more)
-    if row.filled is None:
-        changes["filled"] = _as_count(count)
+        if (value := getattr(row, name)) is not None:
+            changes[name] = function(value)
     return with_fields(row, **changes)
 
 

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Count, Scalar
+from ..numerics.types import Scalar
 
 FREEDOMS = name_axis("freedom", ("ux", "uy", "uz", "gx", "gy", "gz"))
 LOADS = name_axis("component", ("Fx", "Fy", "Fz", "Mx", "My", "Mz"))
@@ -171,7 +171,7 @@ def rotation(
 
 
 def even_azimuths(
-    first: Scalar, count: int | Count, places: int
+    first: Scalar, count: Scalar | int, places: int
 ) -> Float[Array, " element"]:
     """Azimuths of evenly spaced rolling elements [rad].
 
@@ -180,6 +180,4 @@ def even_azimuths(
         count: Number of elements.
         places: Number of azimuths; those beyond `count` go round again.
     """
-    if not isinstance(count, int):
-        count = count.astype(first.dtype)
     return first + 2.0 * jnp.pi / count * jnp.arange(places, dtype=first.dtype)

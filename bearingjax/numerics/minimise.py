@@ -312,6 +312,17 @@ class TrustRegionNewton(AbstractMinimiser):
         return first_state(problem, jnp.eye(n, dtype=dtype), reach)
 
     def step(self, problem: Problem, state: State) -> State | Either:
+        p = self.propose(problem, state)
+        there = problem.evaluate(state.x + p, True, state.now.memory)
+        return self.judge(problem, state, p, there)
+
+    def propose(self, problem: Problem, state: State) -> Float[Array, " n"]:
+        """Return the step of x to the point that `judge` asks for (n,).
+
+        Args:
+            problem: Its function is not called.
+            state: As in `step`.
+        """
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         n, first = state.x.shape[0], state.steps < 0
         now = problem.with_force(state.x, state.now)
@@ -321,15 +332,31 @@ class TrustRegionNewton(AbstractMinimiser):
         p = -solve(shifted, now.gradient, self.symmetric)
         # An indefinite Hessian (finite kinematics) may still give a long step.
         p = p * jnp.minimum(1.0, state.radius / jnp.maximum(norm(p), tiny))
+        if problem.direction is not None:
+            p = jnp.where(state.own > 0, state.own * problem.direction, p)
+        if problem.shape is not None:
+            p = problem.shape(state.x, p, size)
+        return jnp.where(first, 0.0, p)
+
+    def judge(
+        self, problem: Problem, state: State, p: Float[Array, " n"], there: Evaluation
+    ) -> Either:
+        """Return the state after a step that was proposed.
+
+        Args:
+            problem: Its function is not called.
+            state: As in `step`.
+            p: Step of `propose` (n,).
+            there: The function at its end.
+        """
+        eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
+        first = state.steps < 0
+        now = problem.with_force(state.x, state.now)
+        size = norm(now.gradient)
         searching, reach = jnp.asarray(False), state.own
         if problem.direction is not None:
             searching = reach > 0
-            p = jnp.where(searching, reach * problem.direction, p)
-        if problem.shape is not None:
-            p = problem.shape(state.x, p, size)
-        p = jnp.where(first, 0.0, p)
         length, x = norm(p), state.x + p
-        there = problem.evaluate(x, True, now.memory)
         new = problem.with_force(x, there)
         slope = dot(now.gradient, p)
         predicted = slope + 0.5 * quadratic(now.hessian, p)

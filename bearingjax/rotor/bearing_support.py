@@ -12,12 +12,15 @@ from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import meaning, unit
+from ..statics.load_result import solution_at
+from ..statics.options import SolveOptions
 from ..statics.warning_sizes import stiffness_scale
 from .parts import (
     DAMPING_UNITS,
     AbstractSupport,
     Five,
     Housing,
+    Responded,
     check_support,
     square_matrix,
 )
@@ -139,6 +142,26 @@ class BearingSupport(AbstractSupport):
         solved = jnp.where(found.result == Result.CONVERGED, 1.0, jnp.nan)
         stiffness = sense[:, None] * found.stiffness[_INNER, _INNER] * sense[None, :]
         return sense * found.force[_INNER] * solved, stiffness * solved, self.damping
+
+    def respond_alone(self, motion: np.ndarray, speed: Speed | None) -> Responded:
+        """Return `respond` of known numbers by the program of a kind of bearing.
+
+        Args:
+            motion: Motion of the station (5,) [m, rad].
+            speed: Speed of its shaft [rad/s]; `None`: at rest.
+        """
+        sense = np.where(self.turned, _TURNED, 1.0)
+        rings = np.zeros(2 * _N_RING)
+        rings[_INNER] = np.asarray(self.offset) + sense * motion
+        turning = None if speed is None else Speed(inner=sense[2] * speed)
+        points = SolveOptions().points
+        given = self.element, as_real(rings), turning, points, self.inertia
+        found = solution_at(*given, no_load=_NO_LOAD)
+        force, stiffness = np.asarray(found.force), np.asarray(found.stiffness)
+        solved = 1.0 if int(found.result) == Result.CONVERGED else np.nan
+        stiffness = sense[:, None] * stiffness[_INNER, _INNER] * sense
+        damping = np.asarray(self.damping)
+        return sense * force[_INNER] * solved, stiffness * solved, damping
 
     def _sense(self, dtype):
         """Return signs of a motion (5,) and of the speed if the bearing is turned."""

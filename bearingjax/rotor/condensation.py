@@ -59,7 +59,7 @@ class CondensedRotor(eqx.Module):
 
     def zeros(self) -> Supported:
         """Return zeros of the shapes of `of_supports`."""
-        n, none = len(self.supports), jnp.zeros_like(self.force[0])
+        n, none = self.rows.shape[0], jnp.zeros_like(self.force[0])
         matrices = jnp.tile(none, (n, N_STATION, N_STATION))
         return matrices[:, 0], matrices, matrices
 

@@ -12,12 +12,15 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, instance, is_traced, non_negative, of_shape, positive
 from ..design.material import Material
+from ..numerics.compiled.programs import program
 from ..numerics.types import Real, Scalar, as_count, as_real
 from ..numerics.units import real, unit
 from ..numerics.warning import Warning
 
 Five = Float[Array, "5"]
 """Along (ux uy uz gx gy) of a station: a motion, its rate, or a force."""
+Responded = tuple[Any, Any, Any]
+"""Force (5,), stiffness and damping (5, 5) of a support."""
 _FLAT = 2.0 * (1.0 + 1e-6)
 """Polar over diametral moment of inertia of a flat disc, with round-off [1]."""
 STIFFNESS_UNITS = (
@@ -245,9 +248,7 @@ class AbstractSupport(eqx.Module):
             angle: By which the rotor has turned, from x towards y [rad].
         """
 
-    def respond(
-        self, motion: Five, speed: Scalar
-    ) -> tuple[Five, Float[Array, "5 5"], Float[Array, "5 5"]]:
+    def respond(self, motion: Five, speed: Scalar) -> Responded:
         """Force (5,), stiffness and damping (5, 5) at a motion and a speed, at rest.
 
         Args:
@@ -262,6 +263,15 @@ class AbstractSupport(eqx.Module):
         slopes, force = jax.jacfwd(with_value, (0, 1), has_aux=True)(motion, rest)
         return force, *slopes
 
+    def respond_alone(self, motion: np.ndarray, speed: Any) -> Responded:
+        """Return `respond` of known numbers, by a program of its kind of support.
+
+        Args:
+            motion: As `force`, in NumPy.
+            speed: As `force`; `None`: at rest.
+        """
+        return _respond(self, motion, np.zeros(()) if speed is None else speed)
+
     def linearise(
         self, motion: Five, speed: Scalar
     ) -> tuple[Float[Array, "5 5"], Float[Array, "5 5"]]:
@@ -275,6 +285,11 @@ class AbstractSupport(eqx.Module):
     def without_place(self) -> "AbstractSupport":
         """Return a copy on station 0 and ground; like supports then compare equal."""
         return dataclasses.replace(self, station=0, housing=None)
+
+
+@program(quick=True)
+def _respond(support, motion, speed):
+    return support.respond(motion, speed)
 
 
 class LinearSupport(AbstractSupport):

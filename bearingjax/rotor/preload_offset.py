@@ -1,17 +1,30 @@
 """Axial preload of a bearing on a shaft, by force."""
 
+import jax
 import jax.numpy as jnp
+import numpy as np
 
-from ..design.checks import positive
+from ..design.bearing_set import bearings_of
+from ..design.checks import is_traced, positive
 from ..element.bearing_element import BearingElement, check_element
+from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
 from ..statics.load import solve_load
+from ..statics.load_result import solution_at
+from ..statics.options import SolveOptions
 from ..statics.support import Support
+from .condensation import CondensedRotor
+from .rotor import N_STATION
+from .statics import search_by_parts
 
 
 def preload_offset(
-    element: BearingElement, force: Scalar | float, *, throw: bool = True
+    element: BearingElement,
+    force: Scalar | float,
+    *,
+    throw: bool = True,
+    inertia: bool | None = None,
 ) -> Scalar:
     """Return the axial displacement of the inner ring of one bearing under a force [m].
 
@@ -24,6 +37,8 @@ def preload_offset(
         force: Along +z on the inner ring [N].
         throw: Raise if the bearing does not hold the force; otherwise the displacement
             is NaN. Static.
+        inertia: Whether the solves that follow feel a speed, whose program is then
+            taken at rest; `None`: they have none. It changes no result. Static.
 
     Returns:
         Displacement along z, differentiable with respect to design and force.
@@ -34,7 +49,41 @@ def preload_offset(
     check_element("preload_offset", element)
     pushing = as_real(force)
     positive("preload_offset", "force", pushing, "N")
+    if not any(map(is_traced, jax.tree.leaves((element, pushing)))):
+        moved = _search(element, pushing, inertia)
+        if moved is not None:
+            return moved
     load = jnp.zeros(6, pushing.dtype).at[2].set(pushing)
     found = solve_load(element, load, support=Support(free=["uz"]), throw=throw)
     held = found.result == Result.CONVERGED
     return jnp.where(held, found.displacement[8], jnp.nan)
+
+
+def _search(element, pushing, inertia) -> Scalar | None:
+    """Return the displacement by calls of the program of a kind of bearing, or `None`
+    if that finds none."""
+    still = None if inertia is None else Speed(0.0, 0.0)
+    points = SolveOptions().points
+
+    def respond(motion):
+        rings = as_real(np.append(np.zeros(6), [*motion, 0.0]))
+        found = solution_at(element, rings, still, points, bool(inertia))
+        held = 1.0 if int(found.result) == Result.CONVERGED else np.nan
+        force, stiffness = np.asarray(found.force), np.asarray(found.stiffness)
+        along = slice(6, 6 + N_STATION)
+        return force[along] * held, stiffness[along, along], np.zeros((N_STATION,) * 2)
+
+    rows = np.zeros((1, N_STATION, 1))
+    rows[0, 2] = 1.0
+    parts = CondensedRotor(
+        stiffness=as_real(np.zeros((1, 1))),
+        force=as_real(np.reshape(pushing, 1)),
+        rows=as_real(rows),
+        back=as_real(np.eye(1)),
+        there=as_real(np.zeros(1)),
+        supports=(),
+        speed=as_real(0.0),
+    )
+    radii = [0.5 * float(row.pitch_diameter) for row in bearings_of(element.bearing)]
+    found = search_by_parts(parts, as_real(8.0 * max(radii)), [respond])
+    return found.x[0] if found.result == Result.CONVERGED else None

@@ -6,28 +6,43 @@ judged by forces, because supports need not have a potential.
 """
 
 import dataclasses
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import number, of_class
+from ..design.checks import is_traced, number, of_class
 from ..element.frame import LOAD_UNITS
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, recall, stop_gradient, unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.lapack import eigh
 from ..numerics.linear import solve
-from ..numerics.minimise import Evaluation, Minimum, TrustRegionNewton
+from ..numerics.minimise import (
+    Evaluation,
+    Minimum,
+    Problem,
+    TrustRegionNewton,
+)
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, as_real, with_fields
 from ..numerics.units import unit, units
 from ..numerics.warning import Warning
+from .bearing_support import BearingSupport
 from .condensation import CondensedRotor, Supported, condense
 from .loads import Motions, RotorLoads
-from .parts import DAMPING_UNITS, STIFFNESS_UNITS, LinearSupport
+from .parts import (
+    DAMPING_UNITS,
+    STIFFNESS_UNITS,
+    AbstractSupport,
+    LinearSupport,
+    Responded,
+)
 from .rotor import N_HOUSING, N_STATION, Rotor
 from .shaft import STATION_UNITS
 from .statics_words import describe_failure, equilibrium_warnings
@@ -41,6 +56,7 @@ _FREE = 1e-9
 _SOLVER = TrustRegionNewton(
     tolerance=1e-11, max_steps=200, symmetric=False, softest=0.03
 )
+"""Solver of the balance, the same whether supports are parts of its program or not."""
 
 
 class StaticEquilibrium(eqx.Module):
@@ -169,30 +185,26 @@ def search_equilibrium(parts: CondensedRotor, length: Scalar | float) -> Minimum
         parts: Condensed rotor, or several.
         length: Limit of the displacements [m].
     """
-    load = parts.force
-    size = jnp.linalg.norm(load)
-    # Without load what is left is round-off of the forces inside the bearings.
-    idle = jnp.where(size > 0, 0.0, _NOTHING).astype(load.dtype)
 
     def function(y, _, __):
-        supported = parts.of_supports(y)
-        slope = parts.slope(supported[1])
-        left = parts.out_of_balance(y, supported[0])
-        # The forces of the supports cancel, where they preload each other.
-        along = jnp.einsum("sim,si->sm", parts.rows, supported[0])
-        cancels = jnp.sum(jnp.linalg.norm(along, axis=1))
-        softness = jnp.trace(slope) * jnp.linalg.norm(y)
-        return Evaluation(
-            value=jnp.full_like(cancels, jnp.nan),
-            gradient=left + load,
-            hessian=slope,
-            scale=cancels,
-            noise=jnp.finfo(y.dtype).eps * (cancels + softness) + idle,
-            memory=supported,
-        )
+        return _evaluation(parts, y, parts.of_supports(y))
 
-    return _SOLVER.minimise(
-        function,
+    return _SOLVER.loop().run(_search_problem(parts, length, function))
+
+
+def _search_problem(
+    parts: CondensedRotor, length: Scalar | float, function: Callable | None = None
+) -> Problem:
+    """Return the problem that `_SOLVER` solves in the search of an equilibrium.
+
+    Args:
+        parts, length: As in `search_equilibrium`.
+        function: From the motions to an `Evaluation`; `None`: it is not called.
+    """
+    load = parts.force
+    size = jnp.linalg.norm(load)
+    return Problem(
+        function or _unknown,
         jnp.zeros_like(load),
         jnp.asarray(_FIRST_STEP, load.dtype),
         memory=parts.zeros(),
@@ -200,6 +212,77 @@ def search_equilibrium(parts: CondensedRotor, length: Scalar | float) -> Minimum
         limit=length,
         force=load,
     )
+
+
+def _unknown(*_) -> Evaluation:
+    raise AssertionError("supports are evaluated between the steps")
+
+
+def _evaluation(parts: CondensedRotor, y: Array, supported: Supported) -> Evaluation:
+    """Return the function of the search at motions at which supports are known."""
+    load = parts.force
+    # Without load what is left is round-off of the forces inside the bearings.
+    idle = jnp.where(jnp.linalg.norm(load) > 0, 0.0, _NOTHING).astype(load.dtype)
+    slope = parts.slope(supported[1])
+    left = parts.out_of_balance(y, supported[0])
+    # The forces of the supports cancel, where they preload each other.
+    along = jnp.einsum("sim,si->sm", parts.rows, supported[0])
+    cancels = jnp.sum(jnp.linalg.norm(along, axis=1))
+    softness = jnp.trace(slope) * jnp.linalg.norm(y)
+    return Evaluation(
+        value=jnp.full_like(cancels, jnp.nan),
+        gradient=left + load,
+        hessian=slope,
+        scale=cancels,
+        noise=jnp.finfo(y.dtype).eps * (cancels + softness) + idle,
+        memory=supported,
+    )
+
+
+def search_by_parts(
+    parts: CondensedRotor,
+    length: Scalar,
+    supports: Sequence[Callable[[np.ndarray], Responded]],
+) -> Minimum:
+    """Search as `search_equilibrium`, with a call of a program for each support.
+
+    The program of a bearing is by far the largest. Called alone it is that of a kind of
+    bearing, which all machines share; what is left to those of a machine is small.
+
+    Args:
+        parts: Condensed rotor, or several; its own supports are not looked at.
+        length: Limit of the displacements [m].
+        supports: Force, stiffness and damping of each support at its motion (5,).
+    """
+    parts = with_fields(parts, supports=())
+    state = _begin(parts, length)
+    moved: Any = np.zeros((len(supports), N_STATION), parts.force.dtype)
+    found, ended = None, False
+    while not ended:
+        pairs = zip(supports, np.asarray(moved), strict=True)
+        known = zip(*(respond(at) for respond, at in pairs), strict=True)
+        supported = tuple(np.stack(one) for one in known)
+        state, moved, found, ended = _advance(parts, length, state, supported)
+    assert found is not None  # the first step does not end it
+    return found
+
+
+@program(quick=True)
+def _begin(parts, length):
+    return _SOLVER.init(_search_problem(parts, length))
+
+
+@program(quick=True)
+def _advance(parts, length, state, supported):
+    """Return the state after a step, where it asks for supports, the end if it is."""
+    problem = _search_problem(parts, length)
+    step = _SOLVER.propose(problem, state)
+    there = _evaluation(parts, state.x + step, supported)
+    either = _SOLVER.judge(problem, state, step, there)
+    state = jax.tree.map(partial(jnp.where, either.flag), either.yes, either.no)
+    following = state.x + _SOLVER.propose(problem, state)
+    found, ended = _SOLVER.finish(problem, state), _SOLVER.terminate(problem, state)
+    return state, parts.rows @ following, found, ended
 
 
 def _balance(y, parts):
@@ -219,37 +302,83 @@ def at_equilibrium(found: Minimum, parts: CondensedRotor) -> tuple[Array, *Suppo
         found: From `search_equilibrium`.
         parts: Condensed rotor, or several.
     """
-    solved = found.result == Result.CONVERGED
     y = attach_by(_balance, found.x, parts, _correction)
-    known = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), found.memory)
-    states = recall(lambda parts, y: parts.of_supports(y), known, (parts, y))
+    _, *known = known_at(found)
+    states = recall(lambda parts, y: parts.of_supports(y), tuple(known), (parts, y))
+    solved = found.result == Result.CONVERGED
     return jnp.where(solved, y, jnp.nan), *states
 
 
-@program(quick=True)
+def known_at(found: Minimum) -> tuple[Array, *Supported]:
+    """Return what `at_equilibrium` does, without derivatives.
+
+    Args:
+        found: From a search.
+    """
+    solved = found.result == Result.CONVERGED
+    known = found.x, *found.memory
+    return jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), known)
+
+
 def equilibrium_at(
     rotor: Rotor, loads: RotorLoads, speed: Any
 ) -> tuple[StaticEquilibrium, Float[Array, " motion"]]:
     """Return the result, and the end point of the search even if it failed (motion,).
 
+    A rotor of known numbers is solved with a call of a program for each support; one
+    that is traced is one program, which has derivatives.
+
     Args:
         rotor, loads, speed: As in `static_equilibrium`, checked.
     """
+    if any(map(is_traced, jax.tree.leaves((rotor, loads, speed)))):
+        return _equilibrium_in_one(rotor, loads, speed)
+    bare = with_fields(rotor, supports=tuple(map(_without_spring, rotor.supports)))
+    parts, length = _assemble(bare, loads, speed)
+    respond = []
+    for support in rotor.supports:
+        resting = isinstance(support, BearingSupport) and not support.inertia
+        at = None if resting else speed
+        respond.append(partial(support.without_place().respond_alone, speed=at))
+    return _describe(bare, parts, search_by_parts(parts, length, respond), speed)
+
+
+def _without_spring(support: AbstractSupport) -> LinearSupport:
+    """Return a support that holds the place of another one."""
+    zero = as_real(np.zeros((N_STATION, N_STATION)))
+    return LinearSupport(support.station, zero, zero, housing=support.housing)
+
+
+@program(quick=True)
+def _assemble(rotor, loads, speed):
+    length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
+    return condense(rotor, loads.constant(rotor), speed), length
+
+
+@program(quick=True)
+def _describe(rotor, parts, found, speed):
+    known = known_at(found)
+    return _state_at(found, known, rotor, parts, speed), parts.motion(found.x)
+
+
+@program(quick=True)
+def _equilibrium_in_one(rotor, loads, speed):
     parts = condense(rotor, loads.constant(rotor), speed)
     length = rotor.shaft.stations[-1] - rotor.shaft.stations[0]
     found = search_equilibrium(stop_gradient(parts), stop_gradient(length))
     solved = found.result == Result.CONVERGED
 
-    def recompute(*given):
-        return _equilibrium(found, *given)
+    def recompute(rotor, parts, speed):
+        at = at_equilibrium(found, parts)
+        return _state_at(found, at, rotor, parts, speed)
 
     equilibrium = unless_failed(recompute, (rotor, parts, speed), solved)
     return equilibrium, stop_gradient(parts).motion(found.x)
 
 
-def _equilibrium(found, rotor, parts, speed) -> StaticEquilibrium:
-    """Return the result of the search with derivatives; NaN if it failed."""
-    y, load, stiffness, damping = at_equilibrium(found, parts)
+def _state_at(found, at, rotor, parts, speed) -> StaticEquilibrium:
+    """Return the result of a search, from `at_equilibrium`."""
+    y, load, stiffness, damping = at
     motion = parts.motion(y)
     springs = [
         LinearSupport(support.station, k, c, housing=support.housing)

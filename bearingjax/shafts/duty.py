@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int
 
 from ..cases.cases import check_hours
 from ..design import rows_of
+from ..design.checks import is_traced
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
 from ..life.life import LifeConditions, rating_life
@@ -32,6 +33,9 @@ from .system import ShaftSystem, feel_speed
 
 BATCH = 64
 """Cases that are solved side by side."""
+FEW = 32
+"""Cases up to which each is solved alone, by the programs of a kind of bearing: the one
+of many cases takes longer to compile than these to run."""
 _NEWTON = 40
 """Steps of Newton's method for the life of a system, which is convex: 8 suffice."""
 
@@ -211,6 +215,9 @@ def _map(function: Any, given: Sequence[Any], *static: Any) -> Any:
     if all(v is None for v in varying):
         once = jax.device_get(function(given[0], *static))
         return jax.tree.map(lambda x: np.stack([x] * len(given)), once)
+    if len(given) <= FEW:
+        each = [jax.device_get(function(one, *static)) for one in given]
+        return jax.tree.map(lambda *values: np.stack(values), *each)
     both = _map_cases(function, varying, shared, trees[0], static)
     return jax.device_get(both)
 
@@ -231,10 +238,12 @@ def state_of(system: ShaftSystem) -> dict[str, Any]:
         system: From `with_preload_offsets`.
     """
     found, _ = system_state(system)
+    if not any(map(is_traced, jax.tree.leaves(found))):
+        found = jax.device_get(found)
     names = "load displacement misalignment motion result".split()
     kept = {name: getattr(found, name) for name in names}
     left, most = torques_left(found.power)
-    left = jnp.zeros_like(most) if left is None else left
+    left = 0.0 * most if left is None else left
     more = {"loss": found.power.loss, "left": left, "most": most}
     return {**kept, "speed": found.power.speed, **more}
 
@@ -243,9 +252,10 @@ def _rate(
     given: Any, inertia: bool | None
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
-    return bearing_results(
-        in_place(installed, motion, speed, inertia, 101), speed, conditions
-    )
+    solution = in_place(installed, motion, speed, inertia, 101)
+    if not any(map(is_traced, jax.tree.leaves(solution))):
+        solution = jax.device_get(solution)
+    return bearing_results(solution, speed, conditions)
 
 
 def bearing_results(
@@ -259,10 +269,12 @@ def bearing_results(
         conditions: Life conditions of the bearing.
     """
     life = rating_life(solution.element, solution, conditions, speed=speed)
+    if isinstance(solution.result, np.ndarray):
+        life = jax.device_get(life)
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}
     doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))
-    return jnp.max(solution.roller_pressure), lives, sizes(solution) | doubts
+    return solution.roller_pressure.max(), lives, sizes(solution) | doubts
 
 
 def bearing_hours(

@@ -5,8 +5,10 @@ housing, and the travel of floating outer rings are the unknowns of one balance,
 as that of a single rotor.
 """
 
-from typing import Any
+from functools import partial
+from typing import Annotated, Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import jax.scipy as jsp
 import numpy as np
@@ -16,15 +18,21 @@ from ..design.checks import is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar
-from ..rotor import Rotor
+from ..numerics.types import Scalar, array_namespace, with_fields
+from ..numerics.units import unit
+from ..rotor import LinearSupport, Rotor
 from ..rotor.condensation import CondensedRotor, condense
 from ..rotor.loads import acceleration_load
 from ..rotor.rotor import N_STATION
-from ..rotor.statics import search_equilibrium
+from ..rotor.statics import (
+    at_equilibrium,
+    known_at,
+    search_by_parts,
+    search_equilibrium,
+)
 from ..statics.support import axial_senses
 from .power import PowerFlow, power_flow
-from .seats import supports_of, with_preload_offsets
+from .seats import axial_growth, offset_of, supports_of, with_preload_offsets
 from .state import SystemSolution, describe_state, moving_part
 from .system import ShaftSystem
 
@@ -75,7 +83,10 @@ def searched_system(
         ValueError, SolveError: As `solve_system`, but for a failed search.
     """
     found, place = system_state(with_preload_offsets(system))
-    check_torques(system, found.power.output_shaft, *torques_left(found.power))
+    power = found.power
+    if not is_traced(found.result):
+        power = jax.device_get(power)
+    check_torques(system, power.output_shaft, *torques_left(power))
     return found, place
 
 
@@ -88,10 +99,11 @@ def torques_left(power: PowerFlow) -> tuple[Any, Any]:
     Returns:
         Two torques [N m]; the first `None` if there is no such end.
     """
-    every = [jnp.abs(mesh.torque) for mesh in power.meshes]
-    every += [jnp.abs(one) for one in power.coupling]
-    none = jnp.zeros((), jnp.result_type(float))
-    return power.output, jnp.max(jnp.stack(every or [none]))
+    every = [abs(mesh.torque) for mesh in power.meshes]
+    every += [abs(one) for one in power.coupling]
+    if not every:
+        return power.output, np.zeros(())
+    return power.output, array_namespace(every[0]).stack(every).max()
 
 
 def check_torques(system: ShaftSystem, shaft: Any, left: Any, most: Any) -> None:
@@ -118,39 +130,118 @@ def check_torques(system: ShaftSystem, shaft: Any, left: Any, most: Any) -> None
         )
 
 
-@program(quick=True)
 def system_state(
     system: ShaftSystem,
 ) -> tuple[SystemSolution, Float[Array, " motion"]]:
     """Return the solution, and the end of the search even if it failed (motion,).
 
+    A system of known numbers is solved with a call of a program for each bearing, which
+    is that of its kind; one that is traced is one program, which has derivatives.
+
     Args:
         system: From `with_preload_offsets`.
     """
+    if any(map(is_traced, jax.tree.leaves(system))):
+        return _state_in_one(system)
+    bare, held = _without_bearings(system), _held_senses(system)
+    machine, length = _assemble(bare)
+    speeds = np.asarray(machine.whole.speed)
+    supports = supports_of(system, speeds, np.asarray(machine.growth))
+    known = speeds if system.inertia is not None else [None] * len(supports)
+    pairs = zip(supports, known, strict=True)
+    respond = [partial(one.respond_alone, speed=at) for one, at in pairs]
+    found = search_by_parts(machine.whole, length, respond)
+    return _describe(bare, machine, found, held)
+
+
+class _Machine(NamedTuple):
+    """A system of shafts without what its bearings are.
+
+    Attributes:
+        power: Speeds, torques, forces of the wheels.
+        rotors: Its shafts, on springs in place of bearings.
+        points: Forces of wheels and loads on the nodes of each [N, N m].
+        whole: All of it, condensed on the bearings.
+        growth: How far heat moves each inner ring along its shaft [m].
+    """
+
+    power: PowerFlow
+    rotors: list[Rotor]
+    points: list[Float[Array, "node 5"]]
+    whole: CondensedRotor
+    growth: Annotated[Float[Array, " bearing"], unit("m")]
+
+
+def _without_bearings(system: ShaftSystem) -> ShaftSystem:
+    """Return a system whose bearings are not there, but their seats."""
+
+    def empty(seat):
+        inside = seat.installed
+        if inside is None:
+            return with_fields(seat, stiffness=None)
+        bare = with_fields(inside, drawing=None, limits=None, preload=None)
+        bare = with_fields(bare, limiting_speed=None, reference_speed=None)
+        return with_fields(seat, installed=bare)
+
+    return with_fields(system, seats=tuple(map(empty, system.seats)))
+
+
+def _machine_of(system: ShaftSystem) -> _Machine:
+    """Work out a system but for its bearings; they need not be there."""
     power = power_flow(system)
     rotors, points = [], []
-    supports = supports_of(system, power)
     for index in range(len(system.shafts)):
-        here = [supports[k] for k in system.seats_on(index)]
+        here = [system.station(system.seats[k])[1] for k in system.seats_on(index)]
         line, beam = system.shafts[index], system.beam(index)
-        rotors.append(Rotor(beam, (), here, rigid=line.rigid))
+        springs = [LinearSupport(station, jnp.zeros(N_STATION)) for station in here]
+        rotors.append(Rotor(beam, (), springs, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
-    whole = _couple(system, rotors, points, power)
-    found = _name_end(
-        system,
-        search_equilibrium(stop_gradient(whole), stop_gradient(max_length(system))),
-        whole,
-    )
+    whole = with_fields(_couple(system, rotors, points, power), supports=())
+    return _Machine(power, rotors, points, whole, axial_growth(system))
+
+
+@program(quick=True)
+def _assemble(system) -> tuple[_Machine, Scalar]:
+    return _machine_of(system), max_length(system)
+
+
+@program(quick=True)
+def _describe(system, machine, found, held):
+    whole = machine.whole
+    found = _name_end(system, found, whole, held)
+    at = known_at(found)[:3]
+    return _state_at(found, at, system, machine), whole.motion(found.x)
+
+
+@program(quick=True)
+def _state_in_one(system):
+    machine = _machine_of(system)
+    supports = supports_of(system, machine.whole.speed, machine.growth)
+    machine = machine._replace(whole=with_fields(machine.whole, supports=supports))
+    whole = stop_gradient(machine.whole)
+    found = search_equilibrium(whole, stop_gradient(max_length(system)))
+    found = _name_end(system, found, whole, _held_senses(system))
+
+    def describe(system, machine) -> SystemSolution:
+        y, force, stiffness, _ = at_equilibrium(found, machine.whole)
+        return _state_at(found, (y, force, stiffness), system, machine)
+
     solved = found.result == Result.CONVERGED
+    solution = unless_failed(describe, (system, machine), solved)
+    return solution, whole.motion(found.x)
 
-    def describe(*given: Any) -> SystemSolution:
-        return describe_state(found, *given)
 
+def _state_at(found, at, system, machine) -> SystemSolution:
+    power, rotors, points, whole, growth = machine
+    offsets = [
+        jnp.zeros(N_STATION) if seat.installed is None else offset_of(seat, moved)
+        for seat, moved in zip(system.seats, growth, strict=True)
+    ]
     given = system, rotors, points, whole, power
-    return unless_failed(describe, given, solved), stop_gradient(whole).motion(found.x)
+    return describe_state(found, at, jnp.stack(offsets), *given)
 
 
-def _name_end(system, found, whole):
+def _name_end(system, found, whole, held):
     """Return the end of a search; of a shaft that slid off its bearings in a direction
     in which none holds it, `NO_LOAD_PATH` in place of `STEP_LIMIT`: the search may end
     before it is far."""
@@ -159,7 +250,7 @@ def _name_end(system, found, whole):
     for index, line in enumerate(system.shafts):
         count = N_STATION * (sum(system.plans[index].divisions) + 1)
         along, first = motion[first + 2 : first + count : N_STATION], first + count
-        for sense in {1, -1} - _held_senses(system, index):
+        for sense in {1, -1} - set(held[index]):
             slid = jnp.min(sense * along) > _SLID * jnp.sum(stop_gradient(line.length))
             away = away | slid
     away = away & (found.result == Result.STEP_LIMIT)
@@ -167,8 +258,13 @@ def _name_end(system, found, whole):
     return found._replace(result=jnp.where(away, code, found.result))
 
 
-def _held_senses(system, index) -> set[int]:
-    """Return the senses along a shaft in which a bearing holds it."""
+def _held_senses(system: ShaftSystem) -> tuple[tuple[int, ...], ...]:
+    """Return the senses along each shaft in which a bearing holds it."""
+    shafts = range(len(system.shafts))
+    return tuple(tuple(sorted(_senses_on(system, index))) for index in shafts)
+
+
+def _senses_on(system, index) -> set[int]:
     held: set[int] = set()
     for k in system.seats_on(index):
         seat = system.seats[k]

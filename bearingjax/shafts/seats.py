@@ -9,17 +9,21 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import is_traced
+from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, as_real, with_fields
 from ..rotor import BearingSupport, LinearSupport, preload_offset
 from ..rotor.rotor import N_STATION
+from ..statics.empty_places import (
+    with_empty_places,
+    without_empty_places,
+)
 from ..statics.installed import Installed
 from ..statics.load_result import solution_at
 from ..statics.solution import Solution
 from .parts import Seat
-from .power import PowerFlow
 from .state import SystemSolution
 from .system import ShaftSystem
 
@@ -50,8 +54,10 @@ def with_preload_offsets(
             if not is_traced(seat.preload):
                 key = id(seat.installed), float(seat.preload)
             if key not in known:
-                cold = _as_mounted(seat.installed)
-                known[key] = preload_offset(cold, seat.preload, throw=throw)
+                cold = as_mounted(seat.installed)
+                known[key] = preload_offset(
+                    cold, seat.preload, throw=throw, inertia=system.inertia
+                )
             seat = eqx.tree_at(
                 lambda s: (s.axial_offset, s.preload),
                 seat,
@@ -62,9 +68,19 @@ def with_preload_offsets(
     return eqx.tree_at(lambda s: s.seats, system, tuple(seats))
 
 
+def as_mounted(installed: Installed) -> BearingElement:
+    """Return the element of a bearing on its seats, at rest and in the cold.
+
+    Args:
+        installed: The bearing.
+    """
+    if any(map(is_traced, jax.tree.leaves(installed))):
+        return _as_mounted(installed)
+    return _as_mounted(_of_its_kind(installed))
+
+
 @program(quick=True)
 def _as_mounted(installed):
-    """Return the element of a bearing on its seats, at rest and in the cold."""
     cold = installed.conditions
     if cold is not None:
         cold = jax.tree.map(lambda part: part - part, cold)
@@ -75,33 +91,61 @@ def _as_mounted(installed):
 
 
 def supports_of(
-    system: ShaftSystem, power: PowerFlow
-) -> list[BearingSupport | LinearSupport]:
-    """Return each bearing as the support of its station, warm and turning.
+    system: ShaftSystem,
+    speeds: Float[Array | np.ndarray, " bearing"],
+    growth: Float[Array | np.ndarray, " bearing"],
+) -> tuple[BearingSupport | LinearSupport, ...]:
+    """Return each bearing as a support, warm and turning, without its place.
 
     Args:
-        system: The system.
-        power: Its speeds.
+        system: The system. If its numbers are known, the programs are those of all
+            bearings of a kind.
+        speeds: Speed of the shaft of each bearing [rad/s].
+        growth: From `axial_growth` [m].
     """
-    growth = axial_growth(system)
-    return [
-        _support(system, seat, power, growth[k]) for k, seat in enumerate(system.seats)
-    ]
+    found = []
+    for k, seat in enumerate(system.seats):
+        if seat.stiffness is not None:
+            found.append(_springs(seat.stiffness))
+            continue
+        assert seat.installed is not None
+        inside = seat.installed
+        bare = with_fields(seat, installed=None, name="", shaft="", turned=False)
+        if not any(map(is_traced, jax.tree.leaves((seat, speeds, growth)))):
+            inside = _of_its_kind(inside)
+        turned = jnp.asarray(np.array(seat.turned))
+        given = inside, bare, turned, growth[k], speeds[k]
+        found.append(_bearing_support(*given, bool(system.inertia)))
+    return tuple(found)
 
 
-def _support(system, seat: Seat, power, growth):
-    shaft, station = system.station(seat)
-    if seat.stiffness is not None:
-        return LinearSupport(station, seat.stiffness)
-    assert seat.installed is not None
-    speed = power.speed[shaft]
-    sign = -1.0 if seat.turned else 1.0
-    element = seat.installed.element_at(Speed(inner=sign * speed), throw=False)
-    offset = seat.axial_offset + sign * growth
-    along = jnp.zeros(N_STATION, growth.dtype).at[2].set(offset)
-    return BearingSupport(
-        station, element, along, turned=seat.turned, inertia=bool(system.inertia)
-    )
+@program(quick=True)
+def _springs(stiffness):
+    return LinearSupport(0, stiffness)
+
+
+@program(quick=True)
+def _bearing_support(installed, seat, turned, growth, speed, inertia):
+    sense = jnp.where(turned, -1.0, 1.0)
+    element = installed.element_at(Speed(inner=sense * speed), throw=False)
+    offset = offset_of(seat, growth, sense)
+    return BearingSupport(0, element, offset, turned=turned, inertia=inertia)
+
+
+def offset_of(
+    seat: Seat, growth: Scalar, sense: Scalar | float | None = None
+) -> Float[Array, "5"]:
+    """Return the displacement of an inner ring with its station at zero [m, rad].
+
+    Args:
+        seat: Seat of the bearing.
+        growth: How far heat moves the ring along the shaft [m].
+        sense: -1 if the bearing is turned round, else 1; `None`: as `seat` says.
+    """
+    if sense is None:
+        sense = -1.0 if seat.turned else 1.0
+    offset = seat.axial_offset + sense * growth
+    return jnp.zeros(N_STATION, offset.dtype).at[2].set(offset)
 
 
 def axial_growth(system: ShaftSystem) -> Float[Array, " bearing"]:
@@ -174,7 +218,6 @@ def speed_of(
     return Speed(inner=-turns if seat.turned else turns), system.inertia
 
 
-@program(quick=True)
 def in_place(
     installed: Installed,
     motion: Float[Array | np.ndarray, "5"],
@@ -191,7 +234,29 @@ def in_place(
         inertia: Whether rolling elements feel them; `None` at rest. Static.
         points: Positions along the rollers at which loads are reported. Static.
     """
-    rings = jnp.zeros(2 * _RING, motion.dtype).at[_RING : _RING + N_STATION].set(motion)
-    element = installed.element_at(speed, throw=False)
-    known = None if inertia is None else speed
-    return solution_at(element, rings, known, points, bool(inertia))
+    traced = any(map(is_traced, jax.tree.leaves((installed, motion, speed))))
+    xp: Any = jnp if traced else np
+    rest = xp.zeros(1)
+    rings = xp.concatenate([xp.zeros(_RING), motion, rest])
+    if not traced:
+        installed, rings = _of_its_kind(installed), as_real(rings)
+    element, known = _warm(installed, speed), None if inertia is None else speed
+    found = solution_at(element, rings, known, points, bool(inertia))
+    return found if traced else without_empty_places(found)
+
+
+def _of_its_kind(installed: Installed) -> Installed:
+    """Return a bearing that shares its program with all of its kind: with empty places,
+    and without what changes no solution."""
+    return with_fields(
+        installed,
+        drawing=with_empty_places(installed.drawing),
+        limits=None,
+        limiting_speed=None,
+        reference_speed=None,
+    )
+
+
+@program(quick=True)
+def _warm(installed, speed):
+    return installed.element_at(speed, throw=False)

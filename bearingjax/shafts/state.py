@@ -10,14 +10,16 @@ from jaxtyping import Array, Float, Int
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
+from ..numerics.minimise import Minimum
 from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..rotor import STATION_FREEDOMS
+from ..rotor.condensation import CondensedRotor
 from ..rotor.parts import STIFFNESS_UNITS
 from ..rotor.rotor import N_STATION
 from ..rotor.shaft import STATION_UNITS
-from ..rotor.statics import at_equilibrium, softest
+from ..rotor.statics import softest
 from .power import PowerFlow
 from .system import ShaftSystem
 
@@ -105,19 +107,29 @@ class SystemSolution(eqx.Module):
 
 
 def describe_state(
-    found: Any, system: ShaftSystem, rotors: Any, points: Any, whole: Any, power: Any
+    found: Minimum,
+    at: tuple[Array, Array, Array],
+    offsets: Float[Array, "bearing 5"],
+    system: ShaftSystem,
+    rotors: Any,
+    points: Any,
+    whole: CondensedRotor,
+    power: PowerFlow,
 ) -> SystemSolution:
     """Return the state at the end of a search, with derivatives; NaN if it failed.
 
     Args:
-        found: From `search_temperatures`.
+        found: End of the search.
+        at: Condensed motions, and force and stiffness of the bearings there, NaN if it
+            failed.
+        offsets: Displacement of each bearing with its station at zero [m, rad].
         system: The system.
         rotors: Its shafts on their bearings.
         points: Forces of wheels and loads on the nodes of each [N, N m].
-        whole: All of it, condensed on the bearings.
+        whole: All of it, condensed on the bearings; its supports are not looked at.
         power: Speeds, torques, forces of the wheels.
     """
-    y, force, stiffness, _ = at_equilibrium(found, whole)
+    y, force, stiffness = at
     motion, relative = whole.motion(y), whole.rows @ y
     shafts, tilts, first = [], [], 0
     for index, rotor in enumerate(rotors):
@@ -138,10 +150,9 @@ def describe_state(
     size = (0, 3) if housing is None else (len(housing.seats), housing.freedoms)
     seats = motion[first : first + size[0] * size[1]].reshape(size)
     in_bearing = []
-    for k, (seat, support) in enumerate(zip(system.seats, whole.supports, strict=True)):
+    for k, seat in enumerate(system.seats):
         sense = jnp.asarray(_TURNED if seat.turned else np.ones(N_STATION))
-        offset = getattr(support, "offset", 0.0)
-        in_bearing.append(offset + sense * relative[k])
+        in_bearing.append(offsets[k] + sense * relative[k])
     return SystemSolution(
         shafts=tuple(shafts),
         load=_global(system, force),

@@ -15,7 +15,12 @@ import jax
 import numpy as np
 
 from ..design.bearing_set import bearings_of
-from ..design.places import element_places, has_empty_places, with_places
+from ..design.places import (
+    element_places,
+    has_empty_places,
+    with_places,
+    without_places,
+)
 from ..element.bearing_element import BearingElement
 from ..numerics.labels import axes_of
 from ..numerics.types import with_fields
@@ -37,13 +42,19 @@ def with_empty_places(element: BearingElement) -> BearingElement:
     return with_fields(element, bearing=with_places(element.bearing))
 
 
-def without_empty_places(solution: Solution, element: BearingElement) -> Any:
+def without_empty_places(
+    solution: Solution, element: BearingElement | None = None
+) -> Any:
     """Return the solution of `with_empty_places(element)` as one of the element.
 
     Args:
         solution: Solution of one case, not traced.
-        element: The bearing as it was given.
+        element: The bearing as it was given; `None`: that of the solution without its
+            empty places.
     """
+    if element is None:
+        padded = solution.element
+        element = with_fields(padded, bearing=without_places(padded.bearing))
     if has_empty_places(element.bearing):
         return solution
     kept = take_elements(solution, element)

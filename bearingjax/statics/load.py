@@ -134,11 +134,9 @@ def solve(
     # Called as it is, the model is worked out in the one program that is called: to
     # start another takes half the time of a solve. It serves all bearings of a kind,
     # all supports, and solves that start anywhere (NaN: from first contact).
-    begin = (
-        as_array(np.full(6, np.nan), case.load.dtype)
-        if case.start is None
-        else case.start
-    )
+    begin = case.start
+    if begin is None:
+        begin = as_array(np.full(6, np.nan), case.load.dtype)
     alike = with_fields(case, free=(), held=(), start=begin)
     found = _solve(with_empty_places(element), None, alike, options)
     found = with_fields(found, free=case.free, held=case.held)

@@ -9,6 +9,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..design import Material
 from ..design.bearing_set import pitch_radius
+from ..design.checks import is_traced
 from ..element.bearing_element import BearingElement
 from ..element.bearing_model import BearingModel
 from ..element.frame import FREEDOMS
@@ -17,8 +18,9 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import Minimum
 from ..numerics.result import Result
-from ..numerics.types import Ring
+from ..numerics.types import Ring, as_array
 from .balance import Balance
+from .empty_places import with_empty_places, without_empty_places
 from .load_case import LoadCase
 from .load_search import SearchStart, differentiable_unknowns
 from .options import SolveOptions
@@ -93,15 +95,18 @@ def solution_of(
     )
 
 
-@program(quick=True)
 def solution_at(
     element: BearingElement,
     q: Ring,
     speed: Speed | None,
     points: int,
     inertia: bool = True,
+    no_load: float = 0.0,
 ) -> Solution:
     """Solution of a bearing whose rings are held where they are given.
+
+    With known numbers, of a bearing with empty places or none, the program is that of
+    all bearings of a kind.
 
     Args:
         element: The bearing.
@@ -110,12 +115,24 @@ def solution_at(
         points: Positions along the rollers at which loads are reported. Static.
         inertia: Whether rolling elements feel the speed; if not, balls orbit and spin
             as at the speed, without centrifugal force and gyroscopic moment. Static.
+        no_load: Load over E* D that counts as none for idle rolling elements [m].
     """
+    small = as_array(no_load, q.dtype)
+    if any(map(is_traced, jax.tree.leaves((element, q, speed)))):
+        return _solution_at(element, q, speed, points, inertia, small)
+    found = _solution_at(with_empty_places(element), q, speed, points, inertia, small)
+    return without_empty_places(found, element)
+
+
+@program(quick=True)
+def _solution_at(element, q, speed, points, inertia, no_load) -> Solution:
+    least = no_load * stiffness_scale(element.bearing)
     model = element.model(speed if inertia else None)
     rolling = None
     if speed is not None and not inertia:
         rolling = without_mass(element).model(speed)
-    fields, found = describe(element, model, q, points, model.solve(q), rolling)
+    solved = model.solve(q)
+    fields, found = describe(element, model, q, points, solved, rolling, least)
     nothing = jnp.zeros_like(q[0])
     return solution_kind(element.choices)(
         **fields,

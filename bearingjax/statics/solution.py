@@ -264,6 +264,7 @@ def describe(
     points: int,
     solved: SolvedElements,
     rolling: BearingModel | None = None,
+    least: Scalar | float = 0.0,
 ) -> tuple[dict, BearingResponse]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -275,9 +276,10 @@ def describe(
         solved: Its rolling elements at q.
         rolling: Model of which balls have their kinematics, where they do not feel the
             speed; `None`: the model.
+        least: As in `BearingModel.convergence` [N].
     """
     rows = model.results(q, solved)
-    evaluated = model.evaluate(q, solved)
+    evaluated = model.evaluate(q, solved, least)
     shown = rows
     if rolling is not None:
         pairs = zip(rows, rolling.rows, strict=True)
