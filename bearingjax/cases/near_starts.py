@@ -15,6 +15,7 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
+from ..design.places import has_empty_places
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, RINGS
 from ..numerics.linear import solve
@@ -101,9 +102,11 @@ def common_properties(
     """
     may_move = support.freedoms(element.bearing)
     free = [name for name in may_move if name not in cases.prescribed]
-    counts = {row.bearing.n_elements for row in rows_of(element.bearing)}
+    counts = {row.bearing.n_places for row in rows_of(element.bearing)}
     round_z = all((a in free) == (b in free) for a, b in (("ux", "uy"), ("gx", "gy")))
     round_z = round_z and len(counts) == 1 and not cases.prescribed
+    # Designs of several numbers of elements look alike after different turns.
+    round_z = round_z and not has_empty_places(element.bearing)
     round_z = round_z and cases.fixed_displacement is None
     pitch = 2.0 * np.pi / counts.pop() if round_z else 0.0
     cylindrical = CylindricalRollerBearing | NeedleRollerBearing

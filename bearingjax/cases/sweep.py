@@ -17,14 +17,18 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design import AbstractBearing, BearingSet, rows_of
+from ..design.bearing_set import bearings_of
 from ..design.checks import is_traced, of_class
+from ..design.places import has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
 from ..life.life import LIFE_OUTPUTS, LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.labels import make_dataset
 from ..numerics.result import Result
+from ..numerics.types import with_fields
 from ..numerics.warning import Warning, exceeded_kinds, warnings_of_cases
+from ..statics.empty_places import blank_empty_places
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import RESTRAINED, Support, check_held
@@ -127,8 +131,11 @@ class Sweep(eqx.Module):
 def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any]:
     """Designs of one structure as one element whose numbers have a leading axis.
 
+    Their numbers of rolling elements may differ. All have as many places then, and the
+    results of an empty place are NaN.
+
     Args:
-        elements: Elements of the same classes, counts and parts.
+        elements: Elements of the same classes and parts.
 
     Raises:
         TypeError: If one is no BearingElement.
@@ -140,15 +147,26 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
         check_element("stack_designs", element)
     if not elements:
         raise ValueError("stack_designs: `elements` is empty; one design at least.")
+    elements = _with_common_places(elements)
     structures = [jax.tree.structure(element) for element in elements]
     shapes = [[np.shape(leaf) for leaf in jax.tree.leaves(e)] for e in elements]
     for k in range(1, len(elements)):
         if structures[k] != structures[0] or shapes[k] != shapes[0]:
             raise ValueError(
                 f"stack_designs: design {k} is of another structure than design 0;"
-                " classes, numbers of rolling elements and parts must be the same."
+                " classes, numbers of rows and parts must be the same."
             )
     return jax.tree.map(lambda *leaves: jnp.stack(leaves), *elements)
+
+
+def _with_common_places(elements):
+    """Elements with empty places, if their numbers of rolling elements differ."""
+    counts = [[row.n_places for row in bearings_of(e.bearing)] for e in elements]
+    padded = any(has_empty_places(element.bearing) for element in elements)
+    if not padded and all(count == counts[0] for count in counts):
+        return elements
+    most = max(map(max, counts))
+    return [with_fields(e, bearing=with_places(e.bearing, most)) for e in elements]
 
 
 def n_designs(element: BearingElement[Any]) -> int | None:
@@ -247,7 +265,7 @@ def _output(solution, name) -> Any:
             f"sweep: `outputs` names {name!r}; there are"
             f" {', '.join([*fields, *SUMMARIES, *LIFE_OUTPUTS])}."
         )
-    return value
+    return blank_empty_places(solution, name, value)
 
 
 def _output_function(outputs: Any) -> tuple[Any, tuple[str, ...]]:

@@ -18,6 +18,9 @@ from ..studies.catalogue import new_command as new
 from ..studies.contact import command as contact
 from ..studies.noise import command as noise
 from ..studies.optimise import command as optimise
+from ..studies.options import add_quiet
+from ..studies.programs import cache_command as cache
+from ..studies.programs import warm_command as warm
 from ..studies.rotor import command as rotor
 from ..studies.shaft import command as shaft
 from ..studies.skid import command as skid
@@ -40,7 +43,7 @@ _SOLVING = (
 )
 """Commands that solve scenes; `execute` writes their outcome."""
 
-_LOOKING_UP = (catalogue, new, examples, schema)
+_LOOKING_UP = (catalogue, new, examples, schema, cache, warm)
 """Commands that print, and return an exit status directly."""
 
 
@@ -105,6 +108,7 @@ def parser() -> argparse.ArgumentParser:
         call = command.run
         if command in _SOLVING:
             call = functools.partial(execute, command)
+            add_quiet(added)
         added.set_defaults(execute=call, refuse=added.error)
     return top
 

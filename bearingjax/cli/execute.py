@@ -38,15 +38,21 @@ def execute(command: Any, options: Any) -> int:
     Raises:
         SceneError: For bad input, or outputs that cannot be written.
     """
+    from ..numerics.compiled.programs import tell_compiling
+
     check_table(options)
     check_outputs(options)
     origin = _origin(options)
-    shown = not getattr(options, "quiet", False) and sys.stderr.isatty()
-    stage = Stage() if shown else None
+    terminal = sys.stderr.isatty()
+    shown, stage = terminal and not options.quiet, None
+    if not options.quiet:
+        stage = Stage(terminal)
+        tell_compiling(stage.during)
     with contextlib.ExitStack() as stack:
         try:
             found = command.run(options, Tools(shown, stage, stack.enter_context))
         finally:
+            tell_compiling(None)
             if stage is not None:
                 stage.end()
         messages: list[str] = []

@@ -6,7 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Real, Scalar, as_real
+from ..numerics.types import Real, Scalar, as_real, with_fields
 from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
@@ -306,7 +306,9 @@ def with_bearings(
         new: The bearing of each row.
     """
     if isinstance(bearing, BearingSet):
-        return eqx.tree_at(lambda b: [r.bearing for r in b.rows], bearing, list(new))
+        pairs = zip(bearing.rows, new, strict=True)
+        rows = tuple(with_fields(row, bearing=one) for row, one in pairs)
+        return with_fields(bearing, rows=rows)
     (only,) = new
     return only
 

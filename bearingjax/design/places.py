@@ -15,7 +15,7 @@ from jaxtyping import Array, Int
 
 from ..numerics.types import with_fields
 from .abstract import AbstractBearing
-from .bearing_set import BearingSet, bearings_of
+from .bearing_set import BearingSet, bearings_of, with_bearings
 
 PLACES = (16, 32, 64, 128)
 """Numbers of places of a row. Larger rows keep the number of their elements."""
@@ -36,13 +36,7 @@ def with_places(bearing: Any, places: int | None = None) -> Any:
     Raises:
         ValueError: If it is less than the number of elements of a row.
     """
-    if isinstance(bearing, BearingSet):
-        rows = tuple(
-            with_fields(row, bearing=_pad_row(row.bearing, places))
-            for row in bearing.rows
-        )
-        return with_fields(bearing, rows=rows)
-    return _pad_row(bearing, places)
+    return with_bearings(bearing, (_pad_row(b, places) for b in bearings_of(bearing)))
 
 
 def without_places(bearing: Any) -> Any:
@@ -51,11 +45,7 @@ def without_places(bearing: Any) -> Any:
     Args:
         bearing: A row or a set; the numbers of elements are not traced.
     """
-    if isinstance(bearing, BearingSet):
-        pairs = ((row, _trim_row(row.bearing)) for row in bearing.rows)
-        rows = tuple(with_fields(row, bearing=one) for row, one in pairs)
-        return with_fields(bearing, rows=rows)
-    return _trim_row(bearing)
+    return with_bearings(bearing, map(_trim_row, bearings_of(bearing)))
 
 
 def has_empty_places(bearing: AbstractBearing | BearingSet) -> bool:

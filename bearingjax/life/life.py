@@ -391,7 +391,7 @@ def _with_empty_places(bearing, solution, lamina_load):
 def _rows_in_words(bearing) -> str:
     """Type and number of elements of every row, in words: the static part."""
     rows = list(bearings_of(bearing))
-    return " and ".join(f"{type(r).__name__} of {r.n_elements}" for r in rows)
+    return " and ".join(f"{type(r).__name__} of {r.n_places}" for r in rows)
 
 
 def life_outputs(life: Life, names: Sequence[str]) -> dict[str, Array]:

@@ -73,7 +73,8 @@ class OptimisedDesign:
             method without gradients did not report convergence.
         result: "converged" (`optimality` is within the tolerance and the constraints
             are kept), "step_limit", "stalled" (the method could not go on), or
-            "infeasible" (no design was found that keeps the constraints).
+            "infeasible" (no design was found that keeps the constraints);
+            "interrupted", by the user: the design is the best of the steps until then.
         message: Result in words.
         cases: The operating cases.
     """
@@ -124,6 +125,7 @@ class SearchOptions:
             maxima sample the pressure, in addition to the peaks, which do not depend on
             them. `None`: `SolveOptions()`.
         progress: Whether a progress bar is shown on standard error.
+        told: Called at each step with where the search is, in words; `None`: nothing.
     """
 
     method: Any = None
@@ -133,6 +135,7 @@ class SearchOptions:
     )
     solve: SolveOptions | None = None
     progress: bool = False
+    told: Callable[[str], Any] | None = None
 
 
 def optimise(
@@ -215,12 +218,43 @@ def optimise(
     with bar:
 
         def advance():
-            bar.set_postfix_str(f"{trials.steps[-1].objective:.6g} of the start")
+            step = trials.steps[-1]
+            bar.set_postfix_str(f"{step.objective:.6g} of the start")
             bar.update()
+            if given.told is not None:
+                given.told(_step_in_words(trials, max_steps, tolerance))
 
         n_bounds = len(problem.bounds)
-        ending = search_least(method, trials, n_bounds, max_steps, tolerance, advance)
+        try:
+            ending = search_least(
+                method, trials, n_bounds, max_steps, tolerance, advance
+            )
+        except KeyboardInterrupt:
+            best = _best_step(trials, tolerance)
+            ending = SearchOutcome(best.unit, False, INTERRUPTED)
     return _conclude(problem, trials, ending, slopes, max_steps, tolerance)
+
+
+INTERRUPTED = "interrupted"
+"""Result of a search that was interrupted; it has the best design so far."""
+
+
+def _step_in_words(trials: Trials, max_steps: int, tolerance: float) -> str:
+    step = trials.steps[-1]
+    words = f"step {len(trials.steps) - 1} of at most {max_steps}: objective"
+    words += f" {step.objective:.6g} of the start"
+    if step.violation > tolerance:
+        return f"{words}, constraints missed by {step.violation:.2g} of their bounds"
+    return words + ", constraints kept" * bool(len(step.margins))
+
+
+def _best_step(trials: Trials, tolerance: float) -> Trial:
+    """Return the step of least objective that keeps the constraints; if none does, the
+    one that misses them least."""
+    kept = [step for step in trials.steps if step.violation <= tolerance]
+    if kept:
+        return min(kept, key=lambda step: step.objective)
+    return min(trials.steps, key=lambda step: step.violation)
 
 
 def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> OptimisedDesign:
@@ -231,7 +265,10 @@ def _conclude(problem, trials, ending, slopes, max_steps, tolerance) -> Optimise
     result, text = verdict(trials, ending, best, slopes, max_steps, tolerance)
     if result == "infeasible":
         text += _most_violated(problem, best)
-    if result != "converged":
+    if result == INTERRUPTED:
+        where = _values_in_words(problem, best)
+        text += f"; the best design so far, from which to go on, has {where}"
+    elif result != "converged":
         text += _near_by(problem, trials, best)
     text += _idle_variables(problem, trials)
     steps = trials.steps
@@ -285,6 +322,8 @@ def verdict(
     allowed = tolerance if slopes else tolerance**0.5
     stood = np.array_equal(best.unit, trials.steps[0].unit)
     said = ending.text.strip(" .:")
+    if ending.text == INTERRUPTED:
+        return INTERRUPTED, f"interrupted after {n} steps"
     if best.violation > tolerance:
         text = f"constraints are missed by {best.violation:.1e} of their bounds"
         return "infeasible", text
@@ -323,11 +362,15 @@ def _near_by(problem: Problem, trials: Trials, best: Trial) -> str:
     if min(away) > NEAR:
         return ""
     trial = trials.rejected[int(np.argmin(away))]
+    where = _values_in_words(problem, trial)
+    return f"; rejected near by, at {where}: {trial.fault}"
+
+
+def _values_in_words(problem: Problem, trial: Trial) -> str:
     values = problem.values(trial.unit)
     names = [variable.name for variable in problem.variables]
     pairs = zip(names, values, strict=True)
-    where = ", ".join(f"{name} = {value:.6g}" for name, value in pairs)
-    return f"; rejected near by, at {where}: {trial.fault}"
+    return ", ".join(f"{name} = {value:.6g}" for name, value in pairs)
 
 
 def _idle_variables(problem: Problem, trials: Trials) -> str:

@@ -12,9 +12,10 @@ from functools import partial
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from ..design.bearing_set import bearings_of
+from ..design.bearing_set import bearings_of, with_bearings
 from ..design.places import (
     element_places,
     has_empty_places,
@@ -22,6 +23,7 @@ from ..design.places import (
     without_places,
 )
 from ..element.bearing_element import BearingElement
+from ..element.choices import BallChoices
 from ..numerics.labels import axes_of
 from ..numerics.types import with_fields
 from .solution import Solution
@@ -42,6 +44,28 @@ def with_empty_places(element: BearingElement) -> BearingElement:
     return with_fields(element, bearing=with_places(element.bearing))
 
 
+def of_kind(element: BearingElement) -> BearingElement:
+    """Return what a solve takes of a bearing, of the structure of its kind.
+
+    Args:
+        element: The bearing; none of its numbers is traced.
+    """
+    padded = with_empty_places(element)
+    # What a catalogue prints of it does not change how it is loaded.
+    rows = (with_fields(b, published=None) for b in bearings_of(padded.bearing))
+    return with_fields(padded, bearing=with_bearings(padded.bearing, rows))
+
+
+def points_of_kind(element: BearingElement, points: int) -> int:
+    """Return positions along its rolling elements, the same for all balls.
+
+    Args:
+        element: The bearing.
+        points: Positions that are asked for.
+    """
+    return 2 if isinstance(element.choices, BallChoices) else points
+
+
 def without_empty_places(
     solution: Solution, element: BearingElement | None = None
 ) -> Any:
@@ -56,7 +80,7 @@ def without_empty_places(
         padded = solution.element
         element = with_fields(padded, bearing=without_places(padded.bearing))
     if has_empty_places(element.bearing):
-        return solution
+        return with_fields(solution, element=element)
     kept = take_elements(solution, element)
     return with_fields(kept, element=element, row_sizes=_counts(element))
 
@@ -85,6 +109,23 @@ def solution_with_empty_places(solution: Solution) -> Any:
     spread = partial(spread_elements, places=places, size=sum(sizes))
     found = map_elements(spread, solution)
     return with_fields(found, element=with_empty_places(element), row_sizes=sizes)
+
+
+def blank_empty_places(solution: Solution, name: str, values: Any) -> Any:
+    """Values of a field of a solution, NaN in empty places; traced or not.
+
+    Args:
+        solution: Solution of one case.
+        name: Field.
+        values: Its values.
+    """
+    rows = bearings_of(solution.element.bearing)
+    axes = axes_of(solution, name) or ("",)
+    if rows[0].filled is None or axes[0] != "element":
+        return values
+    absent = [jnp.arange(row.n_places, dtype=jnp.int32) >= row.filled for row in rows]
+    shape = (-1,) + (1,) * (values.ndim - 1)
+    return jnp.where(jnp.concatenate(absent).reshape(shape), jnp.nan, values)
 
 
 def spread_elements(values: np.ndarray, places: np.ndarray, size: int) -> np.ndarray:

@@ -20,7 +20,7 @@ from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import as_array, with_fields
 from .balance import balance_of
-from .empty_places import with_empty_places, without_empty_places
+from .empty_places import of_kind, points_of_kind, without_empty_places
 from .load_case import LoadCase, Vector, load_case
 from .load_result import solution_of
 from .load_search import search, search_start
@@ -138,7 +138,9 @@ def solve(
     if begin is None:
         begin = as_array(np.full(6, np.nan), case.load.dtype)
     alike = with_fields(case, free=(), held=(), start=begin)
-    found = _solve(with_empty_places(element), None, alike, options)
+    points = points_of_kind(element, options.points)
+    options = with_fields(options, points=points)
+    found = _solve(of_kind(element), None, alike, options)
     found = with_fields(found, free=case.free, held=case.held)
     return without_empty_places(found, element)
 

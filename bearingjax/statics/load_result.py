@@ -20,7 +20,7 @@ from ..numerics.minimise import Minimum
 from ..numerics.result import Result
 from ..numerics.types import Ring, as_array
 from .balance import Balance
-from .empty_places import with_empty_places, without_empty_places
+from .empty_places import of_kind, points_of_kind, without_empty_places
 from .load_case import LoadCase
 from .load_search import SearchStart, differentiable_unknowns
 from .options import SolveOptions
@@ -120,7 +120,8 @@ def solution_at(
     small = as_array(no_load, q.dtype)
     if any(map(is_traced, jax.tree.leaves((element, q, speed)))):
         return _solution_at(element, q, speed, points, inertia, small)
-    found = _solution_at(with_empty_places(element), q, speed, points, inertia, small)
+    points = points_of_kind(element, points)
+    found = _solution_at(of_kind(element), q, speed, points, inertia, small)
     return without_empty_places(found, element)
 
 

@@ -54,9 +54,11 @@ def add_report(command: ArgumentParser, what: str) -> None:
     _add_output(command, "--report", text)
 
 
-def add_quiet(command: ArgumentParser, without: str = "progress bar") -> None:
+def add_quiet(command: ArgumentParser) -> None:
     """Add `--quiet`, no progress on standard error."""
-    command.add_argument("--quiet", action="store_true", help=f"no {without}")
+    command.add_argument(
+        "--quiet", action="store_true", help="no progress on standard error"
+    )
 
 
 def _add_output(command, name: str, text: str) -> None:

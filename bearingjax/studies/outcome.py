@@ -1,9 +1,12 @@
 """What a command returns, and the tools that it is given."""
 
+import contextlib
 import dataclasses
 import functools
 import sys
-from collections.abc import Callable, Mapping, Sequence
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,12 @@ Draw = Callable[[], Any]
 
 _BAR = 20
 """Width of a progress bar."""
+
+PATIENCE = 2.0
+"""Time after which a stage is told where there is no terminal [s]."""
+
+INTERVAL = 5.0
+"""Least time between two lines about a stage that goes on [s]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,25 +87,82 @@ class Tools:
 
 
 class Stage:
-    """Display of the current stage of a run, on one line of standard error."""
+    """Display of the current stage of a run on standard error.
 
-    def __init__(self):
-        self._used = False
+    On a terminal it is one line that is rewritten. Elsewhere a stage that lasts for
+    `PATIENCE` is told in a line of its own, and one that changes every `INTERVAL`.
 
-    def __call__(self, name: str, share: float | None = None) -> None:
-        """Show a stage in place of the previous one, with a bar if a share is done."""
-        self._used = True
-        if share is None:
-            self._show(f"{name}…")
-        else:
+    Args:
+        terminal: Whether standard error is a terminal.
+    """
+
+    def __init__(self, terminal: bool):
+        self._terminal, self._shown = terminal, False
+        self._words, self._told = "", time.monotonic()
+        self._timer: threading.Timer | None = None
+
+    def __call__(
+        self, name: str, share: float | None = None, *, counts: bool = False
+    ) -> None:
+        """Show a stage in place of the previous one.
+
+        Args:
+            name: What is done.
+            share: Share that is done, shown as a bar; `None`: not known.
+            counts: Whether the name has numbers that change all the time.
+        """
+        words = f"{name}…"
+        if share is not None:
             full = round(_BAR * share)
             bar = "█" * full + "·" * (_BAR - full)
-            self._show(f"{name} {bar} {100.0 * share:.0f} %")
+            words = f"{name} {bar} {100.0 * share:.0f} %"
+        self._words = words
+        if self._terminal:
+            self._shown = True
+            self._rewrite(words)
+        elif share is not None or counts:
+            self._tell_at_most(words)
+        else:
+            self._tell_later(words)
+
+    @contextlib.contextmanager
+    def during(self, name: str) -> Iterator[None]:
+        """Show a stage within another one, which is shown again when it ends."""
+        before = self._words
+        self(name)
+        try:
+            yield
+        finally:
+            self._cancel()
+            self._words = before
+            if self._terminal:
+                self._rewrite(before)
 
     def end(self) -> None:
-        """Clear the line."""
-        if self._used:
-            self._show("")
+        """Clear the line, and tell nothing more."""
+        self._cancel()
+        if self._shown:
+            self._rewrite("")
 
-    def _show(self, words: str) -> None:
+    def _rewrite(self, words: str) -> None:
         print(f"\r\x1b[K{words}", end="", file=sys.stderr, flush=True)
+
+    def _tell(self, words: str) -> None:
+        self._told = time.monotonic()
+        print(words, file=sys.stderr, flush=True)
+
+    def _tell_at_most(self, words: str) -> None:
+        self._cancel()
+        if time.monotonic() - self._told >= max(INTERVAL, PATIENCE):
+            self._tell(words)
+
+    def _tell_later(self, words: str) -> None:
+        self._cancel()
+        if PATIENCE < threading.TIMEOUT_MAX:
+            self._timer = threading.Timer(PATIENCE, self._tell, [words])
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _cancel(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()

@@ -39,7 +39,7 @@ OPTIONS = tuple(
 """XLA's options for programs whose runs are short compared with their compilation, by
 levels."""
 
-LARGEST_STORE = 512 * 1024 * 1024
+LARGEST_STORE = 1024 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
 
 _MARK = b"bearingjax program\n"
@@ -76,6 +76,8 @@ class _Store:
 
     folder: Path | None = None
     at_hand: dict[str, Callable]
+    telling: Callable[[str], contextlib.AbstractContextManager] | None = None
+    compiled: int = 0
 
     def __init__(self):
         self.at_hand = {}
@@ -94,7 +96,7 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
     Args:
         folder: Their folder; `None`: `bearingjax/programs` in the user's cache
             (`XDG_CACHE_HOME`, or `~/.cache`). It is made if there is none; if others
-            can write there, nothing is read or kept. 512 MB at most, those that were
+            can write there, nothing is read or kept. 1 GB at most, those that were
             not used for longest go first.
         keep: Whether to keep them; `False` ends it.
     """
@@ -102,6 +104,38 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
         folder = user_cache() / "programs"
     _STORE.folder = Path(folder) if keep else None
     _STORE.at_hand.clear()
+
+
+def tell_compiling(telling: Callable[[str], Any] | None) -> None:
+    """Have it said what is compiled, while it is, in place of what is kept.
+
+    Args:
+        telling: Words -> context that is entered meanwhile; `None`: nothing is said.
+    """
+    _STORE.telling = telling
+
+
+def n_compiled() -> int:
+    """Return how many programs this process has compiled in order to keep them."""
+    return _STORE.compiled
+
+
+def _compiling(function: Callable) -> contextlib.AbstractContextManager:
+    """Context in which a program is compiled, about which `tell_compiling` asked."""
+    if _STORE.telling is None:
+        return contextlib.nullcontext()
+    what = _WHAT.get(function.__name__, function.__module__.split(".")[1])
+    return _STORE.telling(f"compiling: {what} (once for this kind)")
+
+
+_WHAT = {
+    "_solve": "solving a bearing under load",
+    "_solution_at": "a bearing in its place",
+    "_life": "rating life",
+    "_facts": "friction and films",
+    "_solve_block": "sweep",
+}
+"""What programs do, in words, by their names; others are called by their package."""
 
 
 def user_cache() -> Path:
@@ -190,12 +224,14 @@ def _run_kept(name: str, function: Callable, given: tuple, options: dict) -> Any
     run = _STORE.at_hand.get(name)
     if run is not None:
         return run(flat[1])
-    _STORE.at_hand[name], found = _first_run(flat, name, _STORE.folder, options)
+    _STORE.at_hand[name], found = _first_run(
+        flat, name, _STORE.folder, options, function
+    )
     return found
 
 
 def _first_run(
-    flat: tuple, name: str, folder: Path, options: dict
+    flat: tuple, name: str, folder: Path, options: dict, called: Callable
 ) -> tuple[Callable, Any]:
     """Load or compile a program, and run it; return the program and its result.
 
@@ -204,6 +240,7 @@ def _first_run(
         name: Name of its file.
         folder: As in `keep_programs`.
         options: Options of the compiler.
+        called: Function that was called, for `tell_compiling`.
     """
     function, arrays, outputs = flat
     with _open_folder(folder) as place:
@@ -212,10 +249,12 @@ def _first_run(
             # A program of another jaxlib may lack a function.
             with contextlib.suppress(jax.errors.JaxRuntimeError):
                 return kept, kept(arrays)
-        lowered = jax.jit(function).lower(*arrays)
-        libraries = _libraries(lowered)
-        keep = place is not None and all(x.startswith("lapack_") for x in libraries)
-        compiled = _compile(lowered, options, keep)
+        with _compiling(called):
+            lowered = jax.jit(function).lower(*arrays)
+            libraries = _libraries(lowered)
+            keep = place is not None and all(x.startswith("lapack_") for x in libraries)
+            compiled = _compile(lowered, options, keep)
+        _STORE.compiled += 1
         if keep:
             devices = max((len(array.devices()) for array in arrays), default=1)
             more = len(arrays), outputs[0], bool(libraries), devices

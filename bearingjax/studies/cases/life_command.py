@@ -3,7 +3,7 @@
 import dataclasses
 from argparse import ArgumentParser, Namespace
 
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..solve.solution_outcome import solution_outcome
 
@@ -22,7 +22,6 @@ def add(commands: Commands) -> ArgumentParser:
     add_table(command, "case")
     add_plot(command)
     add_report(command, "pictures")
-    add_quiet(command)
     return command
 
 

@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 import numpy as np
 
 from .. import jax_settings
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..outputs import check_table
 from ..status import NOT_SOLVED, SOLVED
@@ -32,7 +32,6 @@ def add(commands: Commands) -> ArgumentParser:
     )
     add_plot(command)
     add_report(command, "cases")
-    add_quiet(command)
     command.add_argument(
         "--devices",
         metavar="N",

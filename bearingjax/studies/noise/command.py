@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
@@ -33,7 +33,6 @@ def add(commands: Commands) -> ArgumentParser:
     add_table(command, "time")
     add_plot(command)
     add_report(command, "pictures")
-    add_quiet(command, "progress")
     return command
 
 

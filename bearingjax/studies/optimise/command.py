@@ -1,8 +1,9 @@
 """`bearingjax optimise`."""
 
 from argparse import ArgumentParser, Namespace
+from functools import partial
 
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene
+from ..options import Commands, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools
 
 
@@ -18,7 +19,6 @@ def add(commands: Commands) -> ArgumentParser:
     add_scene(command)
     add_plot(command)
     add_report(command, "pictures")
-    add_quiet(command)
     return command
 
 
@@ -40,7 +40,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     task = read_optimisation(options.scene, options.set)
     name, inputs = task.scene.name, task.inputs
     try:
-        found = run_optimisation(task, progress=tools.shown)
+        told = None if tools.stage is None else partial(tools.stage, counts=True)
+        found = run_optimisation(task, told)
     except SolveError as error:
         numbers = unsolved_start_as_dict(task, error)
         return Outcome(name, inputs, lambda: numbers, problems=[str(error)])

@@ -1,7 +1,9 @@
 """Optimise the bearing, or the system of shafts, of a scene."""
 
 import dataclasses
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from ...files.scene_errors import scene_errors
 from ...optimise.life import OfLife, RatingLife
@@ -14,13 +16,14 @@ from .read_shaft_optimise import ShaftOptimisation
 
 
 def run_optimisation(
-    task: Optimisation | ShaftOptimisation, progress: bool = False
+    task: Optimisation | ShaftOptimisation,
+    told: Callable[[str], Any] | None = None,
 ) -> OptimisedDesign:
     """Optimise the bearing, or the system of shafts, of a scene.
 
     Args:
         task: From `read_optimisation`.
-        progress: Show a progress bar on standard error.
+        told: As in `SearchOptions`.
 
     Returns:
         The best design; read its `result`.
@@ -44,7 +47,7 @@ def run_optimisation(
             task.variables,
             task.objective,
             task.constraints,
-            search=SearchOptions(task.method, *limits, solve, progress),
+            search=SearchOptions(task.method, *limits, solve, told=told),
             support=support,
         )
     return (

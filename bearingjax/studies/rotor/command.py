@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
@@ -26,7 +26,6 @@ def add(commands: Commands) -> ArgumentParser:
     )
     add_plot(command)
     add_report(command, "pictures")
-    add_quiet(command, "progress")
     return command
 
 

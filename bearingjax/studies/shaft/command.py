@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from ..options import Commands, add_plot, add_quiet, add_report, add_scene, add_table
+from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 
 
@@ -22,7 +22,6 @@ def add(commands: Commands) -> ArgumentParser:
     add_table(command, "bearing, with [cases] per bearing and case")
     add_plot(command, "write a picture of shafts, lines and load zones")
     add_report(command, "pictures")
-    add_quiet(command, "progress")
     return command
 
 

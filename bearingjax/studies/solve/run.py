@@ -1,9 +1,8 @@
-"""Solve or optimise the bearing of a scene."""
+"""Solve the bearing of a scene."""
 
 import dataclasses
 
 from ...design.checks import of_class
-from ...numerics.compiled.programs import call_stored
 from ...numerics.types import as_array
 from ...statics.load import solve
 from ...statics.service_warning import preload_warnings
@@ -27,13 +26,12 @@ def run_scene(scene: Scene) -> Solution:
     Fails: as `solve_load`.
     """
     of_class("run_scene", "scene", scene, Scene, "a Scene, as of read_scene")
-    return call_stored(
-        _solve,
+    return solve(
         scene.running(),
         as_array(scene.load, float),
         scene.support,
         scene.solve_options,
-        scene.speed,
+        speed=scene.speed,
     )
 
 
@@ -66,7 +64,3 @@ def with_set_preload(scene: Scene) -> Scene:
         return scene
     warned = (*scene.warnings, *preload_warnings(found))
     return dataclasses.replace(scene, preload_of_set=found, warnings=warned)
-
-
-def _solve(element, load, support, options, speed):
-    return solve(element, load, support, options, speed=speed)

@@ -1,0 +1,132 @@
+"""Rows with empty places: the same results, and one program for all of a kind."""
+
+import jax
+import numpy as np
+import pytest
+from registry import ball_elements, bearings, speeds
+from tolerances import ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.design.bearing_set import bearings_of
+from bearingjax.design.places import places_for, with_places, without_places
+from bearingjax.numerics.types import with_fields
+from bearingjax.statics import load_result
+from bearingjax.statics.empty_places import solution_with_empty_places
+
+LOAD = [300.0, 800.0, 1500.0, 0.5, 0.0, 0.0]
+
+
+def elements():
+    """Name to element and speed of all registered designs."""
+    rollers = {name: (bj.BearingElement(b), "still") for name, b in bearings().items()}
+    found = {**rollers, **ball_elements()}
+    return {name: (e, speeds()[speed]) for name, (e, speed) in found.items()}
+
+
+def solved_alone(element, speed=None, **choices):
+    """Solution without empty places, as under `jax.jit`."""
+    return jax.jit(
+        lambda e: bj.solve_load(e, LOAD, speed=speed, throw=False, **choices)
+    )(element)
+
+
+def assert_same(found, wanted, tolerance):
+    """Assert that all numbers agree, to a share of the largest of their array."""
+    pairs = zip(
+        jax.tree_util.tree_leaves_with_path(found), jax.tree.leaves(wanted), strict=True
+    )
+    for (path, a), b in pairs:
+        name = jax.tree_util.keystr(path)
+        if ".stats" in name:
+            continue
+        a, b = np.asarray(a, float), np.asarray(b, float)
+        assert a.shape == b.shape, name
+        size = np.abs(np.where(np.isfinite(b), b, 0.0)).max(initial=0.0)
+        np.testing.assert_allclose(a, b, 0, tolerance * size + 1e-30, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(
+            name, marks=() if name.startswith("taper, la") else pytest.mark.slow
+        )
+        for name in elements()
+    ],
+)
+def test_empty_places_change_no_result(name):
+    element, speed = elements()[name]
+    found = bj.solve_load(element, LOAD, speed=speed, throw=False)
+    wanted = solved_alone(element, speed)
+    assert int(found.result) == int(wanted.result)
+    assert found.row_sizes == wanted.row_sizes
+    assert_same(found, wanted, SOLVER)
+
+
+@pytest.mark.parametrize("name", elements())
+def test_places_are_taken_away_again(name):
+    bearing = elements()[name][0].bearing
+    padded = with_places(bearing)
+    for row, more in zip(bearings_of(bearing), bearings_of(padded), strict=True):
+        assert more.n_places == places_for(row.n_places) > row.n_places
+        assert int(more.n_elements) == row.n_elements
+    again = without_places(padded)
+    assert jax.tree.structure(again) == jax.tree.structure(bearing)
+    assert_same(again, bearing, 0.0)
+
+
+def test_places_must_hold_the_elements():
+    with pytest.raises(ValueError, match="`places` is 5; .* rolling elements, 7"):
+        with_places(bearings()["cylindrical, crowned ends"], 5)
+
+
+def test_bearings_of_a_kind_share_a_program(monkeypatch):
+    """Other numbers of rollers, supports and starts are not traced anew."""
+    traces, describe = [], load_result.describe
+    monkeypatch.setattr(
+        load_result, "describe", lambda *args: traces.append(1) or describe(*args)
+    )
+    options = bj.statics.SolveOptions(points=9)
+    for count, support, start in (
+        (7, bj.Support(), None),
+        (9, bj.Support(free=["ux", "uy"]), None),
+        (14, bj.Support(prescribed={"gx": 1e-4}), np.zeros(6)),
+    ):
+        bearing = bj.CylindricalRollerBearing(count, 0.0725, 0.010, 0.010)
+        found = bj.solve_load(
+            bj.BearingElement(bearing),
+            [300.0, 800.0, 0, 0, 0, 0],
+            support=support,
+            options=options,
+            start=start,
+        )
+        assert found.roller_load.shape == (count, 2)
+        assert found.element.bearing.n_rollers == count
+        assert found.free == support.freedoms(bearing)
+    assert len(traces) == 1
+
+
+def test_life_of_a_row_with_empty_places():
+    """The number of rolling elements, not that of places, enters all formulas."""
+    element, _ = elements()["deep groove, clearance"]
+    found = bj.solve_load(element, LOAD, speed=speeds()["turning"])
+    conditions = bj.LifeConditions(viscosity=1e-5, contamination=0.5)
+    padded = solution_with_empty_places(found)
+    life = bj.rating_life(found, conditions=conditions)
+    alone = jax.jit(lambda s: bj.rating_life(s, conditions=conditions))
+    assert_same(life, alone(found), ROUNDING)
+    assert_same(life, alone(padded), ROUNDING)
+
+
+def test_gradient_of_a_row_with_empty_places():
+    element, _ = elements()["deep groove, clearance"]
+    padded = with_fields(element, bearing=with_places(element.bearing))
+
+    def stiff(diameter, element):
+        bearing = with_fields(element.bearing, ball_diameter=diameter)
+        changed = with_fields(element, bearing=bearing)
+        return bj.solve_load(changed, LOAD).stiffness[6, 6]
+
+    diameter = element.bearing.ball_diameter
+    given = [jax.grad(stiff)(diameter, one) for one in (element, padded)]
+    np.testing.assert_allclose(*given, rtol=SOLVER)
