@@ -114,6 +114,14 @@ def _drop_compiled_programs():
         gc.collect()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_progress():
+    """Runs of commands here do not say what they are at, however long it takes."""
+    from bearingjax.studies import outcome
+
+    outcome.PATIENCE = float("inf")
+
+
 @pytest.fixture
 def untyped():
     """As users run the package: without the type checks of the tests' conftest."""

@@ -1,5 +1,7 @@
 """Rotor support by a bearing of the library."""
 
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -143,7 +145,7 @@ class BearingSupport(AbstractSupport):
         stiffness = sense[:, None] * found.stiffness[_INNER, _INNER] * sense[None, :]
         return sense * found.force[_INNER] * solved, stiffness * solved, self.damping
 
-    def respond_alone(self, motion: np.ndarray, speed: Speed | None) -> Responded:
+    def respond_alone(self, motion: np.ndarray, speed: Any) -> Responded:
         """Return `respond` of known numbers by the program of a kind of bearing.
 
         Args:

@@ -22,7 +22,7 @@ from ..element.frame import (
 )
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults
-from ..numerics.labels import to_xarray
+from ..numerics.labels import axes_of, to_xarray
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
 from ..numerics.types import Ring, Scalar
@@ -285,6 +285,9 @@ def describe(
         pairs = zip(rows, rolling.rows, strict=True)
         shown = tuple(one.as_rolling(row) for one, row in pairs)
     special = contact_results(element.choices, element.bearing, shown, points)
+    if any(row.row.absent is not None for row in rows):
+        absent = jnp.concatenate([row.row.absent for row in rows])
+        special = _without_absent(solution_kind(element.choices), special, absent)
     return {
         "displacement": q,
         "force": evaluated.force,
@@ -295,6 +298,19 @@ def describe(
         "row_sizes": tuple(row.azimuth.shape[0] for row in rows),
         **special,
     }, evaluated
+
+
+def _without_absent(kind: type, fields: dict, absent: Bool[Array, " element"]) -> dict:
+    """Fields of a solution in which empty places carry nothing."""
+    found = dict(fields)
+    for name, values in fields.items():
+        axes = axes_of(kind, name) or ("",)
+        if values is not None and axes[0] == "element":
+            # Shoulders that are not loaded are not reached.
+            nothing = jnp.inf if name == "shoulder_margin" else 0.0
+            places = absent.reshape(-1, *[1] * (values.ndim - 1))
+            found[name] = jnp.where(places, nothing, values)
+    return found
 
 
 @functools.singledispatch

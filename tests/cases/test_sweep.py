@@ -15,6 +15,7 @@ import pyarrow.csv
 import pyarrow.parquet
 import pytest
 from sweep_in_process import loads, small_element
+from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax.cases import near_starts, sweep_program, sweep_table
@@ -486,6 +487,35 @@ def test_outputs_of_a_function_are_a_dict_of_arrays():
     assert np.isnan(outputs({"a": 1.0})["a"])
 
 
+def test_designs_of_several_numbers_of_rollers():
+    """Each is as if alone; empty places have no results, and enter no largest one."""
+    counts, load = (5, 9, 7), [400.0, 1500.0, 0, 0, 0, 0]
+    bearings = [
+        bj.CylindricalRollerBearing(n, 0.065, 0.010, 0.010, first_azimuth=0.1 * n)
+        for n in counts
+    ]
+    stacked = bj.stack_designs([bj.BearingElement(b) for b in bearings])
+    outputs = ["roller_load", "azimuth", "displacement", "largest_load"]
+    outputs += ["basic_rating_life", "reference_rating_life"]
+    swept = bj.sweep(stacked, np.tile(load, (3, 1)), outputs=outputs)
+    for k, bearing in enumerate(bearings):
+        alone = bj.solve_load(bj.BearingElement(bearing), load)
+        n = bearing.n_rollers
+        for name in ("roller_load", "azimuth"):
+            found = getattr(swept, name)[k]
+            assert np.isnan(found[n:]).all()
+            np.testing.assert_allclose(found[:n], getattr(alone, name), 1e-9, 1e-6)
+        np.testing.assert_allclose(swept.largest_load[k], alone.roller_load.max())
+        np.testing.assert_allclose(
+            swept.displacement[k], alone.displacement, rtol=SOLVER, atol=1e-15
+        )
+        life = bj.rating_life(alone)
+        for name in ("basic_rating_life", "reference_rating_life"):
+            np.testing.assert_allclose(
+                getattr(swept, name)[k], getattr(life, name), rtol=SOLVER
+            )
+
+
 def test_bad_designs(swept):
     stacked = bj.stack_designs([ELEMENT, ELEMENT])
     with pytest.raises(ValueError, match="it holds designs, 2 of them"):
@@ -494,7 +524,9 @@ def test_bad_designs(swept):
         bj.sweep(stacked, LOADS)
     with pytest.raises(ValueError, match="from 0 to 2; there are designs 0 to 1"):
         bj.sweep(stacked, bj.Cases(LOADS, design=[0, 1, 2]))
-    other = bj.BearingElement(bj.CylindricalRollerBearing(7, 0.065, 0.01, 0.01))
+    ribs = bj.Ribs(inner_plus=bj.Rib(0.3, 1.5e-3))
+    other = bj.CylindricalRollerBearing(7, 0.065, 0.01, 0.01, ribs=ribs)
+    other = bj.BearingElement(other)
     with pytest.raises(ValueError, match="design 1 is of another structure"):
         bj.stack_designs([ELEMENT, other])
     with pytest.raises(ValueError, match="is empty"):

@@ -21,7 +21,7 @@ from bearingjax.shafts import (
     solve_system,
 )
 from bearingjax.shafts.seats import axial_growth
-from bearingjax.statics import BallSolution, warnings
+from bearingjax.statics import BallSolution, load_result, warnings
 
 LOAD = [
     ShaftLoad("p", "s", 0.12, (300.0, -2000.0, 700.0), (10.0, -25.0, 0.0)),
@@ -524,3 +524,52 @@ def test_derivatives(answers, name):
     wanted = (4.0 * fine - coarse) / 3.0
     assert np.abs(own).max() > 0
     np.testing.assert_allclose(own, wanted, atol=1e-6 * np.abs(wanted).max())
+
+
+@pytest.mark.slow
+def test_system_of_known_numbers_is_that_of_a_traced_one():
+    """Solved by calls of the programs of bearings, and as one program."""
+    line = ShaftLine("s", [0.1, 0.3], [0.04, 0.05])
+    seats = (
+        ball("A", "s", 0.02, preload=150.0),
+        ball("B", "s", 0.36, turned=True, preload=150.0),
+        springs("C", "s", 0.2, [1e7, 1e7, 0.0, 0.0, 0.0]),
+    )
+    for drive in (None, Drive("s", 30.0), Drive("s", 900.0)):
+        system = ShaftSystem(line, seats, drive, loads=LOAD)
+        found = solve_system(system)
+        traced = jax.jit(lambda s: solve_system(s, throw=False))(system)
+        assert int(found.result) == int(traced.result) == 0
+        assert int(found.steps) == int(traced.steps)
+        for (path, a), b in zip(
+            jax.tree_util.tree_leaves_with_path(found),
+            jax.tree.leaves(traced),
+            strict=True,
+        ):
+            a, b, name = np.asarray(a), np.asarray(b), jax.tree_util.keystr(path)
+            size = 1e-9 * np.abs(b).max(initial=0.0) + 1e-16
+            if name != ".residual":
+                np.testing.assert_allclose(a, b, 0, size, err_msg=name)
+
+
+def test_another_system_compiles_no_bearing(monkeypatch):
+    """With a bearing turned round, another load and other sizes of bearings."""
+    traces, describe = [], load_result.describe
+    monkeypatch.setattr(
+        load_result, "describe", lambda *args: traces.append(1) or describe(*args)
+    )
+    line = ShaftLine("s", [0.4], [0.04])
+    # With shoulders, which bearings of other tests do not have.
+    solve_system(ShaftSystem(line, [own("A", 0.02, 8), own("B", 0.36, 9)], loads=LOAD))
+    seats = [own("A", 0.05, 7, turned=True), own("B", 0.2, 9), own("C", 0.36, 8)]
+    found = solve_system(ShaftSystem(line, seats, loads=LOAD[:1]))
+    assert found.load.shape == (3, 6) and len(traces) == 1
+
+
+def own(name, position, count, **more):
+    """Seat of a bearing with shoulders of known height."""
+    bearing = bj.DeepGrooveBallBearing(
+        count, 0.065, 0.015081, outer_osculation=0.53, inner_osculation=0.52,
+        radial_internal_clearance=1e-5, outer_shoulder=3e-3, inner_shoulder=3e-3,
+    )  # fmt: skip
+    return Seat(name, "s", position, bj.Installed(bj.BearingElement(bearing)), **more)

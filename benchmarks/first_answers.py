@@ -1,0 +1,113 @@
+"""How long until the answer about a second bearing, or about a changed machine?
+
+Whole commands in fresh processes, one after another with one cache of programs, which
+is empty at first: a bearing, another one of its kind with more balls, its life; systems
+of shafts as they are, once more, and with a bearing turned round, a gear moved, a
+bearing of the same kind elsewhere. Processor time, and that as a multiple of what a
+process takes that imports JAX and adds two arrays. `--beside TREE` runs another
+checkout in turn. Answers are compared: a run with kept programs prints what the first
+one did.
+
+README: RESULT | 3 times the import; 12 s first, 3.5 s stored | RESULT
+"""
+
+import pathlib
+import tempfile
+
+from bench import benchmark
+from compile_time import ADD, COMMAND, os, run
+
+GEARBOX = "shaft shaft_gearbox"
+BEARINGS = (
+    ("solve 6206, first", "solve 6206.toml"),
+    ("solve 6206, once more", "solve 6206.toml"),
+    ("solve 6205, same kind", "solve 6205.toml"),
+    ("solve 6310, same kind", "solve 6310.toml"),
+    ("life 6206, first", "life 6206.toml"),
+    ("life 6310, same kind", "life 6310.toml"),
+)
+MACHINES = (
+    ("gearbox, first", GEARBOX),
+    ("gearbox, once more", GEARBOX),
+    ("gear moved", f"{GEARBOX} --set gear.pinion.position=130mm"),
+    ("bearings of other sizes", f"{GEARBOX} --set bearings.A.designation=6309"),
+    ("load more", f"{GEARBOX} --set load.extra={{shaft='input',position='60mm',"
+     "force=['100N','0N','0N']}}"),
+    ("fan, after the gearbox", "shaft shaft_fan"),
+    ("fan, once more", "shaft shaft_fan"),
+    ("wind turbine, first", "shaft shaft_wind_turbine"),
+    ("wind turbine, once more", "shaft shaft_wind_turbine"),
+    ("heated spindle, first", "shaft shaft_spindle"),
+    ("heated spindle, once more", "shaft shaft_spindle"),
+    ("flexible rotor, first", "rotor rotor_flexible"),
+    ("flexible rotor, once more", "rotor rotor_flexible"),
+    ("spindle rotor, first", "rotor rotor_spindle"),
+    ("spindle rotor, once more", "rotor rotor_spindle"),
+)  # fmt: skip
+GOALS = {
+    "solve 6205, same kind": "3 times",
+    "solve 6310, same kind": "3 times",
+    "gearbox, first": "12 s",
+    "gearbox, once more": "3.5 s",
+    "gear moved": "as stored, plus 2 s",
+    "bearings of other sizes": "as stored, plus 2 s",
+    "load more": "as stored, plus 2 s",
+    "wind turbine, first": "20 s",
+    "wind turbine, once more": "6 s",
+}
+
+
+def scenes(folder, tree):
+    """Write the scene of a designation for each of the bearings."""
+    names = {part for _, command in BEARINGS for part in command.split()[1:]}
+    for name in sorted(names):
+        given = [COMMAND, "new", pathlib.Path(name).stem]
+        text, _ = run(given, folder, tree)
+        (pathlib.Path(folder) / name).write_text(text)
+
+
+def told(output):
+    """What a run prints, without its warnings and the place of its files."""
+    return [line for line in output.splitlines() if not line.startswith("warning")]
+
+
+def measure(tree, asked):
+    with tempfile.TemporaryDirectory() as cache:
+        run(["import bearingjax.cli"], cache, tree)  # which writes the bytecode
+        _, (_, unit) = run([ADD], cache, tree)
+        scenes(cache, tree)
+        before = {}
+        for what, command in asked:
+            output, (wall, processor) = run([COMMAND, *command.split()], cache, tree)
+            if before.setdefault(command, told(output)) != told(output):
+                raise SystemExit(f"{what}: not what it printed at first")
+            yield {
+                "what": what,
+                "tree": tree or "",
+                "wall_s": wall,
+                "processor_s": processor,
+                "times_import": processor / unit,
+                "goal": GOALS.get(what, ""),
+            }
+
+
+def show(rows):
+    print(f"{'what':28}{'wall s':>8}{'CPU s':>8}{'imports':>9}  goal", flush=True)
+    for r in rows:
+        print(
+            f"{r['what']:28}{r['wall_s']:8.1f}{r['processor_s']:8.1f}"
+            f"{r['times_import']:9.1f}  {r['goal']} {r['tree']}",
+            flush=True,
+        )
+
+
+@benchmark(
+    "one bearing, twice", show, beside={"metavar": "TREE", "help": "another checkout"}
+)
+def main(smoke, only="", beside=None):
+    asked = BEARINGS[:2] if smoke else (*BEARINGS, *MACHINES)
+    asked = [one for one in asked if only in one[0]]
+    trees = [None] if beside is None else [os.path.abspath(beside), None]
+    print(f"load average {os.getloadavg()[0]:.1f}", flush=True) if not smoke else None
+    for tree in trees:
+        yield from measure(tree, asked)
