@@ -29,10 +29,10 @@ BEARINGS = (
 MACHINES = (
     ("gearbox, first", GEARBOX),
     ("gearbox, once more", GEARBOX),
-    ("gear moved", f"{GEARBOX} --set gear.pinion.position=130mm"),
-    ("bearings of other sizes", f"{GEARBOX} --set bearings.A.designation=6309"),
-    ("load more", f"{GEARBOX} --set load.extra={{shaft='input',position='60mm',"
-     "force=['100N','0N','0N']}}"),
+    ("output torque halved", f"{GEARBOX} --set drive.power=7kW"),
+    ("bearing of another size", f"{GEARBOX} --set bearings.A.designation=6309"),
+    ("pair turned round", f"{GEARBOX} --set bearings.C.turned=true"
+     " --set bearings.D.turned=false"),
     ("fan, after the gearbox", "shaft shaft_fan"),
     ("fan, once more", "shaft shaft_fan"),
     ("wind turbine, first", "shaft shaft_wind_turbine"),
@@ -49,9 +49,9 @@ GOALS = {
     "solve 6310, same kind": "3 times",
     "gearbox, first": "12 s",
     "gearbox, once more": "3.5 s",
-    "gear moved": "as stored, plus 2 s",
-    "bearings of other sizes": "as stored, plus 2 s",
-    "load more": "as stored, plus 2 s",
+    "output torque halved": "as stored",
+    "bearing of another size": "as stored",
+    "pair turned round": "as stored, plus 2 s",
     "wind turbine, first": "20 s",
     "wind turbine, once more": "6 s",
 }

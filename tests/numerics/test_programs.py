@@ -37,7 +37,6 @@ OF_BALLS = (
     "numerics.kinematics=finite",
     "operating.raceway_control=inner",
     "operating.raceway_control=load_share",
-    "bearing.n_balls=19",
     "bearing.outer_shoulder=2 mm",
     "set.arrangement=face_to_face",
     "set={arrangement='back_to_back',spacing='17 mm',preload_force='99 N'}",

@@ -582,3 +582,30 @@ def test_missed_bound_is_shown_with_its_unit():
     best = Trial(np.zeros(1), 1.0, None, np.array([-20.9648]), None)
     told = "; peak pressure is 2196 MPa, above its bound 100 MPa"
     assert _most_violated(problem, best) == told
+
+
+# Interruptions.
+
+
+def test_interrupted_search_keeps_its_best_design(straight):
+    """And says where it was; each step is told."""
+    told, cases = [], bj.Cases(np.array([[0.0, -4e3, 0, 0, 0, 0]]))
+
+    def tell(words):
+        told.append(words)
+        if len(told) == 2:
+            raise KeyboardInterrupt
+
+    found = bj.optimise.optimise(
+        straight,
+        cases,
+        [play()],
+        bj.optimise.StiffnessTarget(2e8, "uy"),
+        [bj.optimise.Constraint(bj.optimise.Displacement("uy"), upper=1e-3)],
+        search=SearchOptions(told=tell),
+    )
+    assert found.result == "interrupted" and not found.converged
+    assert "best design so far, from which to go on, has" in found.message
+    assert found.history.objective.min() < found.history.objective[0]
+    assert told[0].startswith("step 1 of at most 200: objective ")
+    assert told[0].endswith("of the start, constraints kept")

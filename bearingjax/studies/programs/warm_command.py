@@ -32,11 +32,13 @@ def run(options: Namespace) -> int:
     import sys
     import time
 
+    from ...files.scene_errors import scene_errors
     from ..outcome import Stage
     from .warm import kinds_of_catalogue, warm
 
     stage = None if options.quiet else Stage(sys.stderr.isatty())
-    kinds = kinds_of_catalogue(options.designation or None)
+    with scene_errors("warm"):
+        kinds = kinds_of_catalogue(options.designation or None)
     begin, compiled = time.monotonic(), 0
     for k, (name, element) in enumerate(kinds):
         if stage is not None:
