@@ -14,6 +14,8 @@ from numbers import Real
 from operator import ge, gt, le, lt
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 from jax.core import Tracer
 
@@ -23,6 +25,18 @@ from ..numerics.units import unit_of
 def is_traced(value: Any) -> bool:
     """Whether a value is being traced, so that its number is not known."""
     return isinstance(value, Tracer)
+
+
+def are_known(*trees: Any) -> bool:
+    """Whether functions of these may look at their numbers: none is traced, nor is the
+    function that calls, in which JAX gives no operation a number.
+
+    Args:
+        trees: Modules, tuples, dicts of arrays.
+    """
+    if any(map(is_traced, jax.tree.leaves(trees))):
+        return False
+    return not is_traced(jnp.zeros(()))
 
 
 def floats(*values: Any) -> list[float] | None:

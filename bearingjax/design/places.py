@@ -9,6 +9,7 @@ of the elements that are there.
 import functools
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Int
@@ -106,4 +107,4 @@ def _resize(row, size, function, filled):
 
 @functools.lru_cache(maxsize=512)
 def _as_count(count: int) -> Int[Array, ""]:
-    return jnp.asarray(np.int32(count))
+    return jax.device_put(np.int32(count))

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple, cast
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -18,7 +17,7 @@ from jaxtyping import Array, Float
 from ..design import rows_of
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
-from ..design.checks import check, floats, in_range, is_traced, of_class, positive
+from ..design.checks import are_known, check, floats, in_range, of_class, positive
 from ..design.places import element_places, has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -372,7 +371,7 @@ def rating_life(
             )
     check_alike(bearing)
     given = bearing, solution, lamina_load
-    if not any(is_traced(leaf) for leaf in jax.tree.leaves(given)):
+    if are_known(given):
         # One program for all numbers of rolling elements.
         given = _with_empty_places(*given)
     return _life(*given, conditions, speed)

@@ -1,11 +1,10 @@
 """Axial preload of a bearing on a shaft, by force."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ..design.bearing_set import bearings_of
-from ..design.checks import is_traced, positive
+from ..design.checks import are_known, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed
 from ..numerics.result import Result
@@ -49,7 +48,7 @@ def preload_offset(
     check_element("preload_offset", element)
     pushing = as_real(force)
     positive("preload_offset", "force", pushing, "N")
-    if not any(map(is_traced, jax.tree.leaves((element, pushing)))):
+    if are_known(element, pushing):
         moved = _search(element, pushing, inertia)
         if moved is not None:
             return moved

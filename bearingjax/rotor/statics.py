@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import is_traced, number, of_class
+from ..design.checks import are_known, number, of_class
 from ..element.frame import LOAD_UNITS
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_by, recall, stop_gradient, unless_failed
@@ -331,7 +331,7 @@ def equilibrium_at(
     Args:
         rotor, loads, speed: As in `static_equilibrium`, checked.
     """
-    if any(map(is_traced, jax.tree.leaves((rotor, loads, speed)))):
+    if not are_known(rotor, loads, speed):
         return _equilibrium_in_one(rotor, loads, speed)
     bare = with_fields(rotor, supports=tuple(map(_without_spring, rotor.supports)))
     parts, length = _assemble(bare, loads, speed)

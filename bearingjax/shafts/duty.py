@@ -320,6 +320,7 @@ def case_damage(
     return share * damage * turns
 
 
+@program(quick=True)
 def system_life(system: ShaftSystem, hours: Any) -> Scalar:
     """Return the life that all bearings together reach with their reliability [h].
 

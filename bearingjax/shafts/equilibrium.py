@@ -14,7 +14,7 @@ import jax.scipy as jsp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import is_traced, of_class
+from ..design.checks import are_known, is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged
@@ -141,7 +141,7 @@ def system_state(
     Args:
         system: From `with_preload_offsets`.
     """
-    if any(map(is_traced, jax.tree.leaves(system))):
+    if not are_known(system):
         return _state_in_one(system)
     bare, held = _without_bearings(system), _held_senses(system)
     machine, length = _assemble(bare)

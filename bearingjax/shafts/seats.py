@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import is_traced
+from ..design.checks import are_known, is_traced
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
@@ -74,7 +74,7 @@ def as_mounted(installed: Installed) -> BearingElement:
     Args:
         installed: The bearing.
     """
-    if any(map(is_traced, jax.tree.leaves(installed))):
+    if not are_known(installed):
         return _as_mounted(installed)
     return _as_mounted(_of_its_kind(installed))
 
@@ -111,7 +111,7 @@ def supports_of(
         assert seat.installed is not None
         inside = seat.installed
         bare = with_fields(seat, installed=None, name="", shaft="", turned=False)
-        if not any(map(is_traced, jax.tree.leaves((seat, speeds, growth)))):
+        if are_known(seat, speeds, growth):
             inside = _of_its_kind(inside)
         turned = jnp.asarray(np.array(seat.turned))
         given = inside, bare, turned, growth[k], speeds[k]
@@ -234,15 +234,15 @@ def in_place(
         inertia: Whether rolling elements feel them; `None` at rest. Static.
         points: Positions along the rollers at which loads are reported. Static.
     """
-    traced = any(map(is_traced, jax.tree.leaves((installed, motion, speed))))
-    xp: Any = jnp if traced else np
+    known = are_known(installed, motion, speed)
+    xp: Any = np if known else jnp
     rest = xp.zeros(1)
     rings = xp.concatenate([xp.zeros(_RING), motion, rest])
-    if not traced:
+    if known:
         installed, rings = _of_its_kind(installed), as_real(rings)
-    element, known = _warm(installed, speed), None if inertia is None else speed
-    found = solution_at(element, rings, known, points, bool(inertia))
-    return found if traced else without_empty_places(found)
+    element, turning = _warm(installed, speed), None if inertia is None else speed
+    found = solution_at(element, rings, turning, points, bool(inertia))
+    return without_empty_places(found) if known else found
 
 
 def _of_its_kind(installed: Installed) -> Installed:

@@ -16,6 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design.bearing_set import bearings_of, with_bearings
+from ..design.checks import is_traced
 from ..design.places import (
     element_places,
     has_empty_places,
@@ -154,7 +155,7 @@ def map_elements(function: Callable, result: Any) -> Any:
         if has_elements and value is not None:
             parts[name] = map_elements(function, value)
         elif np.ndim(value) > (name == "position"):
-            changes[name] = function(np.asarray(value))
+            changes[name] = function(value if is_traced(value) else np.asarray(value))
     changes = {**parts, **jax.device_put(changes)}
     if isinstance(result, tuple):
         return result._replace(**changes)  # pyright: ignore

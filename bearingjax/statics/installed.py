@@ -22,7 +22,7 @@ from ..fits import (
     mounting_at,
     with_bearing_dimensions,
 )
-from ..numerics.compiled.programs import call_stored
+from ..numerics.compiled.programs import program
 from ..numerics.types import RealOrNone, as_array, as_real
 from ..numerics.units import real, rpm
 from ..numerics.warning import Warning
@@ -216,7 +216,7 @@ class Installed(eqx.Module):
         if speed is not None:
             still = Speed(0.0, 0.0)
             speeds = _stack([still if s is None else s for _, s in possible.values()])
-        found = np.asarray(call_stored(_preloads, elements, speeds))
+        found = np.asarray(_preloads(elements, speeds))
         # Round-off is not a preload.
         found = np.where(np.abs(found) < _LEAST, 0.0, found)
         force = dict.fromkeys(states, np.nan)
@@ -369,6 +369,7 @@ def _stack(trees: list[Any]) -> Any:
     return jax.tree.map(lambda *x: as_array(np.stack(x), float), *trees)
 
 
+@program(quick=True)
 def _preloads(elements, speeds):
     def preload_at(element, speed):
         return remaining_preload(element, speed, throw=False)

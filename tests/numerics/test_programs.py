@@ -165,6 +165,7 @@ def kept(monkeypatch, tmp_path):
         return {"sum": 2.0 * tree["a"] + tree["b"][0], "word": word, "none": None}
 
     doubled.__module__, doubled.__qualname__ = programs.__name__, "doubled"
+    doubled = programs.program(doubled, quick=True)
     monkeypatch.setattr(programs, "doubled", doubled, raising=False)
     folder = tmp_path / "cache" / "programs"
 
@@ -172,7 +173,7 @@ def kept(monkeypatch, tmp_path):
         tree = {"a": jnp.array([a, 2.0]), "b": (jnp.array(0.5),)}
         count = len(traced)
         programs.keep_programs(folder)  # with none at hand
-        out = programs.call_stored(doubled, tree, word)
+        out = doubled(tree, word)
         assert np.array_equal(out["sum"], [2.0 * a + 0.5, 4.5])
         assert (out["word"], out["none"]) == (word, None)
         return len(traced) > count
@@ -289,12 +290,12 @@ def doubled(a, b):
     return 2.0 * a + b
 
 doubled.__module__, doubled.__qualname__ = programs.__name__, "doubled"
-programs.doubled = doubled
+programs.doubled = doubled = programs.program(doubled, quick=True)
 (here / "no folder").write_text("")
 for name in ("no folder", "folder", "folder"):
     given = jnp.array([1.0, 2.0]), jnp.array(0.5)
     programs.keep_programs(here / name)
-    print(programs.call_stored(doubled, *given))
+    print(doubled(*given))
 """
 
 

@@ -552,6 +552,16 @@ def test_system_of_known_numbers_is_that_of_a_traced_one():
                 np.testing.assert_allclose(a, b, 0, size, err_msg=name)
 
 
+def test_known_system_in_a_traced_function():
+    """It is solved as one program there: no bearing can be called by itself."""
+    line = ShaftLine("s", [0.4], [0.04])
+    seats = [own("A", 0.02, 8, preload=100.0), own("B", 0.36, 8, turned=True)]
+    system = ShaftSystem(line, seats, loads=LOAD[:1])
+    wanted = solve_system(system)
+    found = jax.jit(lambda x: x * solve_system(system, throw=False).load)(2.0)
+    np.testing.assert_allclose(found, 2.0 * wanted.load, rtol=1e-9, atol=1e-6)
+
+
 def test_another_system_compiles_no_bearing(monkeypatch):
     """With a bearing turned round, another load and other sizes of bearings."""
     traces, describe = [], load_result.describe

@@ -155,3 +155,20 @@ def test_empty_places_warn_of_nothing(name):
     if name != "set of unlike rows":  # which the standards do not rate
         lives = [bj.rating_life(one).reference_rating_life for one in (found, more)]
         np.testing.assert_allclose(*lives, rtol=SOLVER)
+
+
+def test_known_bearing_in_a_traced_function():
+    """Nothing of it is traced, but in such a function no operation has a number."""
+    element, _ = elements()["deep groove, clearance"]
+    alone = bj.solve_load(element, LOAD)
+
+    @jax.jit
+    def scaled(factor):
+        found = bj.solve_load(element, LOAD, throw=False)
+        life = bj.rating_life(found).basic_rating_life
+        return factor * found.roller_load, factor * life
+
+    load, life = scaled(2.0)
+    np.testing.assert_allclose(load, 2.0 * alone.roller_load, rtol=SOLVER, atol=1e-9)
+    wanted = 2.0 * bj.rating_life(alone).basic_rating_life
+    np.testing.assert_allclose(life, wanted, rtol=SOLVER)

@@ -171,25 +171,6 @@ def program(function: F | None = None, *, quick: bool = False, level: int = 0) -
     return call  # pyright: ignore
 
 
-def call_stored(function: Callable, *arguments: Any) -> Any:
-    """Call a function as it is, or as a quick `program` if programs are kept.
-
-    Args:
-        function: As in `program`.
-        arguments: Nested modules, tuples, dicts; their arrays are traced.
-
-    Returns:
-        Result of the function.
-    """
-    if _STORE.folder is None:
-        return function(*arguments)
-    given = jax.tree.map(_as_array, (arguments, {}))
-    name = _name(function, given) if _can_keep(given) else None
-    if name is None:
-        return function(*arguments)
-    return _run_kept(name, function, given, OPTIONS[0])
-
-
 def _can_keep(given: tuple) -> bool:
     """Whether a call may be one of a kept program: of its own, on the first CPUs."""
     if _STORE.folder is None or jax.config.values["jax_disable_jit"]:
@@ -207,7 +188,8 @@ def _can_keep(given: tuple) -> bool:
 
 
 def _as_array(leaf: Any) -> Any:
-    return jnp.asarray(leaf) if isinstance(leaf, np.ndarray | np.generic) else leaf
+    # `jnp.asarray` would compile a program for every shape.
+    return jax.device_put(leaf) if isinstance(leaf, np.ndarray | np.generic) else leaf
 
 
 def _run_kept(name: str, function: Callable, given: tuple, options: dict) -> Any:
@@ -272,7 +254,8 @@ def _flatten_function(
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function, arguments: As in `call_stored`.
+        function: As in `program`.
+        arguments: Nested modules, tuples, dicts; their arrays are traced.
 
     Returns:
         The function; its arguments; a list that takes up, when the function is

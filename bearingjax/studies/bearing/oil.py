@@ -5,7 +5,6 @@ import dataclasses
 from typing import Any, NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ...files.schema import read_keys
@@ -88,7 +87,7 @@ def oil_facts(
     """
     if solution.speed is None or float(_relative_speed(solution)) == 0.0:
         return None
-    numbers = solution_with_empty_places(jax.tree.map(jnp.asarray, solution))
+    numbers = solution_with_empty_places(jax.device_put(solution))
     rough = None if oil.roughness is None else as_array(oil.roughness, float)
     temperature = as_array(oil.temperature, float)
     series, diameters = None, None

@@ -23,7 +23,7 @@ from ...fits import FitStates
 from ...life.life import LifeConditions
 from ...life.life_warning import given_rating_warnings
 from ...numerics import TrustRegionNewton
-from ...numerics.compiled.programs import call_stored
+from ...numerics.compiled.programs import program
 from ...numerics.warning import Warning
 from ...statics.installed import Installed
 from ...statics.options import DEFAULT_TOLERANCE, SolveOptions
@@ -120,13 +120,14 @@ class Scene:
         """
         if self.installed.preload is None:
             return self.installed
-        return call_stored(_grind_rows, self.installed)
+        return _grind_rows(self.installed)
 
     def running(self) -> BearingElement[Any]:
         """Return the element that all commands solve: ground, mounted, in operation."""
         return self.grind_rows().element_at()
 
 
+@program(quick=True)
 def _grind_rows(bearing: Installed) -> Installed:
     return bearing.grind_rows(throw=False)
 

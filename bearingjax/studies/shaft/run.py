@@ -15,7 +15,6 @@ from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
-from ...numerics.compiled.programs import call_stored
 from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
@@ -203,7 +202,7 @@ class ShaftRun:
         if self.problem or np.isnan(hours[~sprung]).any() or sprung.all():
             return None
         known = np.where(sprung, np.inf, hours)
-        return float(call_stored(system_life, self.task.system, known))
+        return float(system_life(self.task.system, known))
 
 
 def run_shafts(
