@@ -569,11 +569,20 @@ def test_another_system_compiles_no_bearing(monkeypatch):
         load_result, "describe", lambda *args: traces.append(1) or describe(*args)
     )
     line = ShaftLine("s", [0.4], [0.04])
-    # With shoulders, which bearings of other tests do not have.
     solve_system(ShaftSystem(line, [own("A", 0.02, 8), own("B", 0.36, 9)], loads=LOAD))
+    # Unless a test before this one solved such a bearing already.
+    before = len(traces)
+    assert before <= 1
     seats = [own("A", 0.05, 7, turned=True), own("B", 0.2, 9), own("C", 0.36, 8)]
     found = solve_system(ShaftSystem(line, seats, loads=LOAD[:1]))
-    assert found.load.shape == (3, 6) and len(traces) == 1
+    assert found.load.shape == (3, 6) and len(traces) == before
+    # Another kind is another program.
+    other = bj.Installed(
+        bj.BearingElement(bj.CylindricalRollerBearing(9, 0.065, 0.01, 0.011))
+    )
+    seats = [*seats[:2], Seat("N", "s", 0.3, other)]
+    solve_system(ShaftSystem(line, seats, loads=LOAD[:1]))
+    assert len(traces) == before + 1
 
 
 def own(name, position, count, **more):

@@ -504,7 +504,7 @@ def test_numbers_do_not_compile_anew(crowned, monkeypatch):
             RADIAL,
             support=bj.Support(prescribed={"ux": moved}),
             # With a number of points that no other test has.
-            options=bj.statics.SolveOptions(tolerance, steps, points=7),
+            options=bj.statics.SolveOptions(7, tolerance, steps),
             throw=False,
         )
     assert len(traces) == 1
