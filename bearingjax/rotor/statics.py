@@ -209,7 +209,7 @@ def _search_problem(
         jnp.asarray(_FIRST_STEP, load.dtype),
         memory=parts.zeros(),
         direction=load / jnp.where(size > 0, size, 1.0),
-        limit=length,
+        limit=jnp.asarray(length),
         force=load,
     )
 

@@ -120,7 +120,7 @@ def blank_empty_places(solution: Solution, name: str, values: Any) -> Any:
         name: Field.
         values: Its values.
     """
-    rows = bearings_of(solution.element.bearing)
+    rows: Any = bearings_of(solution.element.bearing)
     axes = axes_of(solution, name) or ("",)
     if rows[0].filled is None or axes[0] != "element":
         return values
@@ -151,10 +151,10 @@ def map_elements(function: Callable, result: Any) -> Any:
     """
     parts, changes = {}, {}
     for name, has_elements in _of_elements(type(result)):
-        value = getattr(result, name)
+        value: Any = getattr(result, name)
         if has_elements and value is not None:
             parts[name] = map_elements(function, value)
-        elif np.ndim(value) > (name == "position"):
+        elif getattr(value, "ndim", 0) > (name == "position"):
             changes[name] = function(value if is_traced(value) else np.asarray(value))
     changes = {**parts, **jax.device_put(changes)}
     if isinstance(result, tuple):
