@@ -156,7 +156,7 @@ class Problem:
             asked.append(partial(element.warnings, self.cases, solution))
         return lambda: [text for judge in asked for text in judge()]
 
-    def run(self, unit: np.ndarray, slopes: bool) -> "Run":
+    def run(self, unit: np.ndarray | jax.Array, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""
         return _program(
             self.element,
@@ -169,7 +169,7 @@ class Problem:
             slopes,
         )
 
-    def evaluate(self, unit: np.ndarray, slopes: bool) -> Trial:
+    def evaluate(self, unit: np.ndarray | jax.Array, slopes: bool) -> Trial:
         """The trial of a design.
 
         Args:
