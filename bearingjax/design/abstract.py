@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import equinox as eqx
-from jaxtyping import Array, Float, Int
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
 
 from ..numerics.types import Scalar
 from ..numerics.warning import Warning
-from .checks import count, instance, number
+from .checks import check_filled, count, instance, number
 from .material import Material
 from .published import PublishedRatings
 
@@ -76,6 +77,22 @@ class AbstractBearing(eqx.Module):
         if self.filled is None:
             return self.n_places
         return self.filled.astype(self.pitch_diameter.dtype)
+
+    @property
+    def n_stated(self) -> Any:
+        """What its `n_balls` or `n_rollers` says of the elements that are there, of
+        crossed rollers those of both orientations; as in `n_elements`."""
+        stated = getattr(self, f"n_{self.noun}s")
+        if self.filled is None:
+            return stated
+        return stated // self.n_places * self.filled
+
+    @property
+    def empty_places(self) -> Bool[Array, " place"] | None:
+        """Whether each place is empty; `None`: none is."""
+        if self.filled is None:
+            return None
+        return jnp.arange(self.n_places, dtype=self.filled.dtype) >= self.filled
 
     @property
     @abc.abstractmethod
@@ -201,6 +218,8 @@ class AbstractBearing(eqx.Module):
     def _check_common(self):
         number_of = f"n_{self.noun}s"
         count(self, number_of, getattr(self, number_of))
+        if self.filled is not None:
+            check_filled(self, self.filled, self.n_places)
         number(self, "first_azimuth")
         instance(self, "material", Material)
         instance(self, "ring_material", Material, None)

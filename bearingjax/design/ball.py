@@ -19,7 +19,7 @@ from jaxtyping import Array, Float, Int
 from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
 from .abstract import AbstractBearing
-from .checks import check, check_fields, floats, in_range, number
+from .checks import check, check_fields, floats, in_range, is_traced, number
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .published import PublishedRatings
@@ -301,8 +301,10 @@ class AbstractBallBearing(AbstractBearing):
             "low enough that balls do not overlap around the pitch circle (at most"
             f" {most} of this size)"
         )
-        apart = self.n_balls == 1 or ball < pitch * math.sin(math.pi / self.n_balls)
-        check(self, "n_balls", apart, allowed, self.n_balls, "balls")
+        if not is_traced(self.n_stated):
+            n = int(self.n_stated)
+            apart = n == 1 or ball < pitch * math.sin(math.pi / n)
+            check(self, "n_balls", apart, allowed, n, "balls")
 
     def _check_deviation(self):
         what = "the diameter of each ball less `ball_diameter` in m"

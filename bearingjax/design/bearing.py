@@ -12,7 +12,15 @@ from ..numerics.types import Real, Scalar, as_count, as_real
 from ..numerics.units import meaning, real, unit
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
-from .checks import check, check_fields, floats, in_range, instance, number
+from .checks import (
+    check,
+    check_fields,
+    floats,
+    in_range,
+    instance,
+    is_traced,
+    number,
+)
 from .deviation import check_deviation, check_raceways, check_spacing
 from .material import Material
 from .profile import AbstractProfile, Straight
@@ -296,10 +304,10 @@ class AbstractRollerBearing(AbstractBearing):
                 "low enough that rollers do not overlap around the pitch circle (at"
                 f" most {most} of this size)"
             )
-            apart = self.n_rollers == 1 or radius < circle * math.sin(
-                math.pi / self.n_rollers
-            )
-            check(self, "n_rollers", apart, allowed, self.n_rollers, "rollers")
+            if not is_traced(self.n_stated):
+                n = int(self.n_stated)
+                apart = n == 1 or radius < circle * math.sin(math.pi / n)
+                check(self, "n_rollers", apart, allowed, n, "rollers")
         allowed = "smaller in size than the roller diameter (metres meant?)"
         small = abs(clearance) < diameter
         check(self, "radial_internal_clearance", small, allowed)

@@ -66,6 +66,29 @@ def check(owner: Any, name: str, ok: Any, allowed: str, *given: Any) -> None:
     raise ValueError(f"{_title(owner)}: `{name}` is {shown}; it must be {allowed}.")
 
 
+def check_filled(owner: Any, filled: Any, places: int) -> None:
+    """Raise unless a number of filled places is a whole one of them.
+
+    Args:
+        owner: The bearing.
+        filled: Its `filled`: an array of whole numbers.
+        places: Number of its places.
+
+    Raises:
+        TypeError: If it is no array of whole numbers, which a program may take.
+        ValueError: If it is below 1 or above the number of places.
+    """
+    if getattr(getattr(filled, "dtype", None), "kind", "") != "i":
+        raise TypeError(
+            f"{_title(owner)}: `filled` is {filled!r}; it must be an array of whole"
+            " numbers, as `design.places.with_places` makes it."
+        )
+    if not is_traced(filled):
+        known = np.asarray(filled)
+        allowed = f"from 1 to the number of places, {places}"
+        check(owner, "filled", (known >= 1) & (known <= places), allowed, known, "")
+
+
 def is_real(value: Any) -> bool:
     """Whether a value is a real number or an array of them; traced ones pass."""
     if is_traced(value):

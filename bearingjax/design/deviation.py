@@ -130,7 +130,11 @@ def check_spacing(owner: Any, count: int, diameter: float) -> None:
     what = "the azimuth of each rolling element less that of even spacing in rad"
     value = check_deviation(owner, "azimuth_deviation", count, what)
     numbers = floats(owner.pitch_diameter)
-    if value is None or numbers is None or count < 2:
+    if value is None or numbers is None or is_traced(owner.n_elements):
+        return
+    count = int(owner.n_elements)
+    value = value[:count]
+    if count < 2:
         return
     least = 2.0 * np.arcsin(min(1.0, diameter / numbers[0]))
     between = 2.0 * np.pi / count + np.roll(value, -1) - value

@@ -57,8 +57,8 @@ def rated_dimensions(row: Any) -> Any:
         if name == "contact_angle":
             nominal = getattr(row, "rated_contact_angle", None)
             value = value if nominal is None else nominal
-        if name == f"n_{row.noun}s" and row.filled is not None:
-            value = value // row.n_places * row.filled
+        if name == f"n_{row.noun}s":
+            value = row.n_stated
         if value is not None:
             values.append(value)
     xp = jnp if any(map(is_traced, values)) else np

@@ -437,9 +437,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             place = RowPlacement(
                 *((none, sign, none) if itself else (position, sign, offset))
             )
-        absent = None
-        if bearing.filled is not None:
-            absent = jnp.arange(bearing.n_places, dtype=jnp.int32) >= bearing.filled
         return Row(
             element=element,
             azimuth=azimuths(bearing),
@@ -448,6 +445,6 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
             pitch_radius=0.5 * bearing.pitch_diameter,
             place=place,
             spring=part.spring,
-            absent=absent,
+            absent=bearing.empty_places,
             per_element=per_element,
         )

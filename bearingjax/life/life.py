@@ -455,7 +455,7 @@ def _loads_of_rollers(solution, with_edges):
 _LOADS = {BallSolution: _loads_of_balls, RollerSolution: _loads_of_rollers}
 
 
-@program(quick=True)
+@program(quick=True, what="rating life")
 def _life(bearing, solution, *others) -> Life:
     return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
 

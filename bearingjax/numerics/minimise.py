@@ -320,8 +320,8 @@ class TrustRegionNewton(AbstractMinimiser):
         """Return the step of x to the point that `judge` asks for (n,).
 
         Args:
-            problem: Its function is not called.
-            state: As in `step`.
+            problem: Problem whose function is not called.
+            state: State before the step.
         """
         eps, tiny = (getattr(jnp.finfo(state.x.dtype), k) for k in ("eps", "tiny"))
         n, first = state.x.shape[0], state.steps < 0
@@ -344,8 +344,8 @@ class TrustRegionNewton(AbstractMinimiser):
         """Return the state after a step that was proposed.
 
         Args:
-            problem: Its function is not called.
-            state: As in `step`.
+            problem: Problem whose function is not called.
+            state: State before the step.
             p: Step of `propose` (n,).
             there: The function at its end.
         """

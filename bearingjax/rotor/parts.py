@@ -267,8 +267,8 @@ class AbstractSupport(eqx.Module):
         """Return `respond` of known numbers, by a program of its kind of support.
 
         Args:
-            motion: As `force`, in NumPy.
-            speed: As `force`; `None`: at rest.
+            motion: Motion of the station less that of the housing (5,) [m, rad].
+            speed: Speed of the rotor [rad/s]; `None`: at rest.
         """
         return _respond(self, motion, np.zeros(()) if speed is None else speed)
 

@@ -1,18 +1,18 @@
 """Axial preload of a bearing on a shaft, by force."""
 
+from functools import partial
+
 import jax.numpy as jnp
 import numpy as np
 
 from ..design.bearing_set import bearings_of
 from ..design.checks import are_known, positive
 from ..element.bearing_element import BearingElement, check_element
-from ..element.inertia import Speed
 from ..numerics.result import Result
 from ..numerics.types import Scalar, as_real
 from ..statics.load import solve_load
-from ..statics.load_result import solution_at
-from ..statics.options import SolveOptions
 from ..statics.support import Support
+from .bearing_support import BearingSupport
 from .condensation import CondensedRotor
 from .rotor import N_STATION
 from .statics import search_by_parts
@@ -61,17 +61,8 @@ def preload_offset(
 def _search(element, pushing, inertia) -> Scalar | None:
     """Return the displacement by calls of the program of a kind of bearing, or `None`
     if that finds none."""
-    still = None if inertia is None else Speed(0.0, 0.0)
-    points = SolveOptions().points
-
-    def respond(motion):
-        rings = as_real(np.append(np.zeros(6), [*motion, 0.0]))
-        found = solution_at(element, rings, still, points, bool(inertia))
-        held = 1.0 if int(found.result) == Result.CONVERGED else np.nan
-        force, stiffness = np.asarray(found.force), np.asarray(found.stiffness)
-        along = slice(6, 6 + N_STATION)
-        return force[along] * held, stiffness[along, along], np.zeros((N_STATION,) * 2)
-
+    support = BearingSupport(0, element, inertia=bool(inertia))
+    still = None if inertia is None else 0.0
     rows = np.zeros((1, N_STATION, 1))
     rows[0, 2] = 1.0
     parts = CondensedRotor(
@@ -84,5 +75,8 @@ def _search(element, pushing, inertia) -> Scalar | None:
         speed=as_real(0.0),
     )
     radii = [0.5 * float(row.pitch_diameter) for row in bearings_of(element.bearing)]
+    respond = partial(support.respond_alone, speed=still)
     found = search_by_parts(parts, as_real(8.0 * max(radii)), [respond])
-    return found.x[0] if found.result == Result.CONVERGED else None
+    if int(found.result) != Result.CONVERGED:
+        return None
+    return as_real(np.asarray(found.x)[0])

@@ -198,7 +198,8 @@ def _search_problem(
     """Return the problem that `_SOLVER` solves in the search of an equilibrium.
 
     Args:
-        parts, length: As in `search_equilibrium`.
+        parts: Condensed rotor, or several.
+        length: Limit of the displacements [m].
         function: From the motions to an `Evaluation`; `None`: it is not called.
     """
     load = parts.force

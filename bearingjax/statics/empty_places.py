@@ -124,9 +124,8 @@ def blank_empty_places(solution: Solution, name: str, values: Any) -> Any:
     axes = axes_of(solution, name) or ("",)
     if rows[0].filled is None or axes[0] != "element":
         return values
-    absent = [jnp.arange(row.n_places, dtype=jnp.int32) >= row.filled for row in rows]
-    shape = (-1,) + (1,) * (values.ndim - 1)
-    return jnp.where(jnp.concatenate(absent).reshape(shape), jnp.nan, values)
+    empty = jnp.concatenate([row.empty_places for row in rows])
+    return jnp.where(empty.reshape(-1, *[1] * (values.ndim - 1)), jnp.nan, values)
 
 
 def spread_elements(values: np.ndarray, places: np.ndarray, size: int) -> np.ndarray:

@@ -125,7 +125,7 @@ def solution_at(
     return without_empty_places(found, element)
 
 
-@program(quick=True)
+@program(quick=True, what="a bearing in its place")
 def _solution_at(element, q, speed, points, inertia, no_load) -> Solution:
     least = no_load * stiffness_scale(element.bearing)
     model = element.model(speed if inertia else None)

@@ -124,18 +124,17 @@ def _compiling(function: Callable) -> contextlib.AbstractContextManager:
     """Context in which a program is compiled, about which `tell_compiling` asked."""
     if _STORE.telling is None:
         return contextlib.nullcontext()
-    what = _WHAT.get(function.__name__, function.__module__.split(".")[1])
+    what = _WHAT.get(_place_of(function), function.__module__.split(".")[1])
     return _STORE.telling(f"compiling: {what} (once for this kind)")
 
 
-_WHAT = {
-    "_solve": "solving a bearing under load",
-    "_solution_at": "a bearing in its place",
-    "_life": "rating life",
-    "_facts": "friction and films",
-    "_solve_block": "sweep",
-}
-"""What programs do, in words, by their names; others are called by their package."""
+def _place_of(function: Callable) -> str:
+    return f"{function.__module__}.{function.__qualname__}"
+
+
+_WHAT: dict[str, str] = {}
+"""What programs do, in words, by the names of their functions; others are called by
+their package."""
 
 
 def user_cache() -> Path:
@@ -144,7 +143,13 @@ def user_cache() -> Path:
     return Path(base) / "bearingjax"
 
 
-def program(function: F | None = None, *, quick: bool = False, level: int = 0) -> F:
+def program(
+    function: F | None = None,
+    *,
+    quick: bool = False,
+    level: int = 0,
+    what: str | None = None,
+) -> F:
     """Compile as `equinox.filter_jit`; programs are kept if `keep_programs` is called.
 
     Args:
@@ -155,9 +160,14 @@ def program(function: F | None = None, *, quick: bool = False, level: int = 0) -
         level: Which of `OPTIONS` then: 0 for a run of less than a second, 1 for one of
             seconds, which is as fast as if compiled with all effort where matrices are
             small.
+        what: What it does, in words, for `tell_compiling`; `None`: that of its package.
     """
     if function is None:
-        return functools.partial(program, quick=quick, level=level)  # pyright: ignore
+        return functools.partial(  # pyright: ignore
+            program, quick=quick, level=level, what=what
+        )
+    if what is not None:
+        _WHAT[_place_of(function)] = what
     jitted = eqx.filter_jit(function)
 
     @functools.wraps(function)
@@ -254,7 +264,7 @@ def _flatten_function(
     """A function of arrays that returns a list of arrays, as executables are.
 
     Args:
-        function: As in `program`.
+        function: Function of a module of this package.
         arguments: Nested modules, tuples, dicts; their arrays are traced.
 
     Returns:

@@ -97,6 +97,11 @@ def _preload(element: BearingElement, offset: Any) -> _Preloaded:
     return _Preloaded(each / positive_power(approach, 3, 2), angle, approach)
 
 
+def _count(bearing) -> int:
+    """Return its number of balls, which is the length of arrays of a law."""
+    return int(bearing.n_elements)
+
+
 class FixedAngle(AbstractSupportLaw):
     """Law with a fixed contact angle of every ball.
 
@@ -130,7 +135,7 @@ class FixedAngle(AbstractSupportLaw):
                 `preload_offset` [m].
         """
         constant, angle, approach = _preload(element, offset)
-        return cls(constant, angle, approach / jnp.sin(angle), element.bearing.n_balls)
+        return cls(constant, angle, approach / jnp.sin(angle), _count(element.bearing))
 
     def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion
@@ -173,7 +178,7 @@ class MovingAngle(AbstractSupportLaw):
         constant, angle, approach = _preload(element, offset)
         bearing = element.bearing
         distance = bearing.centre_distance
-        return cls(constant, angle, approach, distance, bearing.n_balls)
+        return cls(constant, angle, approach, distance, _count(bearing))
 
     def potential(self, motion: Float[Array, "3"]) -> Scalar:
         x, y, z = motion

@@ -106,7 +106,7 @@ def _relative_speed(solution):
     return np.asarray(solution.speed.inner) - np.asarray(solution.speed.outer)
 
 
-@program(quick=True)
+@program(quick=True, what="friction and films")
 def _facts(solution, lubricant, temperature, supply, roughness, series, diameters):
     viscosity = lubricant.kinematic_viscosity(temperature)
     friction, skf = None, None
