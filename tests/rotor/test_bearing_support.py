@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from machines import bearing
 from scipy.optimize import brentq
-from tolerances import DIFFERENCE, ROUNDING
+from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import OUTER
 
 import bearingjax as bj
@@ -146,3 +146,22 @@ def test_bad_input(make, error, message):
     element = bj.BearingElement(bearing(6.852, OUTER[12]))
     with pytest.raises(error, match=message):
         make(element)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_support_of_known_numbers_is_that_of_traced_ones(turned):
+    """By the program of its kind, and as part of another."""
+    bearing = bj.AngularContactBallBearing(
+        7, 0.052, 0.0095, contact_angle=0.44, outer_osculation=0.53,
+        inner_osculation=0.52,
+    )  # fmt: skip
+    offset = [0.0, 0.0, 2e-5, 0.0, 0.0]
+    element = bj.BearingElement(bearing)
+    support = BearingSupport(0, element, offset, turned=turned, inertia=True)
+    motion = np.array([4e-6, -7e-6, 3e-6, 2e-4, -1e-4])
+    speed = jnp.asarray(2500.0)
+    found = support.respond_alone(motion, speed)
+    wanted = jax.jit(lambda at: support.respond(at, speed))(jnp.asarray(motion))
+    for a, b in zip(found, wanted, strict=True):
+        b = np.asarray(b)
+        np.testing.assert_allclose(a, b, 0, SOLVER * np.abs(b).max(initial=0.0))

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
+from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.friction import films
@@ -20,7 +21,7 @@ from bearingjax.shafts import (
     bearing_solutions,
     solve_system,
 )
-from bearingjax.shafts.seats import axial_growth
+from bearingjax.shafts.seats import axial_growth, offset_of, supports_of
 from bearingjax.statics import BallSolution, load_result, warnings
 
 LOAD = [
@@ -547,9 +548,22 @@ def test_system_of_known_numbers_is_that_of_a_traced_one():
             strict=True,
         ):
             a, b, name = np.asarray(a), np.asarray(b), jax.tree_util.keystr(path)
-            size = 1e-9 * np.abs(b).max(initial=0.0) + 1e-16
+            size = SOLVER * np.abs(b).max(initial=0.0) + 1e-16
             if name != ".residual":
                 np.testing.assert_allclose(a, b, 0, size, err_msg=name)
+
+
+def test_offset_of_a_turned_bearing():
+    """What heat moves along the shaft is against the z of a bearing turned round; its
+    own offset is in its axes, and so is that of the support by which it is solved."""
+    for turned, along in ((False, 5e-6), (True, -1e-6)):
+        seat = own("A", 0.02, 8, turned=turned, axial_offset=2e-6)
+        offset = offset_of(seat, jnp.asarray(3e-6))
+        np.testing.assert_allclose(offset, [0, 0, along, 0, 0], rtol=ROUNDING)
+        system = ShaftSystem(ShaftLine("s", [0.4], [0.04]), [seat])
+        (support,) = supports_of(system, np.zeros(1), np.array([3e-6]))
+        np.testing.assert_allclose(support.offset, offset, rtol=ROUNDING)
+        assert bool(support.turned) is turned
 
 
 def test_known_system_in_a_traced_function():
@@ -559,7 +573,7 @@ def test_known_system_in_a_traced_function():
     system = ShaftSystem(line, seats, loads=LOAD[:1])
     wanted = solve_system(system)
     found = jax.jit(lambda x: x * solve_system(system, throw=False).load)(2.0)
-    np.testing.assert_allclose(found, 2.0 * wanted.load, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(found, 2.0 * wanted.load, rtol=SOLVER, atol=1e-6)
 
 
 def test_another_system_compiles_no_bearing(monkeypatch):

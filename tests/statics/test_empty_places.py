@@ -1,6 +1,9 @@
 """Rows with empty places: the same results, and one program for all of a kind."""
 
+import dataclasses
+
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from registry import ball_elements, bearings, speeds
@@ -80,6 +83,30 @@ def test_places_are_taken_away_again(name):
 def test_places_must_hold_the_elements():
     with pytest.raises(ValueError, match="`places` is 5; .* rolling elements, 7"):
         with_places(bearings()["cylindrical, crowned ends"], 5)
+
+
+def test_filled_places_must_be_places(untyped):
+    rows = bearings()["cylindrical, crowned ends"]
+    with pytest.raises(ValueError, match="`filled` is 9; .* number of places, 7"):
+        dataclasses.replace(rows, filled=jnp.asarray(9, jnp.int32))
+    with pytest.raises(TypeError, match="`filled` is 5; .*array of whole numbers"):
+        dataclasses.replace(rows, filled=5)
+
+
+def test_a_row_with_empty_places_may_be_changed():
+    """Its checks are those of the elements that are there."""
+    rows = bearings()["cylindrical, crowned ends"]
+    padded = with_places(rows, 64)  # so many would overlap
+    changed = dataclasses.replace(padded, radial_internal_clearance=2e-6)
+    assert int(changed.n_elements) == rows.n_rollers and changed.n_places == 64
+    with pytest.raises(ValueError, match="`n_rollers` is 7 rollers; .*not overlap"):
+        dataclasses.replace(padded, roller_diameter=0.034)
+
+
+def test_ratings_of_a_row_with_empty_places_are_published():
+    row = bj.design.bearing_of(bj.catalogue_entry("6205").design)
+    found, wanted = bj.ratings(with_places(row)), bj.ratings(row)
+    assert float(found.dynamic_capacity) == float(wanted.dynamic_capacity) > 0
 
 
 def test_bearings_of_a_kind_share_a_program(monkeypatch):
