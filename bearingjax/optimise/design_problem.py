@@ -176,7 +176,7 @@ class Problem:
             unit: Variables in the unit box (variable,).
             slopes: Whether gradients are wanted.
         """
-        nothing = np.zeros(0)
+        unit, nothing = np.asarray(unit), np.zeros(0)
         failed = Trial(unit, np.nan, None, nothing, None)
         try:
             with_values(self.element, self.paths, self.values(unit))

@@ -10,6 +10,7 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.friction import films
+from bearingjax.rotor import BearingSupport
 from bearingjax.shafts import (
     Drive,
     Gear,
@@ -562,6 +563,7 @@ def test_offset_of_a_turned_bearing():
         np.testing.assert_allclose(offset, [0, 0, along, 0, 0], rtol=ROUNDING)
         system = ShaftSystem(ShaftLine("s", [0.4], [0.04]), [seat])
         (support,) = supports_of(system, np.zeros(1), np.array([3e-6]))
+        assert isinstance(support, BearingSupport)
         np.testing.assert_allclose(support.offset, offset, rtol=ROUNDING)
         assert bool(support.turned) is turned
 
