@@ -10,6 +10,7 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jax.custom_derivatives import SymbolicZero
 from jax.flatten_util import ravel_pytree
@@ -277,6 +278,22 @@ def _rule_through_jacobian(primals, tangents, *, function):
         )
         change = change + more
     return value, change
+
+
+def with_zeros(given: Any, change: Any) -> Any:
+    """Return a change with zeros in place of `None`: a program that takes it is the
+    same whatever changes.
+
+    Args:
+        given: What changes.
+        change: Its change, from `equinox.filter_jvp`.
+    """
+
+    def fill(leaf, moved):
+        still = moved is None and eqx.is_inexact_array(leaf)
+        return np.zeros(leaf.shape, leaf.dtype) if still else moved
+
+    return jax.tree.map(fill, given, change)
 
 
 def stop_gradient(tree: T) -> T:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Annotated, Any, NamedTuple
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -158,6 +159,9 @@ class Problem:
 
     def run(self, unit: np.ndarray | jax.Array, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""
+        whole = self.element
+        if isinstance(whole, AbstractSystem) and whole.is_solved_by_parts(self.cases):
+            return self._run_by_parts(unit, slopes)
         return _program(
             self.element,
             self.cases,
@@ -168,6 +172,24 @@ class Problem:
             jnp.asarray(unit),
             slopes,
         )
+
+    def _run_by_parts(self, unit, slopes) -> "Run":
+        def design_at(unit):
+            values = self.lower + self.width * unit
+            return prepare(with_values(self.element, self.paths, values), self.build)
+
+        ways = np.eye(unit.size) if slopes else ()
+        changes = [eqx.filter_jvp(design_at, (unit,), (way,))[1] for way in ways]
+        whole: Any = design_at(unit)
+        solution, moved = whole.solve_by_parts(self.cases, changes)
+        given = self.measures, self.cases
+        measures, exact = _judge(*given, whole, solution)
+        jacobian = None
+        if slopes and moved is not None:
+            both = zip(changes, moved, strict=True)
+            slope = [_judge_change(*given, (whole, solution), pair) for pair in both]
+            jacobian = np.stack(slope, axis=1)
+        return Run(measures, exact, solution, jacobian)
 
     def evaluate(self, unit: np.ndarray | jax.Array, slopes: bool) -> Trial:
         """The trial of a design.
@@ -229,10 +251,8 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
             solution = jax.vmap(solve_one)(cases)
         else:
             solution = jax.lax.map(solve_one, cases, batch_size=CHUNK)
-        values = [_scalar(m, m(design, cases, solution)) for m in measures]
-        exact = [exact_of(m, design, cases, solution) for m in measures]
-        values = jnp.stack(values)
-        return values, (values, jnp.stack(exact), solution)
+        values, exact = _judge(measures, cases, design, solution)
+        return values, (values, exact, solution)
 
     if slopes:
         jacobian, found = jax.jacrev(outputs, has_aux=True)(unit)
@@ -240,6 +260,22 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
         jacobian, found = None, outputs(unit)[1]
     measured, exact, solution = found
     return Run(measured, exact, solution, jacobian)
+
+
+@program(quick=True)
+def _judge(measures, cases, design, solution):
+    """Return the measures, smooth and exact."""
+    values = [_scalar(m, m(design, cases, solution)) for m in measures]
+    exact = [exact_of(m, design, cases, solution) for m in measures]
+    return jnp.stack(values), jnp.stack(exact)
+
+
+@program(quick=True)
+def _judge_change(measures, cases, solved, change):
+    def judge(design, solution):
+        return _judge(measures, cases, design, solution)[0]
+
+    return eqx.filter_jvp(judge, solved, change)[1]
 
 
 def _scalar(measure, value):

@@ -2,7 +2,7 @@
 or a machine with several bearings."""
 
 import abc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -57,6 +57,30 @@ class AbstractSystem(eqx.Module):
             A Module with the load solve of the bearing as `solution`, if there is one
             bearing, and the `Result` code of the whole solve as `result`.
         """
+
+    def is_solved_by_parts(self, cases: Any) -> bool:
+        """Whether `solve_by_parts` solves such cases; by default there is none.
+
+        Args:
+            cases: Operating cases.
+        """
+        return False
+
+    def solve_by_parts(
+        self, cases: Any, changes: Sequence[Any]
+    ) -> tuple[Any, list[Any] | None]:
+        """Solve all cases of known numbers with calls of smaller programs, and return
+        the derivatives along changes of the design.
+
+        Args:
+            cases: Operating cases.
+            changes: Changes of the design, `None` for what is no real number.
+
+        Returns:
+            Solved cases, leading axis case, and their change with each change of the
+            design; `None` if a case failed.
+        """
+        raise NotImplementedError
 
     @abc.abstractmethod
     def failure_message(self, solved: Any) -> str:

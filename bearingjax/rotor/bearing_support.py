@@ -35,7 +35,7 @@ _INNER = slice(_N_RING, _N_RING + len(STATION_FREEDOMS))
 """(ux uy uz gx gy) of the inner ring among the freedoms of both rings."""
 _TURN = 2 * _N_RING - 1
 """gz of the inner ring."""
-_TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
+TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 """Signs from a half turn about x of (ux uy uz gx gy), and of forces and moments."""
 
 
@@ -152,7 +152,7 @@ class BearingSupport(AbstractSupport):
             motion: Motion of the station (5,) [m, rad].
             speed: Speed of its shaft [rad/s]; `None`: at rest.
         """
-        sense = np.where(self.turned, _TURNED, 1.0)
+        sense = np.where(self.turned, TURNED, 1.0)
         rings = np.zeros(2 * _N_RING)
         rings[_INNER] = np.asarray(self.offset) + sense * motion
         turning = None if speed is None else Speed(inner=sense[2] * speed)
@@ -167,7 +167,7 @@ class BearingSupport(AbstractSupport):
 
     def _sense(self, dtype):
         """Return signs of a motion (5,) and of the speed if the bearing is turned."""
-        sense = jnp.where(self.turned, jnp.asarray(_TURNED, dtype), 1.0)
+        sense = jnp.where(self.turned, jnp.asarray(TURNED, dtype), 1.0)
         # Seen from the other side the rotor turns the other way.
         return sense, sense[2]
 

@@ -13,7 +13,7 @@ from jaxtyping import Array, Float, Int
 
 from ..cases.cases import check_hours
 from ..design import rows_of
-from ..design.checks import is_traced
+from ..design.checks import on_host
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
 from ..life.life import LifeConditions, rating_life
@@ -29,6 +29,7 @@ from ..statics.warning import sizes
 from .equilibrium import check_torques, system_state, torques_left
 from .power import power_flow
 from .seats import in_place, speed_of, with_preload_offsets
+from .state import SystemSolution
 from .system import ShaftSystem, feel_speed
 
 BATCH = 64
@@ -237,9 +238,16 @@ def state_of(system: ShaftSystem) -> dict[str, Any]:
     Args:
         system: From `with_preload_offsets`.
     """
-    found, _ = system_state(system)
-    if not any(map(is_traced, jax.tree.leaves(found))):
-        found = jax.device_get(found)
+    return numbers_of(system_state(system)[0])
+
+
+def numbers_of(found: SystemSolution) -> dict[str, Any]:
+    """Return what `state_of` does of a system that is solved.
+
+    Args:
+        found: Its solution.
+    """
+    found = on_host(found)
     names = "load displacement misalignment motion result".split()
     kept = {name: getattr(found, name) for name in names}
     left, most = torques_left(found.power)
@@ -253,8 +261,6 @@ def _rate(
 ) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
     solution = in_place(installed, motion, speed, inertia, 101)
-    if not any(map(is_traced, jax.tree.leaves(solution))):
-        solution = jax.device_get(solution)
     return bearing_results(solution, speed, conditions)
 
 
@@ -268,9 +274,9 @@ def bearing_results(
         speed: Its ring speeds.
         conditions: Life conditions of the bearing.
     """
-    life = rating_life(solution.element, solution, conditions, speed=speed)
-    if isinstance(solution.result, np.ndarray):
-        life = jax.device_get(life)
+    solution = on_host(solution)
+    given = solution.element, solution, conditions
+    life = on_host(rating_life(*given, speed=speed))
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}
     doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))

@@ -8,15 +8,15 @@ as that of a single rotor.
 from functools import partial
 from typing import Annotated, Any, NamedTuple
 
-import jax
 import jax.numpy as jnp
 import jax.scipy as jsp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import are_known, is_traced, of_class
+from ..design.checks import are_known, is_traced, of_class, on_host
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
+from ..numerics.minimise import Minimum
 from ..numerics.result import Result, raise_unless_converged
 from ..numerics.types import Scalar, array_namespace, with_fields
 from ..numerics.units import unit
@@ -83,9 +83,7 @@ def searched_system(
         ValueError, SolveError: As `solve_system`, but for a failed search.
     """
     found, place = system_state(with_preload_offsets(system))
-    power = found.power
-    if not is_traced(found.result):
-        power = jax.device_get(power)
+    power = on_host(found.power)
     check_torques(system, power.output_shaft, *torques_left(power))
     return found, place
 
@@ -143,18 +141,53 @@ def system_state(
     """
     if not are_known(system):
         return _state_in_one(system)
-    bare, held = _without_bearings(system), _held_senses(system)
+    return describe_search(system, search_known(system))
+
+
+class Search(NamedTuple):
+    """End of the search of a system of known numbers.
+
+    Attributes:
+        bare: The system without its bearings.
+        machine: The same, worked out.
+        found: End of the search, whose memory are force, stiffness and damping of the
+            bearings there in the axes of their shafts.
+    """
+
+    bare: ShaftSystem
+    machine: "Machine"
+    found: Minimum
+
+
+def search_known(system: ShaftSystem) -> Search:
+    """Search the equilibrium with a call of a program for each bearing.
+
+    Args:
+        system: From `with_preload_offsets`, of known numbers.
+    """
+    bare = without_bearings(system)
     machine, length = _assemble(bare)
     speeds = np.asarray(machine.whole.speed)
     supports = supports_of(system, speeds, np.asarray(machine.growth))
     known = speeds if system.inertia is not None else [None] * len(supports)
     pairs = zip(supports, known, strict=True)
     respond = [partial(one.respond_alone, speed=at) for one, at in pairs]
-    found = search_by_parts(machine.whole, length, respond)
-    return _describe(bare, machine, found, held)
+    return Search(bare, machine, search_by_parts(machine.whole, length, respond))
 
 
-class _Machine(NamedTuple):
+def describe_search(
+    system: ShaftSystem, end: Search
+) -> tuple[SystemSolution, Float[Array, " motion"]]:
+    """Return `system_state` at the end of a search.
+
+    Args:
+        system: The system that was searched.
+        end: From `search_known`.
+    """
+    return _describe(*end, _held_senses(system))
+
+
+class Machine(NamedTuple):
     """A system of shafts without what its bearings are.
 
     Attributes:
@@ -172,13 +205,17 @@ class _Machine(NamedTuple):
     growth: Annotated[Float[Array, " bearing"], unit("m")]
 
 
-def _without_bearings(system: ShaftSystem) -> ShaftSystem:
-    """Return a system whose bearings are not there, but their seats."""
+def without_bearings(system: ShaftSystem) -> ShaftSystem:
+    """Return a system whose bearings are not there, but their seats and springs.
+
+    Args:
+        system: The system, or a change of its numbers.
+    """
 
     def empty(seat):
         inside = seat.installed
         if inside is None:
-            return with_fields(seat, stiffness=None)
+            return seat
         bare = with_fields(inside, drawing=None, limits=None, preload=None)
         bare = with_fields(bare, limiting_speed=None, reference_speed=None)
         return with_fields(seat, installed=bare)
@@ -186,8 +223,12 @@ def _without_bearings(system: ShaftSystem) -> ShaftSystem:
     return with_fields(system, seats=tuple(map(empty, system.seats)))
 
 
-def _machine_of(system: ShaftSystem) -> _Machine:
-    """Work out a system but for its bearings; they need not be there."""
+def machine_of(system: ShaftSystem) -> Machine:
+    """Work out a system but for its bearings; they need not be there.
+
+    Args:
+        system: The system.
+    """
     power = power_flow(system)
     rotors, points = [], []
     for index in range(len(system.shafts)):
@@ -197,12 +238,12 @@ def _machine_of(system: ShaftSystem) -> _Machine:
         rotors.append(Rotor(beam, (), springs, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
     whole = with_fields(_couple(system, rotors, points, power), supports=())
-    return _Machine(power, rotors, points, whole, axial_growth(system))
+    return Machine(power, rotors, points, whole, axial_growth(system))
 
 
 @program(quick=True)
-def _assemble(system) -> tuple[_Machine, Scalar]:
-    return _machine_of(system), max_length(system)
+def _assemble(system) -> tuple[Machine, Scalar]:
+    return machine_of(system), max_length(system)
 
 
 @program(quick=True)
@@ -210,12 +251,12 @@ def _describe(system, machine, found, held):
     whole = machine.whole
     found = _name_end(system, found, whole, held)
     at = known_at(found)[:3]
-    return _state_at(found, at, system, machine), whole.motion(found.x)
+    return state_at(found, at, system, machine), whole.motion(found.x)
 
 
 @program(quick=True)
 def _state_in_one(system):
-    machine = _machine_of(system)
+    machine = machine_of(system)
     supports = supports_of(system, machine.whole.speed, machine.growth)
     machine = machine._replace(whole=with_fields(machine.whole, supports=supports))
     whole = stop_gradient(machine.whole)
@@ -224,14 +265,24 @@ def _state_in_one(system):
 
     def describe(system, machine) -> SystemSolution:
         y, force, stiffness, _ = at_equilibrium(found, machine.whole)
-        return _state_at(found, (y, force, stiffness), system, machine)
+        return state_at(found, (y, force, stiffness), system, machine)
 
     solved = found.result == Result.CONVERGED
     solution = unless_failed(describe, (system, machine), solved)
     return solution, whole.motion(found.x)
 
 
-def _state_at(found, at, system, machine) -> SystemSolution:
+def state_at(
+    found: Minimum, at: tuple[Any, ...], system: ShaftSystem, machine: Machine
+) -> SystemSolution:
+    """Return the state at the end of a search, with derivatives; NaN if it failed.
+
+    Args:
+        found: End of the search.
+        at: Condensed motions, and force and stiffness of the bearings there.
+        system: The system; its bearings need not be there.
+        machine: The same, worked out.
+    """
     power, rotors, points, whole, growth = machine
     offsets = [
         jnp.zeros(N_STATION) if seat.installed is None else offset_of(seat, moved)

@@ -76,18 +76,22 @@ def as_mounted(installed: Installed) -> BearingElement:
     """
     if not are_known(installed):
         return _as_mounted(installed)
-    return _as_mounted(_of_its_kind(installed))
+    return _as_mounted(installed_of_kind(installed))
 
 
 @program(quick=True)
 def _as_mounted(installed):
-    cold = installed.conditions
-    if cold is not None:
-        cold = jax.tree.map(lambda part: part - part, cold)
-    installed = eqx.tree_at(
-        lambda i: i.conditions, installed, cold, is_leaf=lambda leaf: leaf is None
-    )
-    return installed.element_at(throw=False)
+    return in_the_cold(installed).element_at(throw=False)
+
+
+def in_the_cold(installed: Installed) -> Installed:
+    """Return a bearing on its seats, at the temperature of the measured sizes.
+
+    Args:
+        installed: The bearing.
+    """
+    cold = jax.tree.map(lambda part: part - part, installed.conditions)
+    return with_fields(installed, conditions=cold)
 
 
 def supports_of(
@@ -112,7 +116,7 @@ def supports_of(
         inside = seat.installed
         bare = with_fields(seat, installed=None, name="", shaft="", turned=False)
         if are_known(seat, speeds, growth):
-            inside = _of_its_kind(inside)
+            inside = installed_of_kind(inside)
         turned = jnp.asarray(np.array(seat.turned))
         given = inside, bare, turned, growth[k], speeds[k]
         found.append(_bearing_support(*given, bool(system.inertia)))
@@ -239,15 +243,19 @@ def in_place(
     rest = xp.zeros(1)
     rings = xp.concatenate([xp.zeros(_RING), motion, rest])
     if known:
-        installed, rings = _of_its_kind(installed), as_real(rings)
+        installed, rings = installed_of_kind(installed), as_real(rings)
     element, turning = _warm(installed, speed), None if inertia is None else speed
     found = solution_at(element, rings, turning, points, bool(inertia))
     return without_empty_places(found) if known else found
 
 
-def _of_its_kind(installed: Installed) -> Installed:
+def installed_of_kind(installed: Installed) -> Installed:
     """Return a bearing that shares its program with all of its kind: with empty places,
-    and without what changes no solution."""
+    and without what changes no solution.
+
+    Args:
+        installed: The bearing.
+    """
     return with_fields(
         installed,
         drawing=with_empty_places(installed.drawing),

@@ -15,12 +15,12 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..cases.cases import check_hours
-from ..design.checks import one_of
+from ..design.checks import are_known, on_host, one_of
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, array_namespace, as_real
 from ..numerics.units import unit
 from ..numerics.warning import Warning, warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
@@ -28,18 +28,20 @@ from ..optimise.smooth import smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
+from .changes import BearingNumbers, PlacedBearing, numbers_of_bearing, state_changes
 from .duty import (
+    FEW,
     LIVES,
     DutyResult,
     align_systems,
     bearing_hours,
-    bearing_results,
-    state_of,
+    numbers_of,
     system_life,
 )
+from .equilibrium import describe_search, search_known, system_state
 from .parts import Gear
 from .power import power_flow
-from .seats import in_place, speed_of, with_preload_offsets
+from .seats import speed_of, with_preload_offsets
 from .system import ShaftSystem
 from .warning import load_doubts
 
@@ -122,10 +124,35 @@ class ShaftDesign(AbstractSystem):
         pass
 
     def solve_case(self, case: Any, support: Any, options: Any) -> DutyResult:
+        return self._in_case(case).solve()
+
+    def _in_case(self, case: ShaftCases) -> "ShaftDesign":
         leaves, tree = jax.tree.flatten(self)
         for place, value in zip(case.places, case.values, strict=True):
             leaves[place] = value
-        return jax.tree.unflatten(tree, leaves).solve()
+        return jax.tree.unflatten(tree, leaves)
+
+    def is_solved_by_parts(self, cases: ShaftCases) -> bool:
+        return cases.count <= FEW and are_known(self, cases)
+
+    def solve_by_parts(
+        self, cases: ShaftCases, changes: Sequence[Any]
+    ) -> tuple[DutyResult, list[DutyResult] | None]:
+        each, moved = [], []
+        varies = jax.tree.unflatten(
+            jax.tree.structure(self),
+            [place in cases.places for place in range(len(jax.tree.leaves(self)))],
+        )
+        fixed = [jax.tree.map(_unless, varies, change) for change in changes]
+        for k in range(cases.count):
+            case = jax.tree.map(lambda leaf, k=k: np.asarray(leaf)[k], cases)
+            own, change = self._in_case(case)._solve_with_changes(fixed)
+            each.append(own)
+            moved.append(change)
+        solved = _stack(each)
+        if solved.result.any():
+            return solved, None
+        return solved, [_stack(one) for one in zip(*moved, strict=True)]
 
     def solve(self) -> DutyResult:
         """Solve this design; nothing is raised for a failed solve.
@@ -134,34 +161,61 @@ class ShaftDesign(AbstractSystem):
             The numbers of one case, without the case axis; of springs zeros.
         """
         system = with_preload_offsets(self.system, throw=False)
-        found = state_of(system)
-        zero = jnp.zeros((), jnp.result_type(float))
-        lives: dict[str, list[Any]] = {}
-        pressures, powers, warned = [], [], []
-        for k, (seat, conditions) in enumerate(
-            zip(system.seats, self.lives, strict=True)
-        ):
-            peak, numbers, doubts, power = zero, {}, {}, zero
-            if seat.installed is not None and conditions is not None:
-                speed, inertia = speed_of(system, k, found["speed"])
-                given = seat.installed, found["motion"][k], speed, inertia, 101
-                solution = in_place(*given)
-                peak, numbers, doubts = bearing_results(solution, speed, conditions)
-                oil = None if self.oils is None else self.oils[k]
-                if oil is not None:
-                    power = oil.power(solution)
-            pressures.append(peak)
-            powers.append(power)
-            warned.append(doubts)
-            for name in LIVES:
-                lives.setdefault(name, []).append(numbers.get(name, zero))
-        names = "load displacement misalignment speed loss result".split()
+        state, _ = system_state(system)
+        return self._results(state, self._place_bearings(system, state))
+
+    def _place_bearings(self, system, state) -> list[PlacedBearing | None]:
+        found = []
+        parts = zip(system.seats, self.lives, self._oils, strict=True)
+        for k, (seat, conditions, oil) in enumerate(parts):
+            if seat.installed is None or conditions is None:
+                found.append(None)
+                continue
+            speed, _ = speed_of(system, k, state.power.speed)
+            own = seat.installed, state.motion[k], speed, conditions, oil
+            found.append(PlacedBearing(*own))
+        return found
+
+    @property
+    def _oils(self):
+        return (None,) * len(self.lives) if self.oils is None else self.oils
+
+    def _solve_with_changes(self, changes):
+        """Return the results of known numbers, and their change with each change."""
+        system = with_preload_offsets(self.system, throw=False)
+        end = search_known(system)
+        state = on_host(describe_search(system, end)[0])
+        placed = self._place_bearings(system, state)
+        solved, moved = self._results(state, placed), []
+        if int(solved.result):
+            return solved, moved
+        for change in changes:
+            parts = change.system, change.lives, change._oils
+            found = state_changes(self.system, system, end, placed, parts)
+            moved.append(self._collect(*found))
+        return solved, moved
+
+    def _results(self, state, placed):
+        inertia = self.system.inertia
+        each = [p if p is None else numbers_of_bearing(p, inertia) for p in placed]
+        return self._collect(state, each)
+
+    def _collect(self, state: Any, each: Sequence[BearingNumbers | None]) -> DutyResult:
+        """Return a result from its parts, or a change of a result from theirs."""
+        found, zero = numbers_of(state), as_real(0.0)
+        none = BearingNumbers(None, zero, {}, {}, zero)
+        parts = [none if one is None else one for one in each]
+
+        def stack(values):
+            return array_namespace(found["load"]).stack(values)
+
+        kept = "load displacement misalignment speed loss result".split()
         return DutyResult(
-            **{name: found[name] for name in names},
-            peak_pressure=jnp.stack(pressures),
-            lives={name: jnp.stack(values) for name, values in lives.items()},
-            warned=tuple(warned),
-            friction=None if self.oils is None else jnp.stack(powers),
+            **{name: found[name] for name in kept},
+            peak_pressure=stack([one.peak for one in parts]),
+            lives={n: stack([one.lives.get(n, zero) for one in parts]) for n in LIVES},
+            warned=tuple(one.warned for one in parts),
+            friction=self.oils and stack([one.power for one in parts]),
         )
 
     def failure_message(self, solved: Any) -> str:
@@ -189,6 +243,15 @@ class ShaftDesign(AbstractSystem):
         """Numbers of the seats that hold a bearing, not springs."""
         seats = enumerate(self.system.seats)
         return [k for k, seat in seats if seat.installed is not None]
+
+
+def _unless(varies: bool, change: Any) -> Any:
+    """Return a change of a number, none if cases change it."""
+    return np.zeros_like(change) if varies and change is not None else change
+
+
+def _stack(results: Sequence[DutyResult]) -> DutyResult:
+    return jax.tree.map(lambda *each: np.stack(each), *results)
 
 
 def load_cases(

@@ -15,6 +15,7 @@ from ..numerics.result import Result
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from ..rotor import STATION_FREEDOMS
+from ..rotor.bearing_support import TURNED
 from ..rotor.condensation import CondensedRotor
 from ..rotor.parts import STIFFNESS_UNITS
 from ..rotor.rotor import N_STATION
@@ -22,9 +23,6 @@ from ..rotor.shaft import STATION_UNITS
 from ..rotor.statics import softest
 from .power import PowerFlow
 from .system import ShaftSystem
-
-_TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
-"""Signs of (ux uy uz gx gy) from a half turn about x."""
 
 
 class ShaftState(eqx.Module):
@@ -151,7 +149,7 @@ def describe_state(
     seats = motion[first : first + size[0] * size[1]].reshape(size)
     in_bearing = []
     for k, seat in enumerate(system.seats):
-        sense = jnp.asarray(_TURNED if seat.turned else np.ones(N_STATION))
+        sense = jnp.asarray(TURNED if seat.turned else np.ones(N_STATION))
         in_bearing.append(offsets[k] + sense * relative[k])
     return SystemSolution(
         shafts=tuple(shafts),
