@@ -280,18 +280,19 @@ def _rule_through_jacobian(primals, tangents, *, function):
     return value, change
 
 
-def with_zeros(given: Any, change: Any) -> Any:
+def with_zeros(given: Any, change: Any, *axes: int) -> Any:
     """Return a change with zeros in place of `None`: a program that takes it is the
     same whatever changes.
 
     Args:
         given: What changes.
-        change: Its change, from `equinox.filter_jvp`.
+        change: Its change, from `equinox.filter_jvp`, or several.
+        *axes: Leading axes of several changes.
     """
 
     def fill(leaf, moved):
         still = moved is None and eqx.is_inexact_array(leaf)
-        return np.zeros(leaf.shape, leaf.dtype) if still else moved
+        return np.zeros(axes + leaf.shape, leaf.dtype) if still else moved
 
     return jax.tree.map(fill, given, change)
 

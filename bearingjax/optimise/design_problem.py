@@ -178,17 +178,17 @@ class Problem:
             values = self.lower + self.width * unit
             return prepare(with_values(self.element, self.paths, values), self.build)
 
-        ways = np.eye(unit.size) if slopes else ()
-        changes = [eqx.filter_jvp(design_at, (unit,), (way,))[1] for way in ways]
+        def change_along(way):
+            return eqx.filter_jvp(design_at, (unit,), (way,))[1]
+
+        changes = None
+        if slopes:
+            changes = jax.device_get(eqx.filter_vmap(change_along)(np.eye(unit.size)))
         whole: Any = design_at(unit)
         solution, moved = whole.solve_by_parts(self.cases, changes)
-        given = self.measures, self.cases
-        measures, exact = _judge(*given, whole, solution)
-        jacobian = None
-        if slopes and moved is not None:
-            both = zip(changes, moved, strict=True)
-            slope = [_judge_change(*given, (whole, solution), pair) for pair in both]
-            jacobian = np.stack(slope, axis=1)
+        given = self.measures, self.cases, whole, solution
+        measures, exact = _judge(*given)
+        jacobian = None if moved is None else _judge_changes(*given, changes, moved).T
         return Run(measures, exact, solution, jacobian)
 
     def evaluate(self, unit: np.ndarray | jax.Array, slopes: bool) -> Trial:
@@ -271,11 +271,16 @@ def _judge(measures, cases, design, solution):
 
 
 @program(quick=True)
-def _judge_change(measures, cases, solved, change):
+def _judge_changes(measures, cases, design, solution, *changes):
+    """Return changes of the measures, smooth (change, measure)."""
+
     def judge(design, solution):
         return _judge(measures, cases, design, solution)[0]
 
-    return eqx.filter_jvp(judge, solved, change)[1]
+    def push(*change):
+        return eqx.filter_jvp(judge, (design, solution), change)[1]
+
+    return jax.vmap(push)(*changes)
 
 
 def _scalar(measure, value):

@@ -2,7 +2,7 @@
 or a machine with several bearings."""
 
 import abc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -66,19 +66,18 @@ class AbstractSystem(eqx.Module):
         """
         return False
 
-    def solve_by_parts(
-        self, cases: Any, changes: Sequence[Any]
-    ) -> tuple[Any, list[Any] | None]:
+    def solve_by_parts(self, cases: Any, changes: Any) -> tuple[Any, Any]:
         """Solve all cases of known numbers with calls of smaller programs, and return
         the derivatives along changes of the design.
 
         Args:
             cases: Operating cases.
-            changes: Changes of the design, `None` for what is no real number.
+            changes: Changes of the design (change, …), `None` for what is no real
+                number; or `None`: no derivatives.
 
         Returns:
-            Solved cases, leading axis case, and their change with each change of the
-            design; `None` if a case failed.
+            Solved cases (case, …), and their changes (change, case, …); `None` without
+            any, and if a case failed.
         """
         raise NotImplementedError
 

@@ -156,8 +156,7 @@ class BearingSupport(AbstractSupport):
         rings = np.zeros(2 * _N_RING)
         rings[_INNER] = np.asarray(self.offset) + sense * motion
         turning = None if speed is None else Speed(inner=sense[2] * speed)
-        points = SolveOptions().points
-        given = self.element, as_real(rings), turning, points, self.inertia
+        given = self.element, as_real(rings), turning, SolveOptions.points, self.inertia
         found = solution_at(*given, no_load=_NO_LOAD)
         force, stiffness = np.asarray(found.force), np.asarray(found.stiffness)
         solved = 1.0 if int(found.result) == Result.CONVERGED else np.nan

@@ -358,3 +358,7 @@ class LinearSupport(AbstractSupport):
     ) -> Five:
         """Force that moves the station against the support (5,) [N, N m]."""
         return self.stiffness @ motion + self.damping @ velocity
+
+    def respond_alone(self, motion: np.ndarray, speed: Any) -> Responded:
+        stiffness, damping = np.asarray(self.stiffness), np.asarray(self.damping)
+        return stiffness @ motion, stiffness, damping

@@ -6,7 +6,7 @@ bearing is that of its own derivatives at given motions, the same for all of its
 all machines; what is compiled for a machine is small linear algebra.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -29,14 +29,28 @@ from ..rotor.statics import at_equilibrium
 from ..statics.empty_places import points_of_kind
 from ..statics.installed import Installed
 from .bearing_oil import BearingOil
-from .duty import bearing_results
-from .equilibrium import Search, machine_of, state_at, without_bearings
-from .seats import in_place, in_the_cold, installed_of_kind, offset_of, speed_of
-from .state import SystemSolution
+from .duty import bearing_results, numbers_of
+from .equilibrium import (
+    describe_search,
+    machine_of,
+    search_known,
+    state_at,
+    without_bearings,
+)
+from .seats import (
+    in_place,
+    in_the_cold,
+    installed_of_kind,
+    offset_of,
+    speed_of,
+    with_preload_offsets,
+)
 from .system import ShaftSystem
 
 _INNER = slice(len(FREEDOMS), len(FREEDOMS) + N_STATION)
 _AXIAL = 2
+_CHUNK = 4
+"""Changes of a call of a program."""
 
 
 class PlacedBearing(NamedTuple):
@@ -90,12 +104,69 @@ def numbers_of_bearing(
     return BearingNumbers(solution.force[_INNER], *results, power)
 
 
-@program(quick=True, what="the derivatives of a bearing in its place")
-def _numbers_change(placed, change, inertia, points) -> BearingNumbers:
+@program(quick=True, what="the lives of a bearing in its place, with derivatives")
+def _numbers_with_changes(placed, changes, inertia, points):
     def evaluate(placed):
         return numbers_of_bearing(placed, inertia, points)
 
-    return with_zeros(*eqx.filter_jvp(evaluate, (placed,), (change,)))
+    return _value_and_changes(evaluate, (placed,), (changes,))
+
+
+def _value_and_changes(function, given, changes):
+    """Return function(*given), and its change with each of several changes."""
+
+    def push(change):
+        value, moved = eqx.filter_jvp(function, given, change)
+        return value, with_zeros(value, moved)
+
+    values, moved = jax.vmap(push)(changes)
+    return jax.tree.map(lambda leaf: leaf[0], values), moved
+
+
+def _in_chunks(call: Callable, changes: Any) -> tuple[Any, Any]:
+    """Return what `_value_and_changes` does of any number of changes, by a program of
+    `_CHUNK` of them.
+
+    Args:
+        call: Calls the program.
+        changes: Several changes, first axis of all their leaves.
+    """
+    count, value, found = jax.tree.leaves(changes)[0].shape[0], None, []
+    for begin in range(0, count, _CHUNK):
+
+        def cut(leaf, begin=begin):
+            part = leaf[begin : begin + _CHUNK]
+            rest = ((0, _CHUNK - part.shape[0]),) + ((0, 0),) * (part.ndim - 1)
+            return np.pad(part, rest)
+
+        value, moved = jax.device_get(call(jax.tree.map(cut, changes)))
+        found.append(moved)
+    return value, jax.tree.map(lambda *x: np.concatenate(x)[:count], *found)
+
+
+def numbers_with_changes(
+    placed: PlacedBearing, inertia: bool | None, count: int = 1, **changes: Any
+) -> tuple[BearingNumbers, BearingNumbers]:
+    """Return `numbers_of_bearing` of known numbers and its changes with those of some
+    fields, by the program of a kind of bearing.
+
+    Args:
+        placed: The bearing.
+        inertia: As in `numbers_of_bearing`.
+        count: Number of changes, one at least.
+        **changes: Changes of fields (change, …), `None` for what is no real number.
+    """
+    still = jax.tree.map(lambda _: None, placed)
+    moved = with_zeros(placed, still._replace(**changes), count)
+    points = points_of_kind(placed.installed.drawing, 101)
+    kind, others = installed_of_kind(placed.installed), moved.installed
+    others = jax.device_get(eqx.filter_vmap(installed_of_kind)(others))
+    others = eqx.filter(others, eqx.is_inexact_array)
+    placed, moved = placed._replace(installed=kind), moved._replace(installed=others)
+    moved = with_zeros(placed, moved, count)
+    return _in_chunks(
+        lambda some: _numbers_with_changes(placed, some, inertia, points), moved
+    )
 
 
 class _NearBearing(AbstractSupport):
@@ -117,9 +188,9 @@ class _NearBearing(AbstractSupport):
 
 
 @program(quick=True)
-def _state_change(bare, found, change, force_change) -> SystemSolution:
-    """Return the change of the state with the numbers of a system and, at given
-    motions, with the forces of its bearings (bearing, 5), in the axes of its shafts."""
+def _state_with_changes(bare, found, changes):
+    """Return the state, and its changes with the numbers of a system and, at given
+    motions, with the forces of its bearings, in the axes of its shafts."""
 
     def state(bare, force):
         machine = machine_of(bare)
@@ -138,89 +209,109 @@ def _state_change(bare, found, change, force_change) -> SystemSolution:
         whole = with_fields(whole, supports=tuple(supports))
         y, force, _, _ = at_equilibrium(found, whole)
         stiffness = stop_gradient(found.memory[1])
-        return state_at(found, (y, force, stiffness), bare, machine)
+        return numbers_of(state_at(found, (y, force, stiffness), bare, machine))
 
-    given = bare, found.memory[0]
-    return with_zeros(*eqx.filter_jvp(state, given, (change, force_change)))
+    return _value_and_changes(state, (bare, found.memory[0]), changes)
 
 
-def state_changes(
+def solve_with_changes(
     system: ShaftSystem,
-    mounted: ShaftSystem,
-    end: Search,
-    placed: Sequence[PlacedBearing | None],
-    change: tuple[ShaftSystem, Sequence[Any], Sequence[Any]],
-) -> tuple[SystemSolution, list[BearingNumbers | None]]:
-    """Return the derivatives of the state and of its bearings along one change.
+    lives: Sequence[LifeConditions | None],
+    oils: Sequence[BearingOil | None],
+    changes: tuple[Any, Any, Any] | None = None,
+) -> tuple[tuple[dict[str, Any], list[Any]], tuple[dict[str, Any], list[Any]] | None]:
+    """Solve a system of known numbers, with derivatives along several changes.
 
     Args:
         system: The system.
-        mounted: The same with its preloads as offsets.
-        end: End of its search.
-        placed: Its bearings there; `None` of springs.
-        change: Change of the system, and of conditions and oil of each bearing; `None`
-            for what is no real number.
+        lives: Conditions of the life of each bearing; `None` of springs.
+        oils: Oil of each bearing, or `None`.
+        changes: Changes of these three (change, …), `None` for what is no real number.
+
+    Returns:
+        Numbers of the state (`numbers_of`) and of each bearing (`BearingNumbers`, or
+        `None`), and the same of all changes (change, …); `None` without changes, and if
+        there is no equilibrium.
     """
-    moved, conditions, oils = change
-    inertia = system.inertia
+    mounted = with_preload_offsets(system, throw=False)
+    end, inertia = search_known(mounted), system.inertia
+    state = numbers_of(describe_search(mounted, end)[0])
+    placed: list[PlacedBearing | None] = []
+    for k, (seat, conditions) in enumerate(zip(system.seats, lives, strict=True)):
+        if seat.installed is None or conditions is None:
+            placed.append(None)
+            continue
+        speed, _ = speed_of(system, k, state["speed"])
+        own = seat.installed, state["motion"][k], speed, conditions, oils[k]
+        placed.append(PlacedBearing(*own))
+    if changes is None or int(state["result"]):
+        each = [p and numbers_with_changes(p, inertia)[0] for p in placed]
+        return (state, each), None
+    moved, conditions, oil = changes
+    count = jax.tree.leaves(changes)[0].shape[0]
     parts = zip(system.seats, mounted.seats, moved.seats, placed, strict=True)
-    seats = tuple(_mounted_change(*part, inertia) for part in parts)
+    seats = tuple(_mounted_changes(*part, inertia, count) for part in parts)
     bare = without_bearings(with_fields(moved, seats=seats))
-    bare = with_zeros(end.bare, bare)
-    forces = np.zeros((len(seats), N_STATION))
-    state = jax.device_get(_state_change(end.bare, end.found, bare, forces))
-    turning = [speed_of(mounted, k, state.power.speed)[0] for k in range(len(seats))]
-    for k, bearing in enumerate(placed):
-        alone = {"installed": seats[k].installed, "speed": turning[k]}
-        if bearing is not None and _any(alone):
-            sense = TURNED if system.seats[k].turned else 1.0
-            forces[k] = sense * _change_of(bearing, inertia, **alone).force
-    if forces.any():
-        state = jax.device_get(_state_change(end.bare, end.found, bare, forces))
-    numbers: list[BearingNumbers | None] = []
+    bare = with_zeros(end.bare, bare, count)
+    forces = np.zeros((count, len(seats), N_STATION))
+
+    def change_state():
+        def call(some):
+            return _state_with_changes(end.bare, end.found, some)
+
+        return _in_chunks(call, (bare, forces))[1]
+
+    of_state = change_state()
+    turning = []
     for k, bearing in enumerate(placed):
         if bearing is None:
-            numbers.append(None)
+            turning.append(None)
             continue
-        own = seats[k].installed, state.motion[k], turning[k], conditions[k], oils[k]
-        change = dict(zip(PlacedBearing._fields, own, strict=True))
-        numbers.append(_change_of(bearing, inertia, **change))
-    return state, numbers
+        sense = TURNED if system.seats[k].turned else np.ones(N_STATION)
+        turns = sense[_AXIAL] * of_state["speed"][:, system.station(system.seats[k])[0]]
+        turning.append(
+            with_fields(bearing.speed, inner=turns, outer=np.zeros_like(turns))
+        )
+        alone = {"installed": seats[k].installed, "speed": turning[k]}
+        if _any(alone):
+            own = numbers_with_changes(bearing, inertia, count, **alone)[1]
+            forces[:, k] = sense * own.force
+    if forces.any():
+        of_state = change_state()
+    each, of_each = [], []
+    for k, bearing in enumerate(placed):
+        numbers = None, None
+        if bearing is not None:
+            at = of_state["motion"][:, k]
+            own = seats[k].installed, at, turning[k], conditions[k], oil[k]
+            own = dict(zip(PlacedBearing._fields, own, strict=True))
+            numbers = numbers_with_changes(bearing, inertia, count, **own)
+        each.append(numbers[0])
+        of_each.append(numbers[1])
+    return (state, each), (of_state, of_each)
 
 
-def _change_of(placed, inertia, **change) -> BearingNumbers:
-    """Return the change of what is asked of a bearing with that of some of its fields,
-    by the program of its kind."""
-    still = jax.tree.map(lambda _: None, placed)
-    moved = with_zeros(placed, still._replace(**change))
-    kinds = eqx.filter_jvp(installed_of_kind, placed[:1], moved[:1])
-    placed, moved = (
-        one._replace(installed=kind)
-        for one, kind in zip((placed, moved), kinds, strict=True)
-    )
-    points = points_of_kind(placed.installed.drawing, 101)
-    moved = with_zeros(placed, moved)
-    return jax.device_get(_numbers_change(placed, moved, inertia, points))
-
-
-def _mounted_change(seat, mounted, change, placed, inertia):
-    """Return the change of a seat with its preload as an offset."""
+def _mounted_changes(seat, mounted, changes, placed, inertia, count):
+    """Return the changes of a seat with its preload as an offset."""
     if seat.preload is None or placed is None:
-        return change
-    moved = with_zeros(seat.installed, change.installed)
-    cold, moved = eqx.filter_jvp(in_the_cold, (seat.installed,), (moved,))
-    way = np.zeros(N_STATION)
-    way[_AXIAL] = 1.0
-    at = way * np.asarray(mounted.axial_offset - seat.axial_offset)
+        return changes
+    way = np.zeros((1, N_STATION))
+    way[0, _AXIAL] = 1.0
+    at = way[0] * np.asarray(mounted.axial_offset - seat.axial_offset)
+    cold = in_the_cold(seat.installed)
     rest = placed._replace(installed=cold, motion=at, speed=Speed())
-    slope = _change_of(rest, inertia, motion=way).force[_AXIAL]
-    force = with_zeros(seat.preload, change.preload)
-    if _any(moved):
-        force = force - _change_of(rest, inertia, installed=moved).force[_AXIAL]
-    offset = with_zeros(seat.axial_offset, change.axial_offset) + force / slope
-    return with_fields(change, axial_offset=offset, preload=None)
+    _, pushed = numbers_with_changes(rest, inertia, motion=way)
+    force = with_zeros(seat.preload, changes.preload, count)
+    if _any(changes.installed):
+        moved = with_zeros(seat.installed, changes.installed, count)
+        moved = {"installed": in_the_cold(moved)}
+        own = numbers_with_changes(rest, inertia, count, **moved)[1]
+        force = force - own.force[:, _AXIAL]
+    offset = with_zeros(seat.axial_offset, changes.axial_offset, count)
+    offset = offset + force / pushed.force[0, _AXIAL]
+    return with_fields(changes, axial_offset=offset, preload=None)
 
 
 def _any(tree: Any) -> bool:
-    """Return whether a change is one."""
+    """Return whether changes are any."""
     return any(np.any(leaf) for leaf in jax.tree.leaves(tree))

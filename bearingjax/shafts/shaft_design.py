@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..cases.cases import check_hours
-from ..design.checks import are_known, on_host, one_of
+from ..design.checks import are_known, one_of
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions
 from ..life.life_warning import ALL
@@ -28,7 +28,12 @@ from ..optimise.smooth import smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
-from .changes import BearingNumbers, PlacedBearing, numbers_of_bearing, state_changes
+from .changes import (
+    BearingNumbers,
+    PlacedBearing,
+    numbers_of_bearing,
+    solve_with_changes,
+)
 from .duty import (
     FEW,
     LIVES,
@@ -38,7 +43,7 @@ from .duty import (
     numbers_of,
     system_life,
 )
-from .equilibrium import describe_search, search_known, system_state
+from .equilibrium import system_state
 from .parts import Gear
 from .power import power_flow
 from .seats import speed_of, with_preload_offsets
@@ -136,23 +141,36 @@ class ShaftDesign(AbstractSystem):
         return cases.count <= FEW and are_known(self, cases)
 
     def solve_by_parts(
-        self, cases: ShaftCases, changes: Sequence[Any]
-    ) -> tuple[DutyResult, list[DutyResult] | None]:
+        self, cases: ShaftCases, changes: Any
+    ) -> tuple[DutyResult, DutyResult | None]:
+        if changes is not None:
+            places = range(len(jax.tree.leaves(self)))
+            varies = [place in cases.places for place in places]
+            varies = jax.tree.unflatten(jax.tree.structure(self), varies)
+            changes = jax.tree.map(_unless, varies, changes)
         each, moved = [], []
-        varies = jax.tree.unflatten(
-            jax.tree.structure(self),
-            [place in cases.places for place in range(len(jax.tree.leaves(self)))],
-        )
-        fixed = [jax.tree.map(_unless, varies, change) for change in changes]
         for k in range(cases.count):
             case = jax.tree.map(lambda leaf, k=k: np.asarray(leaf)[k], cases)
-            own, change = self._in_case(case)._solve_with_changes(fixed)
+            own, change = self._in_case(case)._solve_by_parts(changes)
             each.append(own)
             moved.append(change)
-        solved = _stack(each)
-        if solved.result.any():
+        solved = jax.tree.map(lambda *one: np.stack(one), *each)
+        if None in moved:
             return solved, None
-        return solved, [_stack(one) for one in zip(*moved, strict=True)]
+        return solved, jax.tree.map(lambda *one: np.stack(one, axis=1), *moved)
+
+    def _solve_by_parts(self, changes):
+        """Return the results of known numbers, and their changes with several."""
+        moved = changes
+        if changes is not None:
+            moved = changes.system, changes.lives, changes._oils
+        own, moved = solve_with_changes(self.system, self.lives, self._oils, moved)
+        axes = () if moved is None else moved[0]["speed"].shape[:1]
+        return self._collect(*own), moved and self._collect(*moved, *axes)
+
+    @property
+    def _oils(self):
+        return (None,) * len(self.lives) if self.oils is None else self.oils
 
     def solve(self) -> DutyResult:
         """Solve this design; nothing is raised for a failed solve.
@@ -160,54 +178,33 @@ class ShaftDesign(AbstractSystem):
         Returns:
             The numbers of one case, without the case axis; of springs zeros.
         """
+        if are_known(self):
+            return self._solve_by_parts(None)[0]
         system = with_preload_offsets(self.system, throw=False)
-        state, _ = system_state(system)
-        return self._results(state, self._place_bearings(system, state))
-
-    def _place_bearings(self, system, state) -> list[PlacedBearing | None]:
-        found = []
-        parts = zip(system.seats, self.lives, self._oils, strict=True)
-        for k, (seat, conditions, oil) in enumerate(parts):
+        found, inertia = numbers_of(system_state(system)[0]), system.inertia
+        each: list[BearingNumbers | None] = []
+        for k, (seat, conditions) in enumerate(
+            zip(system.seats, self.lives, strict=True)
+        ):
             if seat.installed is None or conditions is None:
-                found.append(None)
+                each.append(None)
                 continue
-            speed, _ = speed_of(system, k, state.power.speed)
-            own = seat.installed, state.motion[k], speed, conditions, oil
-            found.append(PlacedBearing(*own))
-        return found
+            speed, _ = speed_of(system, k, found["speed"])
+            own = seat.installed, found["motion"][k], speed, conditions, self._oils[k]
+            each.append(numbers_of_bearing(PlacedBearing(*own), inertia))
+        return self._collect(found, each)
 
-    @property
-    def _oils(self):
-        return (None,) * len(self.lives) if self.oils is None else self.oils
-
-    def _solve_with_changes(self, changes):
-        """Return the results of known numbers, and their change with each change."""
-        system = with_preload_offsets(self.system, throw=False)
-        end = search_known(system)
-        state = on_host(describe_search(system, end)[0])
-        placed = self._place_bearings(system, state)
-        solved, moved = self._results(state, placed), []
-        if int(solved.result):
-            return solved, moved
-        for change in changes:
-            parts = change.system, change.lives, change._oils
-            found = state_changes(self.system, system, end, placed, parts)
-            moved.append(self._collect(*found))
-        return solved, moved
-
-    def _results(self, state, placed):
-        inertia = self.system.inertia
-        each = [p if p is None else numbers_of_bearing(p, inertia) for p in placed]
-        return self._collect(state, each)
-
-    def _collect(self, state: Any, each: Sequence[BearingNumbers | None]) -> DutyResult:
-        """Return a result from its parts, or a change of a result from theirs."""
-        found, zero = numbers_of(state), as_real(0.0)
+    def _collect(
+        self, found: dict[str, Any], each: Sequence[BearingNumbers | None], *axes: int
+    ) -> DutyResult:
+        """Return a result from its parts, or changes of a result from theirs, with an
+        axis of their own."""
+        zero = as_real(np.zeros(axes))
         none = BearingNumbers(None, zero, {}, {}, zero)
         parts = [none if one is None else one for one in each]
 
         def stack(values):
-            return array_namespace(found["load"]).stack(values)
+            return array_namespace(found["load"]).stack(values, axis=len(axes))
 
         kept = "load displacement misalignment speed loss result".split()
         return DutyResult(
@@ -248,10 +245,6 @@ class ShaftDesign(AbstractSystem):
 def _unless(varies: bool, change: Any) -> Any:
     """Return a change of a number, none if cases change it."""
     return np.zeros_like(change) if varies and change is not None else change
-
-
-def _stack(results: Sequence[DutyResult]) -> DutyResult:
-    return jax.tree.map(lambda *each: np.stack(each), *results)
 
 
 def load_cases(

@@ -76,11 +76,12 @@ class _Store:
 
     folder: Path | None = None
     at_hand: dict[str, Callable]
+    names: dict[Any, str | None]
     telling: Callable[[str], contextlib.AbstractContextManager] | None = None
     compiled: int = 0
 
     def __init__(self):
-        self.at_hand = {}
+        self.at_hand, self.names = {}, {}
 
 
 _STORE = _Store()
@@ -333,7 +334,28 @@ def _compile(lowered, options: dict, keep: bool):
 
 
 def _name(function: Callable, arguments: tuple) -> str | None:
-    """Name of the file of a program, or `None` if no name identifies it reliably."""
+    """Name of the file of a program, or `None` if no name identifies it reliably.
+
+    Of arguments that were met before it is remembered: to find it takes longer than
+    many a program.
+    """
+    leaves, tree = jax.tree.flatten(arguments)
+    arrays = [isinstance(x, jax.Array) for x in leaves]
+    kinds = [
+        (x.shape, x.dtype, x.weak_type) if array else (type(x), x)
+        for x, array in zip(leaves, arrays, strict=True)
+    ]
+    settings = (*jax.config.values.values(), os.environ.get("XLA_FLAGS"))
+    try:
+        met = function, tree, tuple(kinds), settings
+        if met not in _STORE.names:
+            _STORE.names[met] = _name_anew(function, arguments)
+        return _STORE.names[met]
+    except TypeError:  # something that has no hash
+        return _name_anew(function, arguments)
+
+
+def _name_anew(function: Callable, arguments: tuple) -> str | None:
     try:
         words = [structure((function, arguments)), *_surroundings()]
     except UnknownStructure:
