@@ -288,14 +288,25 @@ class BearingModel(eqx.Module):
 
     @eqx.filter_jit
     def evaluate(
-        self, q: Ring, solved: SolvedElements | None = None, least: Scalar | float = 0.0
+        self,
+        q: Ring,
+        solved: SolvedElements | None = None,
+        least: Scalar | float = 0.0,
+        fixed_stiffness: bool = False,
     ) -> BearingResponse:
         """Energy, force and stiffness from one solve of the elements, with its code.
 
         Args: as in `energy` and `convergence`.
+            fixed_stiffness: Whether the stiffness has no derivatives, which are two
+                thirds of those of a bearing. Static.
         """
         q, solved = self._solved_at(q, solved)
-        stiffness, energy, force = self._derivatives(q, solved)
+        if fixed_stiffness:
+            held: Any = stop_gradient((q, solved))
+            stiffness = stop_gradient(self)._derivatives(*held)[0]
+            energy, force = jax.value_and_grad(self._energy)(q, solved)
+        else:
+            stiffness, energy, force = self._derivatives(q, solved)
         result, steps, residual = self.convergence(solved, least)
         return BearingResponse(
             energy=energy,

@@ -14,13 +14,12 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import on_host
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..life.life import LifeConditions
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, with_zeros
-from ..numerics.types import with_fields
+from ..numerics.types import as_real, with_fields
 from ..rotor import LinearSupport
 from ..rotor.bearing_support import TURNED
 from ..rotor.parts import AbstractSupport
@@ -76,7 +75,7 @@ class BearingNumbers(NamedTuple):
 
     Attributes:
         force: That holds its inner ring there, in its axes (5,) [N, N m].
-        peak, lives, warned: From `bearing_results`.
+        peak, lives, warned: From `bearing_results`; of warnings there are no changes.
         power: Power lost [W]; zero without oil.
     """
 
@@ -98,10 +97,12 @@ def numbers_of_bearing(
         points: As in `in_place`. Static.
     """
     installed, motion, speed, conditions, oil = placed
-    solution = on_host(in_place(installed, motion, speed, inertia, points))
-    results = bearing_results(solution, speed, conditions)
-    power = np.zeros(()) if oil is None else on_host(oil.power(solution))
-    return BearingNumbers(solution.force[_INNER], *results, power)
+    given = installed, motion, speed, inertia, points
+    solution = in_place(*given, fixed_stiffness=True)
+    peak, lives, warned = bearing_results(solution, speed, conditions)
+    power = as_real(0.0) if oil is None else oil.power(solution)
+    held = solution.force[_INNER]
+    return BearingNumbers(held, peak, lives, stop_gradient(warned), power)
 
 
 @program(quick=True, what="the lives of a bearing in its place, with derivatives")

@@ -228,6 +228,7 @@ def in_place(
     speed: Speed,
     inertia: bool | None,
     points: int,
+    fixed_stiffness: bool = False,
 ) -> Solution:
     """Return the solution of a bearing whose inner ring is held by its shaft.
 
@@ -237,6 +238,7 @@ def in_place(
         speed: Ring speeds, for its fits.
         inertia: Whether rolling elements feel them; `None` at rest. Static.
         points: Positions along the rollers at which loads are reported. Static.
+        fixed_stiffness: As in `BearingModel.evaluate`. Static.
     """
     known = are_known(installed, motion, speed)
     xp: Any = np if known else jnp
@@ -245,7 +247,8 @@ def in_place(
     if known:
         installed, rings = installed_of_kind(installed), as_real(rings)
     element, turning = _warm(installed, speed), None if inertia is None else speed
-    found = solution_at(element, rings, turning, points, bool(inertia))
+    given = element, rings, turning, points, bool(inertia)
+    found = solution_at(*given, fixed_stiffness=fixed_stiffness)
     return without_empty_places(found) if known else found
 
 

@@ -102,6 +102,7 @@ def solution_at(
     points: int,
     inertia: bool = True,
     no_load: float = 0.0,
+    fixed_stiffness: bool = False,
 ) -> Solution:
     """Solution of a bearing whose rings are held where they are given.
 
@@ -116,24 +117,29 @@ def solution_at(
         inertia: Whether rolling elements feel the speed; if not, balls orbit and spin
             as at the speed, without centrifugal force and gyroscopic moment. Static.
         no_load: Load over E* D that counts as none for idle rolling elements [m].
+        fixed_stiffness: As in `BearingModel.evaluate`. Static.
     """
     small = as_array(no_load, q.dtype)
     if any(map(is_traced, jax.tree.leaves((element, q, speed)))):
-        return _solution_at(element, q, speed, points, inertia, small)
+        given = element, q, speed, points, inertia, small
+        return _solution_at(*given, fixed_stiffness)
     points = points_of_kind(element, points)
     found = _solution_at(of_kind(element), q, speed, points, inertia, small)
     return without_empty_places(found, element)
 
 
 @program(quick=True, what="a bearing in its place")
-def _solution_at(element, q, speed, points, inertia, no_load) -> Solution:
+def _solution_at(
+    element, q, speed, points, inertia, no_load, fixed_stiffness=False
+) -> Solution:
     least = no_load * stiffness_scale(element.bearing)
     model = element.model(speed if inertia else None)
     rolling = None
     if speed is not None and not inertia:
         rolling = without_mass(element).model(speed)
     solved = model.solve(q)
-    fields, found = describe(element, model, q, points, solved, rolling, least)
+    given = element, model, q, points, solved, rolling, least
+    fields, found = describe(*given, fixed_stiffness)
     nothing = jnp.zeros_like(q[0])
     return solution_kind(element.choices)(
         **fields,

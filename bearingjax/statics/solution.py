@@ -265,6 +265,7 @@ def describe(
     solved: SolvedElements,
     rolling: BearingModel | None = None,
     least: Scalar | float = 0.0,
+    fixed_stiffness: bool = False,
 ) -> tuple[dict, BearingResponse]:
     """All fields of a `Solution` that follow from the ring freedoms.
 
@@ -277,9 +278,10 @@ def describe(
         rolling: Model of which balls have their kinematics, where they do not feel the
             speed; `None`: the model.
         least: As in `BearingModel.convergence` [N].
+        fixed_stiffness: As in `BearingModel.evaluate`. Static.
     """
     rows = model.results(q, solved)
-    evaluated = model.evaluate(q, solved, least)
+    evaluated = model.evaluate(q, solved, least, fixed_stiffness)
     shown = rows
     if rolling is not None:
         pairs = zip(rows, rolling.rows, strict=True)
