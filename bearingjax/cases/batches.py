@@ -7,6 +7,8 @@ from typing import Any
 import jax
 import numpy as np
 
+from ..design.checks import count
+
 CHUNK = 512
 """Most cases of a batch, of which `load_search.SLOTS` are at work at a time. The first
 batch has no solved cases to start from: an eighth of a sweep at most, or 64; smaller
@@ -47,11 +49,8 @@ class Batches:
 
     def __post_init__(self):
         chunk = self.chunk
-        if chunk is not None and (not isinstance(chunk, int) or chunk < 1):
-            raise ValueError(
-                f"Batches: `chunk` is {chunk!r}; it must be a whole number of at least"
-                " 1."
-            )
+        if chunk is not None:
+            count("Batches", "chunk", chunk)
 
     def places(self) -> np.ndarray:
         """Devices over which the cases are spread (device,)."""

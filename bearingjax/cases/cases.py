@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design.checks import is_traced, real_numbers
+from ..design.checks import is_traced, must_be, real_numbers
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS, LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
@@ -18,7 +18,7 @@ from ..numerics.units import unit
 from ..statics.load import solve
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
-from ..statics.support import RESTRAINED, Support
+from ..statics.support import DICT_OF_FREEDOMS, RESTRAINED, Support
 
 
 class Cases(eqx.Module):
@@ -78,11 +78,9 @@ class Cases(eqx.Module):
                 zero or without a sum above zero, no cases, or if nothing has a case
                 axis.
         """
-        if not isinstance(prescribed, Mapping | None):
-            raise TypeError(
-                f"Cases: `prescribed` is {prescribed!r}; it must be a dict of freedoms"
-                " with their values in m or rad, such as {'uz': [1e-5, 2e-5]}."
-            )
+        given = isinstance(prescribed, Mapping | None)
+        allowed = f"{DICT_OF_FREEDOMS}, such as {{'uz': [1e-5, 2e-5]}}"
+        must_be("Cases", "prescribed", prescribed, given, allowed, TypeError)
         prescribed = {} if prescribed is None else dict(prescribed)
         unknown = [name for name in prescribed if name not in FREEDOMS]
         if unknown:

@@ -18,7 +18,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.bearing_set import bearings_of
-from ..design.checks import is_traced, of_class
+from ..design.checks import is_traced, must_be, of_class
 from ..design.places import has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
 from ..life.life import LIFE_OUTPUTS, LifeConditions
@@ -282,10 +282,8 @@ def _output_function(outputs: Any) -> tuple[Any, tuple[str, ...]]:
 def _check_outputs(outputs):
     if outputs is None:
         return None
-    if isinstance(outputs, str) or not all(isinstance(n, str) for n in outputs):
-        raise ValueError(
-            f"sweep: `outputs` is {outputs!r}; it must be a list of names."
-        )
+    names = not isinstance(outputs, str) and all(isinstance(n, str) for n in outputs)
+    must_be("sweep", "outputs", outputs, names, "a list of names")
     return tuple(dict.fromkeys(outputs))
 
 

@@ -35,7 +35,7 @@ from ..design import (
     ToroidalRollerBearing,
     rows_of,
 )
-from ..design.checks import check, in_range, is_traced, positive
+from ..design.checks import check, in_range, is_traced, one_of, positive
 from ..life import row_rating
 from ..life.row_rating import BallKind, BallRow, RollerRow, Rows
 from ..numerics.compiled.programs import program
@@ -589,10 +589,7 @@ def _check_proportions(numbers, kind, contact_angle) -> Proportions:
     check(owner, large, numbers[large] <= _LARGEST, allowed, numbers[large], "m")
     allowed = f"below the outside diameter, {outside:.6g} m"
     check(owner, "bore", bore < outside, allowed, bore, "m")
-    if kind not in PROPORTIONS:
-        raise ValueError(
-            f"{owner}: `kind` is {kind!r}; it must be one of {', '.join(PROPORTIONS)}."
-        )
+    one_of(owner, "kind", kind, PROPORTIONS)
     typical = PROPORTIONS[kind]
     if contact_angle is None:
         return typical

@@ -25,6 +25,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..design.checks import count
 from ..design.material import Material
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import solve_any
@@ -64,11 +65,7 @@ class CoupledSlices(AbstractLineLaw):
     slices: int = eqx.field(static=True, default=24)
 
     def __check_init__(self):
-        if not isinstance(self.slices, int) or self.slices < 4:
-            raise ValueError(
-                f"CoupledSlices: `slices` is {self.slices!r}; it must be a whole number"
-                " of at least 4."
-            )
+        count(self, "slices", self.slices, least=4)
         if self.slices > MOST_SLICES:
             raise ValueError(
                 f"CoupledSlices: `slices` is {self.slices}; it must be at most"

@@ -11,8 +11,17 @@ from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
 from .barrel import CrossedRollerRow
+from .checks import (
+    all_of_class,
+    flag,
+    floats,
+    instance,
+    non_negative,
+    number,
+    of_class,
+    positive,
+)
 from .checks import count as whole
-from .checks import floats, instance, non_negative, number, of_class, positive
 from .overlap import overlap
 
 
@@ -91,8 +100,7 @@ class SetRow(eqx.Module):
     def __check_init__(self):
         row = "a single-row roller or ball bearing"
         of_class(self, "bearing", self.bearing, AbstractBearing, row)
-        if not isinstance(self.mirrored, bool):
-            raise TypeError(f"SetRow: `mirrored` is {self.mirrored!r}; True or False.")
+        flag(self, "mirrored", self.mirrored)
         number(self, "position")
         number(self, "inner_offset")
         instance(self, "spring", PreloadSpring, None)
@@ -250,12 +258,8 @@ class BearingSet(eqx.Module):
         of_class(self, "rows", self.rows, tuple, "a list or tuple of SetRows")
         if not self.rows:
             raise ValueError("BearingSet: `rows` is empty; it must hold a SetRow.")
+        all_of_class(self, "rows", self.rows, SetRow, "SetRows")
         for row in self.rows:
-            if not isinstance(row, SetRow):
-                raise TypeError(
-                    f"BearingSet: `rows` holds a {type(row).__name__}; it must hold"
-                    " SetRows."
-                )
             # Two spheres about different centres could not tilt together.
             numbers = floats(row.position)
             aligning = row.bearing.aligns

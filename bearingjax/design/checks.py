@@ -235,19 +235,22 @@ _INSIDE = {"above": gt, "least": ge, "below": lt, "most": le}
 _WORDS = {"above": "above", "least": "at least", "below": "below", "most": "at most"}
 
 
-def count(owner: Any, name: str, value: Any) -> None:
-    """A whole number of at least one; bools do not pass.
+def count(owner: Any, name: str, value: Any, least: int = 1) -> None:
+    """A whole number of at least `least`; bools do not pass.
 
     Raises:
         TypeError: If it is not an integer.
-        ValueError: If it is below one.
+        ValueError: If it is below.
     """
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(
-            f"{_title(owner)}: `{name}` is {value!r}; it must be a whole number"
-            " of at least 1."
-        )
-    check(owner, name, value >= 1, "a whole number of at least 1", value, "")
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    allowed = f"a whole number of at least {least}"
+    must_be(owner, name, value, whole, allowed, TypeError)
+    check(owner, name, value >= least, allowed, value, "")
+
+
+def flag(owner: Any, name: str, value: Any) -> None:
+    """True or false; raises `TypeError` for anything else."""
+    must_be(owner, name, value, isinstance(value, bool), "True or False", TypeError)
 
 
 def instance(owner: Any, name: str, *kinds: type | None) -> None:
@@ -260,6 +263,22 @@ def instance(owner: Any, name: str, *kinds: type | None) -> None:
     allowed = " or ".join(n.removeprefix("Abstract") for n in names)
     known = tuple(type(None) if k is None else k for k in kinds)
     of_class(owner, name, getattr(owner, name), known, f"a {allowed}")
+
+
+def all_of_class(owner: Any, name: str, values: Any, kinds: Any, allowed: str) -> None:
+    """A list or tuple of objects of one of several classes.
+
+    Args:
+        owner, name, kinds, allowed: As in `of_class`.
+        values: The objects.
+
+    Raises:
+        TypeError: If one is something else.
+    """
+    for value in values:
+        if not isinstance(value, kinds):
+            held = f"{_title(owner)}: `{name}` holds a {type(value).__name__}"
+            raise TypeError(f"{held}; it must hold {allowed}.")
 
 
 def of_class(owner: Any, name: str, value: Any, kinds: Any, allowed: str) -> None:
@@ -330,9 +349,29 @@ def one_of(
     Raises:
         ValueError: If it is none of them.
     """
-    if value not in names:
-        words = allowed or f"one of {', '.join(names)}"
-        raise ValueError(f"{_title(owner)}: `{name}` is {value!r}; it must be {words}.")
+    words = allowed or f"one of {', '.join(names)}"
+    must_be(owner, name, value, value in names, words)
+
+
+def must_be(
+    owner: Any,
+    name: str,
+    value: Any,
+    ok: bool,
+    allowed: str,
+    error: type[Exception] = ValueError,
+) -> None:
+    """Raise `error` unless `ok`, with the value as Python writes it.
+
+    Args:
+        owner, name: Class or function, and the field or argument checked.
+        value: The value.
+        ok: Whether it is allowed.
+        allowed: Allowed values, ending the sentence "it must be ...".
+        error: Class of the exception.
+    """
+    if not ok:
+        raise error(f"{_title(owner)}: `{name}` is {value!r}; it must be {allowed}.")
 
 
 def _field(owner, name):

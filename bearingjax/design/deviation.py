@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.units import unit, unit_of
-from .checks import check, finite, floats, is_real, is_traced, of_shape
+from .checks import check, finite, floats, is_real, is_traced, must_be, of_shape
 
 
 class Deviation(NamedTuple):
@@ -83,12 +83,8 @@ def check_deviation(owner: Any, name: str, count: int, what: str) -> np.ndarray 
     value = getattr(owner, name)
     if value is None or is_traced(value):
         return None
-    kind = type(owner).__name__
-    if not is_real(value):
-        raise TypeError(
-            f"{kind}: `{name}` is {value!r}; it must be numbers in"
-            f" {unit_of(owner, name)}."
-        )
+    allowed = f"numbers in {unit_of(owner, name)}"
+    must_be(owner, name, value, is_real(value), allowed, TypeError)
     of_shape(owner, name, np.shape(value) == (count,), f"({count},), {what}")
     finite(owner, name)
     return np.asarray(value)
@@ -102,12 +98,11 @@ def check_raceways(owner: Any, count: int, most: float) -> None:
         count: Number of rolling elements.
         most: Upper bound of the size of each number [m].
     """
-    name, kind = "raceway_deviation", type(owner).__name__
+    name = "raceway_deviation"
     value = getattr(owner, name)
     if value is None:
         return
-    if not is_real(value):
-        raise TypeError(f"{kind}: `{name}` is {value!r}; it must be numbers in m.")
+    must_be(owner, name, value, is_real(value), "numbers in m", TypeError)
     allowed = (
         f"({count}, 2, 3): of each rolling element, at the outer and the inner raceway,"
         " how far that stands along z and outwards, and how far the contact is raised,"

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from ..numerics.types import Real, Scalar, as_real
 from ..numerics.units import real, unit
 from .abstract import AbstractBearing
-from .checks import check, finite, instance, is_real, is_traced
+from .checks import all_of_class, check, finite, instance, is_real, is_traced, must_be
 from .deviation import largest_deviation
 
 _NODES = 256
@@ -109,10 +109,8 @@ class Harmonics(AbstractShape):
         self.order = _orders(order)
         count = len(self.order)
         for name, given in (("amplitude", amplitude), ("phase", phase)):
-            if given is not None and not is_real(given):
-                raise TypeError(
-                    f"Harmonics: `{name}` is {given!r}; it must be numbers."
-                )
+            fine = given is None or is_real(given)
+            must_be("Harmonics", name, given, fine, "numbers", TypeError)
         whole = all(isinstance(k, int) and k >= 1 for k in self.order)
         check("Harmonics", "order", whole, "whole numbers from 1", list(self.order), "")
         self.amplitude = jnp.atleast_1d(as_real(amplitude))
@@ -157,8 +155,7 @@ class Harmonics(AbstractShape):
             TypeError: For values that are not numbers.
             ValueError: For fewer than 4 points, or an order that they do not show.
         """
-        if not is_real(points):
-            raise TypeError(f"Harmonics: `points` is {points!r}; it must be numbers.")
+        must_be("Harmonics", "points", points, is_real(points), "numbers", TypeError)
         points = as_real(points)
         n = points.size
         right = points.ndim == 1 and n >= 4
@@ -305,12 +302,8 @@ class RacewayErrors(eqx.Module):
 
     def __check_init__(self):
         for name in ("axial", "outwards", "raised"):
-            for shape in getattr(self, name):
-                if not isinstance(shape, AbstractShape):
-                    raise TypeError(
-                        f"RacewayErrors: `{name}` holds a {type(shape).__name__}; it"
-                        " must hold Harmonics or Spall."
-                    )
+            shapes = getattr(self, name)
+            all_of_class(self, name, shapes, AbstractShape, "Harmonics or Spall")
 
     @property
     def shapes(self) -> tuple[AbstractShape, ...]:

@@ -11,7 +11,7 @@ from ..contact.line import AbstractLineLaw
 from ..contact.point_law import AbstractPointLaw
 from ..design import AbstractBearing, BearingSet, SetRow, rows_of
 from ..design.bearing_set import bearings_of
-from ..design.checks import is_traced, of_class
+from ..design.checks import flag, is_traced, of_class
 from ..design.deviation import deviation_of
 from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
 from ..numerics.quadrature import AbstractQuadrature
@@ -138,11 +138,7 @@ class BearingElement(eqx.Module, Generic[AnyBearing]):
                 "raceway_control": raceway_control,
             }
         )
-        if not isinstance(cage_torque, bool):
-            raise TypeError(
-                f"BearingElement: `cage_torque` is {cage_torque!r}; it must be True or"
-                " False."
-            )
+        flag("BearingElement", "cage_torque", cage_torque)
         given = {
             "line_law": line_law,
             "kinematics": kinematics,

@@ -18,6 +18,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from ..design.checks import of_shape
 from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst_code
@@ -25,6 +26,7 @@ from ..numerics.types import Ring, RingStiffness, Scalar
 from ..numerics.units import unit, units
 from .constants import TETHER
 from .equilibrium import ElementStart, accept_small
+from .frame import TWELVE
 from .rolling_element import split_rings
 from .row import Row
 from .solved_row import RowResults, SolvedRow
@@ -237,11 +239,7 @@ class BearingModel(eqx.Module):
 
     def _check_freedoms(self, q):
         q = jnp.asarray(q, dtype=self.dtype)
-        if q.shape != (12,):
-            raise ValueError(
-                f"BearingElement: `q` has shape {q.shape}; it must be (12,): outer"
-                " ring (ux uy uz gx gy gz), then inner ring."
-            )
+        of_shape("BearingElement", "q", q.shape == (12,), TWELVE, q)
         return q
 
     @eqx.filter_jit
@@ -424,9 +422,6 @@ class BearingModel(eqx.Module):
 
         Turning elements press the outer ring alone; what stiffness is left then is
         that of the springs which hold them in place.
-
-        Args:
-            solved: The elements.
         """
         # Contacts are stiffer than their tethers by 1e14; some round-off is left.
         left = 1e4 * jnp.finfo(self.dtype).eps / TETHER

@@ -21,6 +21,8 @@ name_axis("ring_component", (f"{ring}_{load}" for ring in RINGS for load in LOAD
 for _axis in "ring_freedom", "moved_ring_freedom":
     name_axis(_axis, (f"{ring}_{name}" for ring in RINGS for name in FREEDOMS))
 
+TWELVE = "(12,): outer ring (ux uy uz gx gy gz), then inner ring"
+"""Allowed shape of the freedoms of both rings, in messages."""
 MOTION_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 LOAD_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 STIFFNESS_UNITS = (

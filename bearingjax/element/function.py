@@ -15,8 +15,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, of_class
+from ..design.checks import check, must_be, of_class, of_shape
 from ..numerics.types import Scalar, as_real
+from .frame import TWELVE
 from .inertia import Speed
 
 
@@ -97,11 +98,8 @@ def orbiting_force(
 
 def _force(motion, velocity, time, parameters, near):
     for name, value in (("motion", motion), ("velocity", velocity)):
-        if jnp.shape(value) != (12,):
-            raise ValueError(
-                f"BearingElement: `{name}` has shape {jnp.shape(value)}; it must be"
-                " (12,): outer ring (ux uy uz gx gy gz), then inner ring."
-            )
+        fits = jnp.shape(value) == (12,)
+        of_shape("BearingElement", name, fits, TWELVE, value)
     speed, damping = parameters.speed, parameters.damping
     model = parameters.element.model(speed)
     motion = jnp.asarray(motion)
@@ -147,13 +145,10 @@ def check_damping(
             negative.
     """
     shape = getattr(damping, "shape", None)
-    if shape is None:
-        raise TypeError(
-            f"{owner}: `damping` is {damping!r}; it must be numbers in N s/m."
-        )
-    if shape not in shapes:
-        allowed = " or ".join(str(s) if s else "one number" for s in shapes)
-        raise ValueError(f"{owner}: `damping` has shape {shape}; it must be {allowed}.")
+    numbers = "numbers in N s/m"
+    must_be(owner, "damping", damping, shape is not None, numbers, TypeError)
+    allowed = " or ".join(str(s) if s else "one number" for s in shapes)
+    of_shape(owner, "damping", shape in shapes, allowed, damping)
     diagonal = jnp.diagonal(damping, axis1=-2, axis2=-1) if shape else damping
     good = jnp.all(jnp.isfinite(damping)) & jnp.all(diagonal >= 0)
     check(owner, "damping", good, "finite, its diagonal at least 0", damping, "N s/m")

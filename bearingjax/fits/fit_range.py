@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
-from ..design.checks import floats, in_range, one_of
+from ..design.checks import floats, in_range, must_be, one_of
 from ..numerics.units import unit
 from .fits import FitConditions, FitState, Mounting, fit_state, positive_part
 from .iso286 import Limits
@@ -196,11 +196,9 @@ def _check_given(clearance, shaft, bore, housing, outside_diameter):
         "outside_diameter": outside_diameter,
     }
     for name, pair in given.items():
-        if not isinstance(pair, tuple) or len(pair) != 2:
-            raise TypeError(
-                f"clearance_range: `{name}` is {pair!r}; it must be Limits, two numbers"
-                " in m."
-            )
+        whole = isinstance(pair, tuple) and len(pair) == 2
+        allowed = "Limits, two numbers in m"
+        must_be("clearance_range", name, pair, whole, allowed, TypeError)
         for end in pair:
             in_range("clearance_range", name, -_WIDEST, _WIDEST, end, "m")
         known = floats(*pair)

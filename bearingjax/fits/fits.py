@@ -387,11 +387,7 @@ def fit_state(mounting: Mounting, conditions: FitConditions | None = None) -> Fi
 
 
 def mean_bore(mounting: Mounting) -> Any:
-    """Mean diameter of the bore, in the middle of a tapered one [m].
-
-    Args:
-        mounting: The seats.
-    """
+    """Mean diameter of the bore, in the middle of a tapered one [m]."""
     width = mounting.ring_width
     longer = 0.0 if width is None else 0.5 * mounting.bore_taper * width
     return mounting.bore + longer

@@ -3,7 +3,7 @@
 import re
 from typing import Annotated, Any, NamedTuple
 
-from ..design.checks import positive
+from ..design.checks import must_be, positive
 from ..numerics.units import unit
 
 _MICRON = 1e-6
@@ -120,12 +120,10 @@ def standard_tolerance(grade: int, diameter: Any) -> float:
 
     Source: as in `limits`.
     """
+    allowed = f"a whole number from 1 to {len(_GRADES)}"
     whole = isinstance(grade, int) and not isinstance(grade, bool)
-    if not whole or grade not in range(1, len(_GRADES) + 1):
-        raise ValueError(
-            f"standard_tolerance: `grade` is {grade!r}; it must be a whole number"
-            f" from 1 to {len(_GRADES)}."
-        )
+    known = whole and grade in range(1, len(_GRADES) + 1)
+    must_be("standard_tolerance", "grade", grade, known, allowed)
     size = size_range("standard_tolerance", "diameter", diameter, _SIZES)
     return _GRADES[grade - 1][size] * _MICRON
 

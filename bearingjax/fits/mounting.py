@@ -252,8 +252,5 @@ def check_radial(owner: str, bearing: Any) -> None:
     Raises:
         TypeError: If it is a thrust bearing or no single row.
     """
-    if not isinstance(bearing, AbstractBearing) or bearing.is_thrust:
-        raise TypeError(
-            f"{owner}: `bearing` is a {type(bearing).__name__}; it must be a radial"
-            " ball or roller bearing."
-        )
+    kinds = () if getattr(bearing, "is_thrust", False) else AbstractBearing
+    of_class(owner, "bearing", bearing, kinds, "a radial ball or roller bearing")

@@ -36,6 +36,7 @@ from ..design import (
     rows_of,
 )
 from ..design.abstract import nearest_entry
+from ..design.checks import of_shape
 from ..numerics.linear import lengths
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
@@ -120,11 +121,8 @@ def equivalent_load(
         formulas for thrust bearings.
     """
     load = as_real(load)
-    if load.shape != (6,):
-        raise ValueError(
-            f"equivalent_load: `load` has shape {load.shape}; it must be (6,): Fx Fy Fz"
-            " Mx My Mz in N, N m."
-        )
+    allowed = "(6,): Fx Fy Fz Mx My Mz in N, N m"
+    of_shape("equivalent_load", "load", load.shape == (6,), allowed, load)
     radial = lengths(load[:2])
     if _is_crossed(bearing):
         pitch = rows_of(bearing)[0].bearing.pitch_diameter

@@ -17,7 +17,16 @@ from jaxtyping import Array, Float
 from ..design import rows_of
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, pitch_radius
-from ..design.checks import are_known, check, floats, in_range, of_class, positive
+from ..design.checks import (
+    are_known,
+    check,
+    flag,
+    floats,
+    in_range,
+    of_class,
+    one_of,
+    positive,
+)
 from ..design.places import element_places, has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import RINGS
@@ -187,16 +196,8 @@ class LifeConditions(eqx.Module):
             check(self, "fatigue_load_limit", known[0] < known[1], allowed)
         # Single precision has 0.9 a little below it.
         in_range(self, "reliability", 0.9 - 1e-7, 1.0, include_low=True)
-        if self.load_fixed_to not in FRAMES:
-            raise ValueError(
-                f"LifeConditions: `load_fixed_to` is {self.load_fixed_to!r}; it must be"
-                f" one of {', '.join(map(repr, FRAMES))}."
-            )
-        if not isinstance(self.edge_stress, bool):
-            raise TypeError(
-                f"LifeConditions: `edge_stress` is {self.edge_stress!r}; it must be"
-                " True or False."
-            )
+        one_of(self, "load_fixed_to", self.load_fixed_to, FRAMES)
+        flag(self, "edge_stress", self.edge_stress)
         self._check_lubrication()
 
     def _check_lubrication(self):

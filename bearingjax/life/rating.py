@@ -30,7 +30,7 @@ from ..design import (
 )
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import shares_rings
-from ..design.checks import is_traced, of_class, positive
+from ..design.checks import is_traced, of_class, one_of, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program
 from ..numerics.types import Flag, Real, Scalar, as_real
@@ -144,9 +144,6 @@ def published_factors(
     bearing: AbstractBearing | BearingSet,
 ) -> tuple[Float[Array, "3"], Flag] | None:
     """Return Y1, Y2 and Y0 that a catalogue prints for a bearing of two rows [1].
-
-    Args:
-        bearing: The design.
 
     Returns:
         The factors, and whether they are printed and hold for its dimensions; `None`
@@ -267,11 +264,7 @@ def fatigue_load_limit(
     """
     parts = _parts(bearing)
     rows, is_thrust = parts[0].rows, parts[0].is_thrust
-    if method not in ("static", "contact"):
-        raise ValueError(
-            f"fatigue_load_limit: `method` is {method!r}; it must be 'static' or"
-            " 'contact'."
-        )
+    one_of("fatigue_load_limit", "method", method, ("static", "contact"))
     if method == "contact":
         if static_capacity is not None or not isinstance(rows.row, BallRow):
             raise ValueError(

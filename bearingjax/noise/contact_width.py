@@ -36,9 +36,6 @@ def with_bridged_waves(model: NoiseModel) -> NoiseModel:
     Contacts have the width under their mean load in static equilibrium; waves of
     random bearings, which `sampled_model` adds, are averaged too. Spalls are not.
 
-    Args:
-        model: The bearing.
-
     Returns:
         The model with `half_width`, differentiable.
 

@@ -21,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from ..design.checks import check, floats, positive
+from ..design.checks import check, floats, must_be, positive
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.types import Scalar, array_namespace, as_real
@@ -207,10 +207,9 @@ def spectrum(
             cover a whole number of turns (to `WHOLE_TURNS`).
     """
     window = Rectangular() if window is None else window
-    if not isinstance(window, AbstractWindow):
-        raise TypeError(
-            f"spectrum: `window` is {window!r}; it must be Rectangular() or Hann()."
-        )
+    known = isinstance(window, AbstractWindow)
+    allowed = "Rectangular() or Hann()"
+    must_be("spectrum", "window", window, known, allowed, TypeError)
     signal = as_real(signal)
     shape = np.shape(signal)
     if not shape or shape[0] < _LEAST or shape[0] % 2:

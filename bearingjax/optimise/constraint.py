@@ -1,12 +1,15 @@
 """Constraints of an optimisation: bounds on measures."""
 
+from collections.abc import Callable
 from typing import Any
 
 import equinox as eqx
 
-from ..design.checks import check, number
+from ..design.checks import check, number, of_class
 from ..numerics.types import Scalar, as_real
 from .measure import label_of
+
+_A_MEASURE = "a function (element, cases, solution) -> scalar, such as Stiffness('uy')"
 
 
 class Constraint(eqx.Module):
@@ -30,12 +33,7 @@ class Constraint(eqx.Module):
     )
 
     def __check_init__(self):
-        if not callable(self.measure):
-            raise TypeError(
-                f"Constraint: `measure` is a {type(self.measure).__name__}; it must be"
-                " a function (element, cases, solution) -> scalar, such as"
-                " Stiffness('uy')."
-            )
+        of_class(self, "measure", self.measure, Callable, _A_MEASURE)
         bounds = {"lower": self.lower, "upper": self.upper}
         if all(bound is None for bound in bounds.values()):
             raise ValueError("Constraint: give `lower`, `upper` or both.")

@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import check, number
+from ..design.checks import check, number, one_of
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
 from ..numerics.types import Real, Scalar
 from ..numerics.units import real, unit_of
@@ -374,8 +374,4 @@ def _stiffness(solution, row, column):
 
 
 def _check_freedom(owner, freedom):
-    if freedom not in FREEDOMS[:5]:
-        raise ValueError(
-            f"{type(owner).__name__}: `freedom` is {freedom!r}; it must be one of"
-            f" {', '.join(FREEDOMS[:5])}."
-        )
+    one_of(owner, "freedom", freedom, FREEDOMS[:5])

@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ..cases.cases import Cases
-from ..design.checks import of_class
+from ..design.checks import all_of_class, count, in_range, must_be, of_class
 from ..life.rating import check_alike
 from ..numerics.units import meaning, shown_number, unit
 from ..statics.installed import Installed
@@ -392,11 +392,9 @@ def _check_method(method, constraints):
     if method is None:
         return "slsqp" if constraints else "l-bfgs-b"
     descent = hasattr(method, "init") and hasattr(method, "update")
-    if not (descent or callable(method) or method in METHODS):
-        raise ValueError(
-            f"optimise: `method` is {method!r}; it must be one of"
-            f" {', '.join(METHODS)}, or an Optax gradient transformation."
-        )
+    known = descent or callable(method) or method in METHODS
+    allowed = f"one of {', '.join(METHODS)}, or an Optax gradient transformation"
+    must_be("optimise", "method", method, known, allowed)
     if constraints and method != "slsqp":
         raise ValueError(
             f"optimise: `method` is {method!r}, which keeps no constraints; take"
@@ -414,18 +412,6 @@ def _check_cases(cases, kind):
 def _check_call(objective, constraints, max_steps, tolerance):
     allowed = "a function (element, cases, solution) -> scalar, such as PeakPressure()"
     of_class("optimise", "objective", objective, Callable, allowed)
-    for constraint in constraints:
-        if not isinstance(constraint, Constraint):
-            raise TypeError(
-                f"optimise: `constraints` holds a {type(constraint).__name__}; it must"
-                " hold Constraints."
-            )
-    if isinstance(max_steps, bool) or not isinstance(max_steps, int) or max_steps < 1:
-        raise ValueError(
-            f"optimise: `max_steps` is {max_steps!r}; it must be a whole number of at"
-            " least 1."
-        )
-    if not 0.0 < tolerance < 0.1:
-        raise ValueError(
-            f"optimise: `tolerance` is {tolerance!r}; it must be above 0 and below 0.1."
-        )
+    all_of_class("optimise", "constraints", constraints, Constraint, "Constraints")
+    count("optimise", "max_steps", max_steps)
+    in_range("optimise", "tolerance", 0.0, 0.1, tolerance, "")

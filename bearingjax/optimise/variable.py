@@ -10,6 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..design.checks import all_of_class, must_be
 from ..files.scene_errors import problem_of
 from ..numerics.units import shown_number, unit_of
 from .system import Design
@@ -42,11 +43,9 @@ class Variable:
 
     def __post_init__(self):
         paths = (self.path,) if isinstance(self.path, str) else tuple(self.path)
-        if not paths or not all(isinstance(p, str) and p for p in paths):
-            raise TypeError(
-                f"Variable: `path` is {self.path!r}; it must be a dotted text such as"
-                " 'bearing.roller_profile.crown_radius', or several."
-            )
+        texts = bool(paths) and all(isinstance(p, str) and p for p in paths)
+        allowed = "a dotted text such as 'bearing.roller_profile.crown_radius'"
+        must_be(self, "path", self.path, texts, f"{allowed}, or several", TypeError)
         object.__setattr__(self, "path", paths)
         object.__setattr__(self, "name", self.name or paths[0])
         for key in ("lower", "upper", "start"):
@@ -85,9 +84,6 @@ class Variable:
 
     def start_in(self, element: Design) -> float:
         """First value: `start`, or that of the design [SI].
-
-        Args:
-            element: The design.
 
         Raises:
             ValueError: If the path does not lead to a number, or the number of the
@@ -211,12 +207,7 @@ def check_variables(element: Design, variables: Sequence[Variable]) -> list[floa
     """
     if not variables:
         raise ValueError("optimise: `variables` is empty; name at least one.")
-    for variable in variables:
-        if not isinstance(variable, Variable):
-            raise TypeError(
-                f"optimise: `variables` holds a {type(variable).__name__}; it must hold"
-                " Variables."
-            )
+    all_of_class("optimise", "variables", variables, Variable, "Variables")
     start = [variable.start_in(element) for variable in variables]
     paths = [path for variable in variables for path in variable.path]
     twice = sorted({path for path in paths if paths.count(path) > 1})

@@ -16,9 +16,6 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     The drop points downwards, as the material falls away. Profiles that grow without
     limit at their very end are cut there. Of barrel rollers the profile of the roller
     is measured from its arc, those of the raceways from the same arc.
-
-    Args:
-        bearing: The design.
     """
     ax = axes_or_new(ax)
     length, diameter = bearing.roller_length, bearing.roller_diameter

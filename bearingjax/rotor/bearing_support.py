@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from ..design.checks import finite, instance, of_shape
+from ..design.checks import finite, instance, must_be, of_shape
 from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
@@ -107,11 +107,8 @@ class BearingSupport(AbstractSupport):
         for name in ("inertia", "passage"):
             instance(self, name, bool)
         kind = getattr(self.turned, "dtype", None)
-        if kind is None or kind.kind != "b" or jnp.shape(self.turned):
-            raise TypeError(
-                f"BearingSupport: `turned` is {self.turned!r}; it must be True or"
-                " False."
-            )
+        known = kind is not None and kind.kind == "b" and not jnp.shape(self.turned)
+        must_be(self, "turned", self.turned, known, "True or False", TypeError)
 
     def force(
         self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import finite, of_shape
+from ..design.checks import all_of_class, finite, of_shape
 from ..numerics.types import as_count, as_real
 from ..numerics.units import unit
 from .linear.response import Unbalance
@@ -68,20 +68,12 @@ class RotorLoads(eqx.Module):
 
     def __check_init__(self):
         for name, kind in (("unbalances", Unbalance), ("forces", StationForce)):
-            for one in getattr(self, name):
-                if not isinstance(one, kind):
-                    raise TypeError(
-                        f"RotorLoads: `{name}` holds a {type(one).__name__}; it must"
-                        f" hold {kind.__name__}s."
-                    )
+            all_of_class(self, name, getattr(self, name), kind, f"{kind.__name__}s")
         _vector(self, "gravity", 3)
         _vector(self, "base_acceleration", 3)
 
     def check(self, rotor: Rotor) -> None:
         """Raise unless the rotor has all loaded stations.
-
-        Args:
-            rotor: The rotor.
 
         Raises:
             ValueError: If the rotor lacks a station.
@@ -97,11 +89,7 @@ class RotorLoads(eqx.Module):
 
     @eqx.filter_jit
     def constant(self, rotor: Rotor) -> Motions:
-        """Return weight and constant forces on all motions (motion,) [N, N m].
-
-        Args:
-            rotor: The rotor.
-        """
+        """Return weight and constant forces on all motions (motion,) [N, N m]."""
         force = acceleration_load(rotor, self.gravity)
         for one in self.forces:
             force = force.at[rotor.slice_at(one.station)].add(one.force)
@@ -112,9 +100,6 @@ class RotorLoads(eqx.Module):
         """Return amplitudes of cos φ and sin φ of unbalance forces, over Ω² [kg m].
 
         U (cos(φ + β), sin(φ + β)) at the station of every unbalance.
-
-        Args:
-            rotor: The rotor.
         """
         cosine = sine = jnp.zeros_like(rotor.motions()[:, 0])
         for one in self.unbalances:
@@ -126,11 +111,7 @@ class RotorLoads(eqx.Module):
 
     @eqx.filter_jit
     def base_force(self, rotor: Rotor) -> Motions:
-        """Return the amplitude of cos φ of the forces of base excitation [N, N m].
-
-        Args:
-            rotor: The rotor.
-        """
+        """Return the amplitude of cos φ of the forces of base excitation [N, N m]."""
         return -acceleration_load(rotor, self.base_acceleration)
 
 

@@ -10,7 +10,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import check, instance, is_traced, non_negative, of_shape, positive
+from ..design.checks import (
+    check,
+    instance,
+    is_traced,
+    must_be,
+    non_negative,
+    of_shape,
+    positive,
+)
 from ..design.material import Material
 from ..numerics.compiled.programs import program
 from ..numerics.types import Real, Scalar, as_count, as_real
@@ -36,11 +44,8 @@ DAMPING_UNITS = (
 def check_station(owner: Any, station: Any) -> None:
     """Check that a station is a whole number from 0."""
     whole = isinstance(station, int) and not isinstance(station, bool)
-    if not whole or station < 0:
-        raise ValueError(
-            f"{type(owner).__name__}: `station` is {station!r}; it must be the number"
-            " of a station of the shaft, from 0."
-        )
+    allowed = "the number of a station of the shaft, from 0"
+    must_be(owner, "station", station, whole and station >= 0, allowed)
 
 
 class AbstractPart(eqx.Module):

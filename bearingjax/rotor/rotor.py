@@ -9,7 +9,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Complex, Float
 
-from ..design.checks import instance
+from ..design.checks import all_of_class, flag, instance
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import meaning
@@ -138,17 +138,13 @@ class Rotor(eqx.Module):
     def __check_init__(self):
         instance(self, "shaft", Shaft)
         instance(self, "damping", AbstractDamping, None)
-        if not isinstance(self.rigid, bool):
-            raise TypeError(f"Rotor: `rigid` is {self.rigid!r}; True or False.")
+        flag(self, "rigid", self.rigid)
         last = self.shaft.n_segments
         kinds = (("discs", AbstractPart), ("supports", AbstractSupport))
         for name, kind in kinds:
+            words = "discs or point masses" if name == "discs" else name
+            all_of_class(self, name, getattr(self, name), kind, words)
             for part in getattr(self, name):
-                if not isinstance(part, kind):
-                    raise TypeError(
-                        f"Rotor: `{name}` holds a {type(part).__name__}; it must hold"
-                        f" {'discs or point masses' if name == 'discs' else name}."
-                    )
                 if part.station > last:
                     raise ValueError(
                         f"Rotor: `{name}` holds a {type(part).__name__} on station"

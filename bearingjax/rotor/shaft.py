@@ -14,8 +14,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..catalogue.entry import SAME_SIZE, CatalogueEntry
-from ..design.checks import check, finite, is_traced, of_shape, real_numbers
-from ..design.checks import count as whole
+from ..design.checks import (
+    check,
+    count,
+    finite,
+    is_traced,
+    must_be,
+    of_shape,
+    real_numbers,
+)
 from ..design.material import Material
 from ..element.frame import FREEDOMS, LOADS, MOTION_UNITS
 from ..fits import Mounting
@@ -115,18 +122,16 @@ class Shaft(eqx.Module):
                 check(self, "bore", inside, "below the outer diameter of its segment")
         materials = self.material
         listed = materials if isinstance(materials, tuple) else (materials,) * n
-        if len(listed) != n or not all(isinstance(m, Material) for m in listed):
-            raise TypeError(
-                f"Shaft: `material` is {materials!r}; it must be a Material, or a tuple"
-                f" of {n}, one for each segment."
-            )
+        fits = len(listed) == n and all(isinstance(m, Material) for m in listed)
+        allowed = f"a Material, or a tuple of {n}, one for each segment"
+        must_be(self, "material", materials, fits, allowed, TypeError)
         if len(self.divisions) != n:
             raise ValueError(
                 f"Shaft: `divisions` has {len(self.divisions)} numbers; it must be one,"
                 f" or {n}, one for each segment."
             )
         for number in self.divisions:
-            whole(self, "divisions", number)
+            count(self, "divisions", number)
 
     @property
     def n_segments(self) -> int:

@@ -180,11 +180,7 @@ def check_opposed(owner: str, bearing: AbstractBearing | BearingSet) -> None:
 
 
 def is_opposed(bearing: AbstractBearing | BearingSet) -> bool:
-    """Whether a bearing is a set whose rows press each other along the axis.
-
-    Args:
-        bearing: The design.
-    """
+    """Whether a bearing is a set whose rows press each other along the axis."""
     return _not_opposed(bearing) is None
 
 

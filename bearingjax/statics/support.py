@@ -13,12 +13,13 @@ from ..design import (
     rows_of,
 )
 from ..design.bearing_set import bearings_of, is_self_aligning
-from ..design.checks import is_traced, of_shape, one_of, real_numbers
+from ..design.checks import is_traced, must_be, of_shape, one_of, real_numbers
 from ..element.frame import FREEDOMS, LOADS, MOTION_UNITS, RINGS
 from ..numerics.types import Scalar, as_array, as_real
 from ..numerics.units import unit
 
 Prescribed = Mapping[str, float | int | Array | np.ndarray]
+DICT_OF_FREEDOMS = "a dict of freedoms with their values in m or rad"
 """Displacements by name of the freedom [m, rad]."""
 
 
@@ -30,11 +31,9 @@ def _as_names(free: Any) -> Any:
 def _as_displacements(prescribed: Any) -> dict[str, Any]:
     if prescribed is None:
         return {}
-    if not isinstance(prescribed, Mapping):
-        raise TypeError(
-            f"Support: `prescribed` is {prescribed!r}; it must be a dict of freedoms"
-            " with their values in m or rad, such as {'uz': 1e-5}."
-        )
+    known = isinstance(prescribed, Mapping)
+    allowed = f"{DICT_OF_FREEDOMS}, such as {{'uz': 1e-5}}"
+    must_be("Support", "prescribed", prescribed, known, allowed, TypeError)
     return {name: as_real(value) for name, value in prescribed.items()}
 
 
@@ -71,10 +70,8 @@ class Support(eqx.Module):
 
     def __check_init__(self):
         one_of("Support", "fixed_ring", self.fixed_ring, RINGS, "'outer' or 'inner'")
-        if isinstance(self.free, str):
-            raise TypeError(
-                f"Support: `free` is {self.free!r}; it must be a list of names."
-            )
+        names = not isinstance(self.free, str)
+        must_be("Support", "free", self.free, names, "a list of names", TypeError)
         _check_names("free", self.free or ())
         _check_names("prescribed", tuple(self.prescribed))
         if "gz" in (self.free or ()):
@@ -127,11 +124,7 @@ class Support(eqx.Module):
         return as_array(known, dtype)
 
     def freedoms(self, bearing: AbstractBearing | BearingSet) -> tuple[str, ...]:
-        """Freedoms of the moving ring that may move.
-
-        Args:
-            bearing: The design.
-        """
+        """Freedoms of the moving ring that may move."""
         free = restrained_freedoms(bearing) if self.free is None else self.free
         return tuple(f for f in FREEDOMS if f in free and f not in self.prescribed)
 
@@ -169,11 +162,8 @@ def six_numbers(owner: str, name: str, value: Any, dtype: Any) -> Float[Array, "
         array = as_array(value, dtype)
     except ValueError as error:  # lists of unlike length
         raise ValueError(f"{owner}: `{name}` must be {wanted}.") from error
-    if array.shape != (6,):
-        raise ValueError(
-            f"{owner}: `{name}` has shape {array.shape}; it must be (6,):"
-            f" {' '.join(order)}."
-        )
+    allowed = f"(6,): {' '.join(order)}"
+    of_shape(owner, name, array.shape == (6,), allowed, array)
     return array
 
 
@@ -184,9 +174,6 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
     thrust bearing, not ux and uy of cylindrical roller thrust bearings; of a toroidal
     roller bearing ux and uy alone. uz with balls and tapered rollers, and where a pair
     of ribs passes axial load from ring to ring.
-
-    Args:
-        bearing: The design.
     """
     rows = list(bearings_of(bearing))
     axial = any(row.holds_axially for row in rows)
@@ -197,11 +184,7 @@ def restrained_freedoms(bearing: AbstractBearing | BearingSet) -> tuple[str, ...
 
 
 def axial_senses(bearing: AbstractBearing | BearingSet) -> set[int]:
-    """Senses in which the bearing carries axial load on its inner ring: 1 along +z, -1.
-
-    Args:
-        bearing: The design.
-    """
+    """Senses in which it carries axial load on its inner ring: 1 along +z, or -1."""
     return {
         -sense if row.mirrored else sense
         for row in rows_of(bearing)

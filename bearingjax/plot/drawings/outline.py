@@ -49,11 +49,7 @@ class Section(NamedTuple):
 
 
 def section(bearing: AbstractRollerBearing) -> Section:
-    """Return outlines of roller and rings in the section plane.
-
-    Args:
-        bearing: The design.
-    """
+    """Return outlines of roller and rings in the section plane."""
     length = 1e3 * float(bearing.roller_length)
     diameter = 1e3 * float(bearing.roller_diameter)
     centre = 1e3 * np.array(

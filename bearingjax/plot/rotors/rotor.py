@@ -26,9 +26,6 @@ def rotor_section(rotor: Rotor, ax: Ax = None) -> Axes:
     dashed lines of action; a support given by a matrix or a law is a symbol. Stations
     are numbered above.
 
-    Args:
-        rotor: The rotor.
-
     Returns:
         The axes: z to the right, x or y upwards.
     """

@@ -7,6 +7,7 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ...design.checks import count
 from ...numerics.compiled.programs import program
 from ...numerics.lapack import cholesky, congruent, eigh, solve_any
 from ...numerics.types import as_count
@@ -40,10 +41,7 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
     Source: Craig & Bampton, AIAA J. 6 (1968) 1313-1319.
     """
     modes = as_count(modes)
-    if isinstance(modes, bool) or not isinstance(modes, int) or modes < 0:
-        raise ValueError(
-            f"craig_bampton: `modes` is {modes!r}; it must be a whole number from 0."
-        )
+    count("craig_bampton", "modes", modes, least=0)
     if rotor.rigid or not rotor.supports:
         why = "is rigid" if rotor.rigid else "has no supports"
         raise ValueError(f"craig_bampton: `rotor` {why}; there is nothing to reduce.")
@@ -83,11 +81,7 @@ def _sizes(stations):
 
 
 def held_motions(rotor: Rotor) -> tuple[np.ndarray, np.ndarray]:
-    """Return indices of the motions of supported stations and housings, and of others.
-
-    Args:
-        rotor: The rotor.
-    """
+    """Return indices of motions of supported stations and housings, and of others."""
     n = rotor.at_supports().shape[-1]
     places = [
         np.arange(n)[rotor.slice_at(support.station)] for support in rotor.supports

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Complex, Float
 
-from ...design.checks import check_fields, number
+from ...design.checks import all_of_class, check_fields, number
 from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
@@ -97,12 +97,9 @@ def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceR
     """
     many = isinstance(unbalances, Iterable)
     unbalances = tuple(unbalances) if many else (unbalances,)
+    held = "unbalance_response", "unbalances", unbalances
+    all_of_class(*held, Unbalance, "Unbalances")
     for one in unbalances:
-        if not isinstance(one, Unbalance):
-            raise TypeError(
-                f"unbalance_response: `unbalances` holds a {type(one).__name__}; it"
-                " must hold Unbalances."
-            )
         if one.station > rotor.shaft.n_segments:
             raise ValueError(
                 f"unbalance_response: `unbalances` holds one on station {one.station};"

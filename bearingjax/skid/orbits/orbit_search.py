@@ -95,9 +95,6 @@ class AbstractOrbit(eqx.Module):
     def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
         """Return the balls or rollers of a solved row, and the values of the unknowns
         in pure rolling (element, k) [rad/s].
-
-        Args:
-            row: The row.
         """
 
     def motion(

@@ -28,9 +28,6 @@ def outer_cosine(taper: TaperedRollerBearing) -> float:
 def fit_report(scene: Scene) -> list[Part]:
     """Return the report of fits: radial clearance from free to operation, and seats;
     empty for a scene without fits.
-
-    Args:
-        scene: The scene.
     """
     found, notes, seats = scene.fit_states, scene.fits, scene.installed.mounting
     if found is None or notes is None or seats is None:
@@ -100,9 +97,6 @@ def _seats(found) -> Grid:
 
 def fit_as_dict(scene: Scene) -> dict[str, Any]:
     """Return the fits of a scene as plain numbers, in SI; empty without fits.
-
-    Args:
-        scene: The scene.
 
     Returns:
         place; bore_taper [1] and drive_up [m], 0 of cylindrical seats;

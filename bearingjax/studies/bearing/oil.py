@@ -125,12 +125,7 @@ def _facts(solution, lubricant, temperature, supply, roughness, series, diameter
 
 
 def oil_report(oil: Oil, facts: OilFacts | None) -> list[str]:
-    """Return the report lines of friction and films; empty at rest.
-
-    Args:
-        oil: From `read_oil`.
-        facts: From `oil_facts`.
-    """
+    """Return the report lines of friction and films; empty at rest."""
     if facts is None:
         return []
     friction = facts.friction
@@ -181,9 +176,6 @@ def series_words(skf: SkfFriction) -> str:
 
 def oil_as_dict(facts: OilFacts | None) -> dict[str, Any]:
     """Return friction and films as plain numbers, in SI; empty at rest.
-
-    Args:
-        facts: From `oil_facts`.
 
     Returns:
         friction_torque [N m]; friction: load, viscous, flange (row) [N m], power [W];

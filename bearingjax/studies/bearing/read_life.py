@@ -69,12 +69,7 @@ def _viscosity(top: Table, table: Table, given: float | None) -> float:
 
 
 def lubrication_warnings(top: Table, oil: Oil | None) -> tuple[Warning, ...]:
-    """Return a warning if contamination and supply are not both for grease or for oil.
-
-    Args:
-        top: The scene.
-        oil: From `read_oil`.
-    """
+    """Warn if contamination and supply are not both of grease or of oil."""
     dirt = top.table("life").word("contamination") if "life" in top else None
     greased = dirt is not None and dirt.startswith("grease")
     if oil is None or dirt is None or greased == (oil.supply == "grease"):

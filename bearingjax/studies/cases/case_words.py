@@ -16,9 +16,6 @@ _LONGEST = 24
 def varied_settings(table: CaseTable) -> dict[str, np.ndarray]:
     """Return the quantities that differ between the cases of a scene, except hours.
 
-    Args:
-        table: From `read_cases`.
-
     Returns:
         Values (case,) by "name [unit]": loads, displacements, speeds, and settings of
         the design, numbers in SI.

@@ -33,11 +33,7 @@ from .read_cases import CaseTable, DesignGroup, turns_of
 
 
 def default_outputs(element: BearingElement) -> tuple[str, ...]:
-    """Return the outputs that are kept of each case unless the scene names some.
-
-    Args:
-        element: The bearing.
-    """
+    """Return the outputs that are kept of each case unless the scene names some."""
     largest = summaries(solution_kind(element.choices))
     return "displacement", *largest, "n_loaded", "iterations", "residual"
 
@@ -128,9 +124,6 @@ def _on_seats(part: DesignGroup, solved: Sweep) -> Sweep:
 def cases_with_set_preload(table: CaseTable) -> CaseTable:
     """Apply `with_set_preload` to the cases of one design, including the range over
     the seat tolerances; cases of several designs are returned unchanged.
-
-    Args:
-        table: From `read_cases`.
     """
     if table.cases.design is not None:
         return table

@@ -25,9 +25,6 @@ from .read import ContactNumericsKeys, ContactOperatingKeys, ContactScene
 def run_contact(scene: ContactScene) -> list[SliceComparison]:
     """Solve the contact of a scene for each of its loads.
 
-    Args:
-        scene: From `read_contact`.
-
     Returns:
         A case for each load, in order; a failed solve does not raise.
 

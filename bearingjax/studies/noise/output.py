@@ -16,9 +16,6 @@ from .run import NoiseRun, RandomBearings
 def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
     """Return a run as plain numbers and lists, in SI; frequencies in Hz, levels in dB.
 
-    Args:
-        run: From `run_noise`.
-
     Returns:
         `natural_frequency` (mode,) of the modes restrained by contacts or sensor, with
         the `ring_share` of their kinetic energy; `direction`, the names along that

@@ -340,9 +340,6 @@ def scene_numbers(element: BearingElement[Any]) -> dict[str, tuple[str, ...]]:
 def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     """Return the numbers of a bearing in its place by their scene key, with their paths
     in `Scene.installed`.
-
-    Args:
-        scene: The bearing.
     """
     numbers = {
         key: tuple(f"drawing.{path}" for path in paths)

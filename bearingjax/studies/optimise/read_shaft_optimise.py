@@ -211,11 +211,7 @@ def _measure(
 
 
 def shaft_numbers(scene: ShaftScene) -> dict[str, tuple[str, ...]]:
-    """Return the design numbers by their scene key, with their paths in `ShaftDesign`.
-
-    Args:
-        scene: From `read_shafts`.
-    """
+    """Return the design numbers by scene key, with their paths in `ShaftDesign`."""
     return dict(_numbers(scene))
 
 

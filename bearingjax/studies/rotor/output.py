@@ -26,9 +26,6 @@ _TURN = 2.0 * np.pi
 def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
     """Return a run as plain numbers and lists, in SI, with frequencies in Hz.
 
-    Args:
-        run: From `run_rotor`.
-
     Returns:
         `frequency` [Hz], `damping_ratio` and `whirl` of the oscillating modes;
         `critical_speed` [rad/s] with `critical_whirl` and `critical_damping_ratio`;
@@ -80,11 +77,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
 
 
 def rotor_message(run: RotorRun) -> str:
-    """Return the message of a run: the parts that were not solved.
-
-    Args:
-        run: From `run_rotor`.
-    """
+    """Return the message of a run: the parts that were not solved."""
     if run.converged:
         return "converged"
     return "; ".join(f"{one.part}: {one.message}" for one in run.failures)

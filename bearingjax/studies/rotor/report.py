@@ -28,11 +28,7 @@ _AXIAL = 0.9
 
 
 def rotor_report(run: RotorRun) -> Report:
-    """Return the readable report of a rotor; unsolved parts are left out.
-
-    Args:
-        run: From `run_rotor`.
-    """
+    """Return the readable report of a rotor; unsolved parts are left out."""
     sections: dict[str, Section] = {
         "Rotor": [_head(run)],
         **_fit_sections(run.task),

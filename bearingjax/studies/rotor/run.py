@@ -253,11 +253,7 @@ def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
 
 
 def top_speed(task: RotorScene) -> float:
-    """Return the highest speed for speed-dependent bearings [rad/s].
-
-    Args:
-        task: From `read_rotor`.
-    """
+    """Return the highest speed for speed-dependent bearings [rad/s]."""
     speeds = [2.0 * abs(task.speed)]
     if task.campbell is not None:
         speeds.append(float(np.abs(task.campbell).max()))
@@ -269,11 +265,7 @@ def top_speed(task: RotorScene) -> float:
 
 
 def task_warnings(task: RotorScene) -> Iterator[Warning]:
-    """Yield warnings about the bearings at the speeds of the scene.
-
-    Args:
-        task: From `read_rotor`.
-    """
+    """Yield warnings about the bearings at the speeds of the scene."""
     top = max(map(abs, (task.speed, *_run_to(task))))
     for mount in {mount.name: mount for mount in task.mounts}.values():
         if mount.installed is not None:

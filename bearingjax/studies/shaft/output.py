@@ -24,9 +24,6 @@ from .run import ShaftRun, bearing_loss
 def shafts_as_dict(run: ShaftRun) -> dict[str, Any]:
     """Return the numbers of a run as plain numbers and lists, in SI.
 
-    Args:
-        run: From `run_shafts`.
-
     Returns:
         `bearings`, `gear`, `belt`, `shaft` by name, `system_life_hours`, `power`, of
         several cases `cases`; `result`, `message`, `warnings`, `inputs`, `version`.

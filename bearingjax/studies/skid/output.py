@@ -57,9 +57,6 @@ OF_TIME = {
 def skid_as_dict(run: SkidRun) -> dict[str, Any]:
     """Return a run as plain numbers and lists, in SI.
 
-    Args:
-        run: From `run_skid`.
-
     Returns:
         cage_speed, rolling_cage_speed, friction_torque (on the faster ring),
         ring_torque (outer, inner), power, and the quantities of `BALL_UNITS` for each
@@ -119,9 +116,6 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
     """Return the quantities of `BALL_UNITS` at all positions or times.
 
     Those of contacts are by raceway.
-
-    Args:
-        run: From `run_skid`.
     """
     found, results = run.found, {}
     for name in BALL_UNITS:
@@ -148,9 +142,6 @@ def rolling_cage_speed(run: SkidRun) -> np.ndarray:
     """Return the cage speed for pure rolling of all balls at their positions [rad/s].
 
     For a steady state one number, for a motion in time the mean of the balls (time,).
-
-    Args:
-        run: From `run_skid`.
     """
     rolling = np.asarray(run.found.rolling_orbit_speed)
     if not run.task.steady:
@@ -159,11 +150,7 @@ def rolling_cage_speed(run: SkidRun) -> np.ndarray:
 
 
 def skid_message(run: SkidRun) -> str:
-    """Return cause and remedy of a result, in words.
-
-    Args:
-        run: From `run_skid`.
-    """
+    """Return cause and remedy of a result, in words."""
     if not run.loads_solved:
         return run.found.solution.failure_message
     if run.converged:

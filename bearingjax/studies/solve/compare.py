@@ -130,11 +130,7 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
 
 
 def compare_report(found: Comparison) -> Report:
-    """Return the readable report of a comparison.
-
-    Args:
-        found: From `run_compare`.
-    """
+    """Return the readable report of a comparison."""
     rows = {h: values for h, values in found.quantities.items() if difference(values)}
     parts: list[Part] = []
     if rows:
@@ -173,9 +169,6 @@ def _inputs(found: Comparison) -> Part:
 def compare_as_dict(found: Comparison) -> dict[str, Any]:
     """Return a comparison as plain numbers and lists, in SI.
 
-    Args:
-        found: From `run_compare`.
-
     Returns:
         `scenes`, `result` and `warnings` of each; `quantities` by header,
         "name [unit]": a number per scene, null where it has none; `difference` by
@@ -193,11 +186,7 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
 
 
 def compare_columns(found: Comparison) -> dict[str, np.ndarray]:
-    """Return a comparison as columns by header, a row for each result, in SI.
-
-    Args:
-        found: From `run_compare`.
-    """
+    """Return a comparison as columns by header, a row for each result, in SI."""
     values = np.array([*found.quantities.values()]).reshape(-1, len(found.names))
     result, apart = _HEADERS
     return {

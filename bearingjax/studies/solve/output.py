@@ -36,9 +36,6 @@ KINEMATICS = {
 def solution_json(found: SolvedScene) -> dict[str, Any]:
     """Return the solution of a scene as plain numbers and lists, in SI.
 
-    Args:
-        found: From `solve_scene`.
-
     Returns:
         The arrays of the solution but for those of `NOT_WRITTEN`, of balls at speed
         also `KINEMATICS` (m, rad, N, N m, Pa, rad/s), and result, message, residual,
@@ -66,11 +63,7 @@ def _life(found: SolvedScene) -> dict[str, Any]:
 
 
 def solved_json(found: SolvedScene) -> dict[str, Any]:
-    """Return the status of a solve: result, message, residual, iterations, warnings.
-
-    Args:
-        found: From `solve_scene`.
-    """
+    """Return the status of a solve: result, message, residual, iterations, warnings."""
     scene, solution = found.scene, found.numbers
     status = {
         "result": Result(int(solution.result)).label,

@@ -68,11 +68,7 @@ def report(found: SolvedScene) -> Report:
 
 
 def design_sections(scene: Scene) -> dict[str, Section]:
-    """Return the sections that need no solution, by title: the bearing and its fits.
-
-    Args:
-        scene: The scene.
-    """
+    """Return the sections that need no solution, by title: the bearing and its fits."""
     bearing = jax.device_get(scene.running().bearing)
     return {
         "Bearing": [bearing_text(scene, bearing)],
@@ -115,11 +111,7 @@ def bearing_text(
 
 
 def fits_section(scene: Scene) -> Section:
-    """Report the fits of a scene, and the set preload on them; empty without fits.
-
-    Args:
-        scene: The scene.
-    """
+    """Report the fits of a scene, and the set preload on them; empty without fits."""
     found = fit_report(scene)
     if scene.preload_of_set is not None:
         found += preload_report(scene.preload_of_set)

@@ -14,9 +14,6 @@ from ..bearing.solved import SolvedScene
 def run_scene(scene: Scene) -> Solution:
     """Solve the bearing of a scene.
 
-    Args:
-        scene: From `read_scene`.
-
     Returns:
         Solution with its result code; nothing is raised for a failed solve.
 
@@ -38,9 +35,6 @@ def run_scene(scene: Scene) -> Solution:
 def solve_scene(scene: Scene) -> SolvedScene:
     """Solve the bearing of a scene, and find the preload of its set on its seats.
 
-    Args:
-        scene: From `read_scene`.
-
     Fails: as `solve_load`.
     """
     solution = run_scene(scene)
@@ -53,9 +47,6 @@ def with_set_preload(scene: Scene) -> Scene:
 
     A scene without fits, or whose rows do not preload each other, is returned
     unchanged: nothing is compiled.
-
-    Args:
-        scene: From `read_scene`.
     """
     if scene.fits is None:
         return scene
