@@ -30,7 +30,7 @@ from ..design.material import Material
 from ..numerics.implicit import attach_by, stop_gradient
 from ..numerics.lapack import solve_any
 from ..numerics.quadrature import AbstractQuadrature
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 from .line import AbstractLineLaw, Palmgren
 from .line_contact import AbstractLineContact, LineContact, Response
 
@@ -109,7 +109,7 @@ class CoupledContact(AbstractLineContact):
     def protruding(self) -> bool:
         return self.line.protruding
 
-    def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
+    def drop(self, xi: Reals) -> Reals:
         return self.line.drop(xi)
 
     def approximate_load(self, approach: Scalar) -> Scalar:

@@ -13,11 +13,11 @@ from typing import Annotated, NamedTuple
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
 
 from ..numerics.elliptic import carlson_rd, complete
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.power import positive_power
+from ..numerics.types import Reals
 from ..numerics.units import unit
 
 POINT_EXPONENT = (3, 2)
@@ -39,37 +39,31 @@ class Ellipse(NamedTuple):
         transverse: Semi-axis across over Q^(1/3) [m/N^(1/3)].
     """
 
-    ratio: Annotated[Float[Array, "..."], unit("1")]
-    constant: Annotated[Float[Array, "..."], unit("N/m^(3/2)")]
-    rolling: Annotated[Float[Array, "..."], unit("m/N^(1/3)")]
-    transverse: Annotated[Float[Array, "..."], unit("m/N^(1/3)")]
+    ratio: Annotated[Reals, unit("1")]
+    constant: Annotated[Reals, unit("N/m^(3/2)")]
+    rolling: Annotated[Reals, unit("m/N^(1/3)")]
+    transverse: Annotated[Reals, unit("m/N^(1/3)")]
 
-    def semi_axes(
-        self, load: Float[Array, "..."]
-    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+    def semi_axes(self, load: Reals) -> tuple[Reals, Reals]:
         """Semi-axes in rolling direction and across [m] under a load Q [N]."""
         root = positive_power(load, 1, 3)
         return self.rolling * root, self.transverse * root
 
-    def approach(self, load: Float[Array, "..."]) -> Float[Array, "..."]:
+    def approach(self, load: Reals) -> Reals:
         """Approach of the bodies [m] under a load Q [N]."""
         return positive_power(load / self.constant, 2, 3)
 
-    def load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
+    def load(self, approach: Reals) -> Reals:
         """Load Q [N] of an approach [m]; 0 where apart."""
         return self.constant * positive_power(approach, *POINT_EXPONENT)
 
-    def peak_pressure(self, load: Float[Array, "..."]) -> Float[Array, "..."]:
+    def peak_pressure(self, load: Reals) -> Reals:
         """Pressure in the middle, 3Q/(2π a b) [Pa], of a load Q [N]."""
         area = jnp.pi * self.rolling * self.transverse
         return 1.5 * positive_power(load, 1, 3) / area
 
 
-def ellipse(
-    rolling: Float[Array, "..."],
-    transverse: Float[Array, "..."],
-    modulus: Float[Array, "..."],
-) -> Ellipse:
+def ellipse(rolling: Reals, transverse: Reals, modulus: Reals) -> Ellipse:
     """Exact Hertz contact from the sums of curvatures.
 
     Args:
@@ -122,8 +116,8 @@ def _root(residual, start, args):
 
 
 def axis_stress(
-    ratio: Float[Array, "..."], depth: Float[Array, "..."], poisson: Float[Array, "..."]
-) -> tuple[Float[Array, "..."], Float[Array, "..."], Float[Array, "..."]]:
+    ratio: Reals, depth: Reals, poisson: Reals
+) -> tuple[Reals, Reals, Reals]:
     """Principal stresses below the middle of the contact, over the peak pressure.
 
     Args:
@@ -167,13 +161,13 @@ class Shear(NamedTuple):
         orthogonal_depth: Its depth over the semi-axis in rolling direction [1].
     """
 
-    greatest: Annotated[Float[Array, "..."], unit("1")]
-    depth: Annotated[Float[Array, "..."], unit("1")]
-    orthogonal: Annotated[Float[Array, "..."], unit("1")]
-    orthogonal_depth: Annotated[Float[Array, "..."], unit("1")]
+    greatest: Annotated[Reals, unit("1")]
+    depth: Annotated[Reals, unit("1")]
+    orthogonal: Annotated[Reals, unit("1")]
+    orthogonal_depth: Annotated[Reals, unit("1")]
 
 
-def shear_below(ratio: Float[Array, "..."], poisson: Float[Array, "..."]) -> Shear:
+def shear_below(ratio: Reals, poisson: Reals) -> Shear:
     """Largest shear stresses below the surface of an elliptic contact.
 
     Args:
@@ -218,9 +212,7 @@ def shear_below(ratio: Float[Array, "..."], poisson: Float[Array, "..."]) -> She
     )
 
 
-def sphere_constant(
-    radius: Float[Array, "..."], modulus: Float[Array, "..."]
-) -> Float[Array, "..."]:
+def sphere_constant(radius: Reals, modulus: Reals) -> Reals:
     """Constant c of Q = c·approach^(3/2) of a sphere on a plane, (4/3) E* sqrt(R).
 
     Args:
@@ -235,11 +227,7 @@ def sphere_constant(
     return 4.0 / 3.0 * modulus * jnp.sqrt(radius)
 
 
-def sphere_peak_pressure(
-    load: Float[Array, "..."],
-    radius: Float[Array, "..."],
-    modulus: Float[Array, "..."],
-) -> Float[Array, "..."]:
+def sphere_peak_pressure(load: Reals, radius: Reals, modulus: Reals) -> Reals:
     """Largest pressure of a sphere on a plane, (6 Q E*²/(π³ R²))^(1/3).
 
     Args:

@@ -6,11 +6,10 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..design.checks import positive
 from ..design.material import Material, contact_modulus
-from ..numerics.types import Real, Scalar
+from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real
 
 LINE_EXPONENT = (10, 9)
@@ -101,9 +100,7 @@ def _compliance(roller, ring):
     return 1.0 / (jnp.pi * contact_modulus(roller, ring))
 
 
-def relative_radius(
-    roller_radius: Float[Array, "..."], raceway_radius: Float[Array, "..."]
-) -> Float[Array, "..."]:
+def relative_radius(roller_radius: Reals, raceway_radius: Reals) -> Reals:
     """Radius of relative curvature 1/(1/r ± 1/R) of a line contact.
 
     Args:
@@ -117,11 +114,7 @@ def relative_radius(
     return 1.0 / (1.0 / roller_radius + 1.0 / raceway_radius)
 
 
-def half_width(
-    line_load: Float[Array, "..."],
-    radius: Float[Array, "..."],
-    modulus: Float[Array, "..."],
-) -> Float[Array, "..."]:
+def half_width(line_load: Reals, radius: Reals, modulus: Reals) -> Reals:
     """Half width of a line contact, sqrt(4 q ρ/(π E*)).
 
     Args:
@@ -137,11 +130,7 @@ def half_width(
     return _safe_sqrt(4.0 * line_load * radius / (jnp.pi * modulus))
 
 
-def peak_pressure(
-    line_load: Float[Array, "..."],
-    radius: Float[Array, "..."],
-    modulus: Float[Array, "..."],
-) -> Float[Array, "..."]:
+def peak_pressure(line_load: Reals, radius: Reals, modulus: Reals) -> Reals:
     """Largest pressure of a line contact, sqrt(q E*/(π ρ)).
 
     Args:

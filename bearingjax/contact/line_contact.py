@@ -29,7 +29,7 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.pieces import Pieces, of_intervals
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature, ContactMapped
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 from ..numerics.units import unit
 from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren
 
@@ -70,7 +70,7 @@ class AbstractLineContact(eqx.Module):
         """Whether the drop may be negative somewhere. Static."""
 
     @abc.abstractmethod
-    def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
+    def drop(self, xi: Reals) -> Reals:
         """Material removed from both bodies at ξ [m]."""
 
     @abc.abstractmethod
@@ -123,12 +123,8 @@ class AbstractSliceLaw(AbstractLineLaw):
 
     @abc.abstractmethod
     def line_load(
-        self,
-        approach: Float[Array, "..."],
-        radius: Scalar,
-        modulus: Scalar,
-        length: Scalar,
-    ) -> Float[Array, "..."]:
+        self, approach: Reals, radius: Scalar, modulus: Scalar, length: Scalar
+    ) -> Reals:
         """Load per length q [N/m] of a slice that is pressed.
 
         Args:
@@ -186,12 +182,12 @@ class LineContact(AbstractLineContact):
     factors: ClassVar[tuple[float, float, float]] = _FACTORS
     """Factors of φ, φ' and φ'', in addition to `constant` and `densities`."""
 
-    def densities(self, x: Float[Array, "..."]) -> tuple[Array, Array, Array]:
+    def densities(self, x: Reals) -> tuple[Array, Array, Array]:
         """φ, φ' and φ'' at an approach, without `constant`, `factors`; 0 if apart."""
         root = positive_power(x, _N - _D, _D)
         return x * x * root, x * root, root
 
-    def drop(self, xi: Float[Array, "..."]) -> Float[Array, "..."]:
+    def drop(self, xi: Reals) -> Reals:
         """Material removed from both bodies at ξ [m]."""
         s = 0.5 * self.length * xi
         roller, raceway = self.profiles(s)
@@ -200,14 +196,12 @@ class LineContact(AbstractLineContact):
             return drop
         return drop + between_arcs(s, self.arc_radii)
 
-    def profiles(self, s: Float[Array, "..."]) -> tuple[Array, Array]:
+    def profiles(self, s: Reals) -> tuple[Array, Array]:
         """Drop of the profiles of roller and raceway at a position s [m]."""
         size = self.length, self.diameter
         return self.roller_profile.drop(s, *size), self.raceway_profile.drop(s, *size)
 
-    def approach(
-        self, a: Scalar, b: Scalar, xi: Float[Array, "..."]
-    ) -> Float[Array, "..."]:
+    def approach(self, a: Scalar, b: Scalar, xi: Reals) -> Reals:
         """Approach at ξ, negative where the bodies are apart [m]."""
         if not self.exact:
             return a + b * xi - self.drop(xi)
@@ -243,7 +237,7 @@ class LineContact(AbstractLineContact):
         """Whether the drop may be negative somewhere. Static."""
         return self.roller_profile.protruding or self.raceway_profile.protruding
 
-    def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
+    def line_load(self, approach: Reals) -> Reals:
         """Load per length at a given approach [N/m]."""
         return self.constant * positive_power(approach, _N, _D)
 
@@ -342,10 +336,10 @@ class SliceContact(LineContact):
 
     factors: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)
 
-    def line_load(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
+    def line_load(self, approach: Reals) -> Reals:
         return self.densities(approach)[1]
 
-    def densities(self, x: Float[Array, "..."]) -> tuple[Array, Array, Array]:
+    def densities(self, x: Reals) -> tuple[Array, Array, Array]:
         pressed = ~(x <= 0)
         some = jnp.where(pressed, x, 1e-9)
 

@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 from ..design.ball import AbstractBallBearing, Groove
 from ..design.checks import positive
 from ..design.material import contact_modulus
-from ..numerics.types import Real, Scalar
+from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real, unit
 from .hertz import Ellipse, ellipse
 
@@ -39,9 +39,7 @@ class Balls(NamedTuple):
     modulus: Annotated[Scalar, unit("Pa")]
 
 
-def ball_ellipses(
-    balls: Balls, grooves: tuple[Groove, ...], cosine: Float[Array, "..."]
-) -> Ellipse:
+def ball_ellipses(balls: Balls, grooves: tuple[Groove, ...], cosine: Reals) -> Ellipse:
     """Exact Hertz contacts of a ball in its grooves.
 
     Args:
@@ -82,9 +80,7 @@ class AbstractPointLaw(eqx.Module):
         """Whether `cosine` depends on the operating angle. Static."""
         return True
 
-    def cosine(
-        self, free: Scalar, operating: Float[Array, "..."]
-    ) -> Float[Array, "..."]:
+    def cosine(self, free: Scalar, operating: Reals) -> Reals:
         """Cosine of the angle at which the curvatures are taken.
 
         Args:
@@ -119,9 +115,7 @@ class FreeAngle(AbstractPointLaw):
     def curvature_follows_angle(self) -> bool:
         return False
 
-    def cosine(
-        self, free: Scalar, operating: Float[Array, "..."]
-    ) -> Float[Array, "..."]:
+    def cosine(self, free: Scalar, operating: Reals) -> Reals:
         return jnp.broadcast_to(free, operating.shape)
 
     def constants(
@@ -137,9 +131,7 @@ class ZeroAngle(AbstractPointLaw):
     def curvature_follows_angle(self) -> bool:
         return False
 
-    def cosine(
-        self, free: Scalar, operating: Float[Array, "..."]
-    ) -> Float[Array, "..."]:
+    def cosine(self, free: Scalar, operating: Reals) -> Reals:
         return jnp.ones_like(operating)
 
     def constants(

@@ -10,7 +10,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.quadrature import ContactMapped
 from ..numerics.result import Result
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.warning import Warning
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
@@ -51,8 +51,8 @@ class Slices(eqx.Module):
 @program(quick=True)
 def slices(
     contact: RollerContact,
-    load: Scalar | float,
-    tilt: Scalar | float,
+    load: Number,
+    tilt: Number,
     position: Float[Array, " n"],
     law: AbstractLineLaw | None = None,
 ) -> Slices:

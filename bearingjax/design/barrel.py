@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.types import Number, Real, RealOrNone, Scalar
 from ..numerics.units import real
 from .bearing import AbstractRollerBearing, TaperedRollerBearing
 from .checks import check, check_fields, floats, in_range, is_traced, number, positive
@@ -218,9 +218,7 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
         middle = 0.5 * (self.pitch_diameter - self.roller_diameter) - self.gap
         return outer + inner - self.roller_diameter, middle + inner
 
-    def lost_clearance(
-        self, travel: Scalar | float, tilt: Scalar | float = 0.0
-    ) -> Scalar:
+    def lost_clearance(self, travel: Number, tilt: Number = 0.0) -> Scalar:
         """Radial internal clearance that axial travel and tilt of the rings take [m].
 
         A tilt moves the arc of the inner raceway along the axis by its centre's
@@ -246,7 +244,7 @@ class ToroidalRollerBearing(AbstractBarrelBearing):
         taken = [sagitta(s, apart) - lowered for s in (travel + aside, travel - aside)]
         return taken[0] + taken[1]
 
-    def free_travel(self, clearance: Scalar | float) -> Scalar:
+    def free_travel(self, clearance: Number) -> Scalar:
         """Axial travel of untilted rings that takes a radial internal clearance [m].
 
         Args:
@@ -428,12 +426,12 @@ class CrossedRollerRow(AbstractRollerBearing):
 
 def pitch_on_sphere(
     *,
-    outer_raceway_radius: Scalar | float,
-    contact_angle: Scalar | float,
-    roller_diameter: Scalar | float,
-    roller_profile_radius: Scalar | float,
-    profile_offset: Scalar | float = 0.0,
-    radial_internal_clearance: Scalar | float = 0.0,
+    outer_raceway_radius: Number,
+    contact_angle: Number,
+    roller_diameter: Number,
+    roller_profile_radius: Number,
+    profile_offset: Number = 0.0,
+    radial_internal_clearance: Number = 0.0,
     **_: object,
 ) -> Any:
     """Return the pitch diameter at which a spherical outer raceway is about the axis.

@@ -6,7 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Real, Scalar, as_real, with_fields
+from ..numerics.types import Number, Real, Scalar, as_real, with_fields
 from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
@@ -145,8 +145,8 @@ class BearingSet(eqx.Module):
     def back_to_back(
         cls,
         bearing: AbstractBearing,
-        spacing: Scalar | float,
-        preload_offset: Scalar | float = 0.0,
+        spacing: Number,
+        preload_offset: Number = 0.0,
         spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in O arrangement (DB): stiff against tilting.
@@ -167,8 +167,8 @@ class BearingSet(eqx.Module):
     def face_to_face(
         cls,
         bearing: AbstractBearing,
-        spacing: Scalar | float,
-        preload_offset: Scalar | float = 0.0,
+        spacing: Number,
+        preload_offset: Number = 0.0,
         spring: PreloadSpring | None = None,
     ) -> "BearingSet":
         """Pair in X arrangement (DF): tolerates misalignment.
@@ -185,7 +185,7 @@ class BearingSet(eqx.Module):
 
     @classmethod
     def tandem(
-        cls, bearing: AbstractBearing, spacing: Scalar | float, count: int = 2
+        cls, bearing: AbstractBearing, spacing: Number, count: int = 2
     ) -> "BearingSet":
         """Rows that share an axial load along +z.
 

@@ -6,6 +6,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..numerics.types import Reals
 from ..numerics.units import unit, unit_of
 from .checks import check, finite, floats, is_real, is_traced, must_be, of_shape
 
@@ -24,9 +25,9 @@ class Deviation(NamedTuple):
             contact along its normal, by material on the raceway or on the element.
     """
 
-    diameter: Annotated[Float[Array, "..."] | None, unit("m")] = None
-    azimuth: Annotated[Float[Array, "..."] | None, unit("rad")] = None
-    raceway: Annotated[Float[Array, "..."] | None, unit("m")] = None
+    diameter: Annotated[Reals | None, unit("m")] = None
+    azimuth: Annotated[Reals | None, unit("rad")] = None
+    raceway: Annotated[Reals | None, unit("m")] = None
 
     @property
     def makes_unlike(self) -> bool:

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Real, Scalar, as_real
+from ..numerics.types import Real, Reals, Scalar, as_real
 from ..numerics.units import real, unit
 from .abstract import AbstractBearing
 from .checks import all_of_class, check, finite, instance, is_real, is_traced, must_be
@@ -61,7 +61,7 @@ class AbstractShape(eqx.Module):
     """One error of form around a part."""
 
     @abc.abstractmethod
-    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
+    def height(self, angle: Reals, surface: Surface) -> Any:
         """Height at an angle around the part [m].
 
         Args:
@@ -93,10 +93,8 @@ class Harmonics(AbstractShape):
     """
 
     order: tuple[int, ...] = eqx.field(static=True, converter=_orders)
-    amplitude: Float[Array, "..."] = eqx.field(converter=as_real, metadata=unit("m"))
-    phase: Float[Array, "..."] = eqx.field(
-        converter=as_real, metadata=unit("rad"), default=None
-    )
+    amplitude: Reals = eqx.field(converter=as_real, metadata=unit("m"))
+    phase: Reals = eqx.field(converter=as_real, metadata=unit("rad"), default=None)
 
     def __init__(self, order: Any, amplitude: Any, phase: Any = None):
         """See the class.
@@ -173,7 +171,7 @@ class Harmonics(AbstractShape):
         size = jnp.where(none, 0.0, jnp.sqrt(jnp.where(none, 1.0, square)))
         return cls(order, size, jnp.arctan2(-sine, jnp.where(none, 1.0, cosine)))
 
-    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
+    def height(self, angle: Reals, surface: Surface) -> Any:
         # Orders last, as far as the angles have axes.
         shape = (1,) * angle.ndim + (-1,)
         order = jnp.asarray(self.order, angle.dtype)
@@ -209,7 +207,7 @@ class Spall(AbstractShape):
                 right = np.all(np.isfinite(value)) and np.all(np.asarray(value) >= 0)
                 check(self, name, right, "at least 0")
 
-    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
+    def height(self, angle: Reals, surface: Surface) -> Any:
         off = jnp.mod(angle - self.angle + jnp.pi, 2.0 * jnp.pi) - jnp.pi
         inside = 0.5 * self.length - surface.radius * jnp.abs(off)
         inside = jnp.maximum(inside, 0.0)
@@ -259,7 +257,7 @@ class Table(AbstractShape):
         number = jnp.arange(points, dtype=height.dtype)
         return (cls(jnp.stack([height, rise, slope, end, number], axis=1)), *spalls)
 
-    def height(self, angle: Float[Array, "..."], surface: Surface) -> Any:
+    def height(self, angle: Reals, surface: Surface) -> Any:
         n = self.rows.shape[0]
         at = angle * (n / (2.0 * jnp.pi))
         row = self.rows[jnp.mod(jnp.floor(at), n).astype(jnp.int32)]
@@ -271,9 +269,7 @@ class Table(AbstractShape):
         return height + t * (slope + t * (bend + t * (slope + end - 2.0 * rise)))
 
 
-def total(
-    shapes: tuple[AbstractShape, ...], angle: Float[Array, "..."], surface: Surface
-) -> Float[Array, "..."]:
+def total(shapes: tuple[AbstractShape, ...], angle: Reals, surface: Surface) -> Reals:
     """Sum of the heights of several shapes [m]; arguments as in `height`."""
     height = jnp.zeros_like(angle)
     for shape in shapes:
@@ -310,9 +306,7 @@ class RacewayErrors(eqx.Module):
         """All shapes."""
         return (*self.axial, *self.outwards, *self.raised)
 
-    def evaluate(
-        self, angle: Float[Array, "..."], surface: Surface
-    ) -> Float[Array, "... 3"]:
+    def evaluate(self, angle: Reals, surface: Surface) -> Float[Array, "... 3"]:
         """Axial, outwards and raised at angles around the ring (..., 3) [m]."""
         all_three = self.axial, self.outwards, self.raised
         return jnp.stack([total(s, angle, surface) for s in all_three], axis=-1)

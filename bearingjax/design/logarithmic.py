@@ -4,9 +4,8 @@ from typing import ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from ..numerics.types import Real, Scalar
+from ..numerics.types import Number, Real, Reals, Scalar
 from ..numerics.units import real
 from .checks import check_fields, in_range
 from .profile import AbstractProfile
@@ -36,12 +35,7 @@ class Logarithmic(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
 
 
@@ -70,12 +64,7 @@ class Lundberg(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
         return unit * _log_one_over(2.0 * position / length, 1.0)
 
@@ -109,12 +98,7 @@ class JohnsGohar(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
         part = 1.0 - 0.3033 * self.half_width / (0.5 * length)
         return unit * _log_one_over(2.0 * position / length, part)
@@ -155,12 +139,7 @@ class FujiwaraKawase(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         load = self.load_factor * self.design_load
         unit = load / (jnp.pi * length * self.contact_modulus)
         # From the end of the roller, where 1 - x² would cancel: x = 1 - out.

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.compiled.programs import program
-from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.types import Number, Real, RealOrNone, Reals, Scalar
 from ..numerics.units import real
 from .checks import check, check_fields, in_range, is_traced
 
@@ -37,12 +37,7 @@ class AbstractProfile(eqx.Module):
     the straight line between its raceways is."""
 
     @abc.abstractmethod
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         """Material removed, measured along the normal of the straight generator.
 
         Args:
@@ -62,7 +57,7 @@ class AbstractProfile(eqx.Module):
         """Positions of measured points, ascending [m]; `None` for a formula."""
         return None
 
-    def between_knots(self, position: Float[Array, "..."]) -> "AbstractProfile":
+    def between_knots(self, position: Reals) -> "AbstractProfile":
         """The profile between the two knots around each position [m].
 
         Its `drop` takes positions that broadcast with `position`.
@@ -113,12 +108,7 @@ class Straight(AbstractProfile):
     about: ClassVar[str] = "no profile: the drop is zero"
     arcs: ClassVar[bool] = True
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return jnp.zeros_like(position)
 
 
@@ -140,12 +130,7 @@ class CircularCrown(AbstractProfile):
     def __check_init__(self):
         check_fields(self)
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return sagitta(position, self.crown_radius)
 
     def _check_against(self, length, diameter):
@@ -191,12 +176,7 @@ class CrownedEnds(AbstractProfile):
                 " them is missing."
             )
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         out = jnp.maximum(jnp.abs(position) - 0.5 * self.straight_length, 0.0)
         if self.dub_off_length is None or self.dub_off_radius is None:
             return sagitta(out, self.crown_radius)
@@ -231,7 +211,7 @@ class CrownedEnds(AbstractProfile):
 
 
 @jax.custom_jvp
-def sagitta(x: Float[Array, "..."], radius: Scalar) -> Float[Array, "..."]:
+def sagitta(x: Reals, radius: Scalar) -> Reals:
     """Drop of a circle, R - sqrt(R² - x²), without cancellation [m].
 
     Args:
@@ -241,9 +221,7 @@ def sagitta(x: Float[Array, "..."], radius: Scalar) -> Float[Array, "..."]:
     return x * x / (radius + jnp.sqrt(radius * radius - x * x))
 
 
-def between_arcs(
-    position: Float[Array, "..."], radii: tuple[Scalar, Scalar]
-) -> Float[Array, "..."]:
+def between_arcs(position: Reals, radii: tuple[Scalar, Scalar]) -> Reals:
     """Drop of a barrel from a concave raceway that it touches in the middle [m].
 
     Args:

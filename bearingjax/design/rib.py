@@ -5,7 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Real, Scalar, as_real
+from ..numerics.types import Number, Real, as_real
 from ..numerics.units import real
 from .checks import check_fields, instance, number, one_of
 
@@ -74,7 +74,7 @@ class Ribs(eqx.Module):
 
     @classmethod
     def arrangement(
-        cls, name: str, rib: Rib, axial_internal_clearance: Scalar | float | None = None
+        cls, name: str, rib: Rib, axial_internal_clearance: Number | None = None
     ) -> "Ribs":
         """Ribs of a cylindrical roller bearing by the name of its type.
 

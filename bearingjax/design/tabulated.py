@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Reals, as_real
 from ..numerics.units import unit
 from .checks import check, is_traced
 from .profile import AbstractProfile
@@ -63,18 +63,13 @@ class Tabulated(AbstractProfile):
         check(self, "positions", np.diff(positions) > 0, "ascending")
         check(self, "drops", drops >= 0, "at least 0 m")
 
-    def drop(
-        self,
-        position: Float[Array, "..."],
-        length: Scalar | float,
-        diameter: Scalar | float,
-    ) -> Float[Array, "..."]:
+    def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return self.between_knots(position).drop(position, length, diameter)
 
     def knots(self) -> Float[Array, " knot"] | None:
         return self.positions
 
-    def between_knots(self, position: Float[Array, "..."]) -> "AbstractProfile":
+    def between_knots(self, position: Reals) -> "AbstractProfile":
         s, d = self.positions, self.drops
         last = s.shape[0] - 1
         k = jnp.clip(jnp.searchsorted(s, position, side="right") - 1, 0, last - 1)
@@ -109,8 +104,8 @@ class _Cubic(AbstractProfile):
 
     protruding: ClassVar[bool] = True
 
-    start: Float[Array, "..."]
-    factors: tuple[Float[Array, "..."], ...]
+    start: Reals
+    factors: tuple[Reals, ...]
 
     def drop(self, position, length, diameter):
         x = position - self.start

@@ -16,13 +16,13 @@ from typing import Annotated, Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Bool, Int
 
 from ..design.checks import of_shape
 from ..numerics.implicit import stop_gradient
 from ..numerics.minimise import AbstractMinimiser
 from ..numerics.result import Result, worst_code
-from ..numerics.types import Ring, RingStiffness, Scalar
+from ..numerics.types import Number, Reals, Ring, RingStiffness, Scalar
 from ..numerics.units import unit, units
 from .constants import TETHER
 from .equilibrium import ElementStart, accept_small
@@ -31,7 +31,7 @@ from .rolling_element import split_rings
 from .row import Row
 from .solved_row import RowResults, SolvedRow
 
-Azimuths = tuple[Float[Array, "..."], ...]
+Azimuths = tuple[Reals, ...]
 """Azimuths of the rolling elements of every group of rows [rad]."""
 
 
@@ -289,7 +289,7 @@ class BearingModel(eqx.Module):
         self,
         q: Ring,
         solved: SolvedElements | None = None,
-        least: Scalar | float = 0.0,
+        least: Number = 0.0,
         fixed_stiffness: bool = False,
     ) -> BearingResponse:
         """Energy, force and stiffness from one solve of the elements, with its code.
@@ -354,7 +354,7 @@ class BearingModel(eqx.Module):
         return self.in_order(found)
 
     def convergence(
-        self, solved: SolvedElements, least: Scalar | float = 0.0
+        self, solved: SolvedElements, least: Number = 0.0
     ) -> tuple[Int[Array, ""], Int[Array, ""], Scalar]:
         """Worst `Result` code, most steps and largest residual of the elements.
 

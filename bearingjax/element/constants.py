@@ -17,7 +17,7 @@ from ..design.bearing import AbstractRollerBearing
 from ..design.material import contact_modulus
 from ..design.profile import sagitta
 from ..numerics.quadrature import AbstractQuadrature
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 from .frame import from_roller_axes, to_roller_axes
 from .rolling_element import RingMotion, Unknowns
 
@@ -234,7 +234,7 @@ def _rib_geometry(bearing, name):
 
 
 def relative_radii(
-    constants: ContactConstants, position: Float[Array, "..."]
+    constants: ContactConstants, position: Reals
 ) -> Float[Array, "2 ..."]:
     """Radius of relative curvature along both raceway contacts.
 

@@ -23,7 +23,7 @@ from jaxtyping import Array, Float
 from ..numerics.expansion import Expansion
 from ..numerics.implicit import stop_gradient
 from ..numerics.linear import dot
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 from ..numerics.units import unit, units
 from .rolling_element import (
     AbstractRollingElement,
@@ -97,7 +97,7 @@ class Derivatives(NamedTuple):
 
     energy: Annotated[Scalar, unit("J")]
     gradient: Annotated[Float[Array, " m"], units("N", "N m")]
-    hessian: Annotated[Float[Array, "..."], units("N/m", "N", "N m")]
+    hessian: Annotated[Reals, units("N/m", "N", "N m")]
 
 
 def derivatives(

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.labels import name_axis
-from ..numerics.types import Scalar
+from ..numerics.types import Number, Scalar
 
 FREEDOMS = name_axis("freedom", ("ux", "uy", "uz", "gx", "gy", "gz"))
 LOADS = name_axis("component", ("Fx", "Fy", "Fz", "Mx", "My", "Mz"))
@@ -90,7 +90,7 @@ def turn_factors(square: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def to_roller_axes(
-    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar | float = 0.0
+    axis_angle: Scalar, pitch_radius: Scalar, place: Number = 0.0
 ) -> Float[Array, "3 3"]:
     """Motion of the roller centre's point of a body, along and across the roller.
 
@@ -118,7 +118,7 @@ def to_roller_axes(
 
 
 def from_roller_axes(
-    axis_angle: Scalar, pitch_radius: Scalar, place: Scalar | float = 0.0
+    axis_angle: Scalar, pitch_radius: Scalar, place: Number = 0.0
 ) -> Float[Array, "3 3"]:
     """Inverse of `to_roller_axes`."""
     c, s = jnp.cos(axis_angle), jnp.sin(axis_angle)
@@ -137,7 +137,7 @@ def roll_ratio(diameter: Scalar, pitch_diameter: Scalar, cosine: Scalar) -> Scal
     return diameter * cosine / pitch_diameter
 
 
-def orbit(ratio: Scalar, outer: Scalar | float, inner: Scalar | float) -> Scalar:
+def orbit(ratio: Scalar, outer: Number, inner: Number) -> Scalar:
     """Turn, or speed, of the set of rolling elements from those of the rings.
 
     Args:
@@ -154,8 +154,8 @@ def rotation(
     ratio: Scalar,
     diameter: Scalar,
     pitch_diameter: Scalar,
-    outer: Scalar | float,
-    inner: Scalar | float,
+    outer: Number,
+    inner: Number,
 ) -> Scalar:
     """Speed of a rolling element about its own axis, seen from the set [rad/s].
 

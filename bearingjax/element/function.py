@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import check, must_be, of_class, of_shape
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Reals, as_real
 from .frame import TWELVE
 from .inertia import Speed
 
@@ -34,7 +34,7 @@ class FunctionParameters(eqx.Module):
 
     element: Any
     speed: Speed | None
-    damping: Float[Array, "..."] | None
+    damping: Reals | None
 
 
 Motion = Float[Array | np.ndarray, "12"]
@@ -48,7 +48,7 @@ RingFunction = Callable[..., Any]
 def ring_force(
     motion: Motion,
     velocity: Motion,
-    time: Scalar | float,
+    time: Number,
     parameters: FunctionParameters,
     near: Any = None,
 ) -> Any:
@@ -74,7 +74,7 @@ def ring_force(
 def orbiting_force(
     motion: Motion,
     velocity: Motion,
-    time: Scalar | float,
+    time: Number,
     parameters: FunctionParameters,
     near: Any = None,
 ) -> Any:

@@ -14,7 +14,7 @@ from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
 from ..numerics.power import positive_power
 from ..numerics.quadrature import AbstractQuadrature
-from ..numerics.types import Scalar
+from ..numerics.types import Number, Reals, Scalar
 from .constants import ContactConstants
 from .energy import roller_energy
 from .frame import section_matrix
@@ -103,7 +103,7 @@ class Roller(AbstractRollingElement):
         return self.constants.diameter
 
     @property
-    def tether(self) -> Float[Array, "..."]:
+    def tether(self) -> Reals:
         return self.constants.tether
 
     @property
@@ -134,7 +134,7 @@ class RollerSearchHints(SearchHints):
         return t + m + tilt * self.element.constants.half_length
 
     @property
-    def spread(self) -> Scalar | float:
+    def spread(self) -> Number:
         c = self.element.constants
         if self.element.geometry.is_linear:
             return 1.0

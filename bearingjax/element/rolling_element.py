@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion, expand
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 from ..numerics.units import units
 from .search_hints import SearchHints
 
@@ -66,7 +66,7 @@ class AbstractRollingElement(eqx.Module):
         """Diameter of the rolling element [m]."""
 
     @property
-    def tether(self) -> Float[Array, "..."]:
+    def tether(self) -> Reals:
         """Stiffness of the spring that holds an element without contact [N/m].
 
         Too soft to affect any result; zero for an element without unknowns.

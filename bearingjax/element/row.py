@@ -12,7 +12,7 @@ from ..design import PreloadSpring
 from ..numerics.expansion import Expansion, expand
 from ..numerics.implicit import attach, recall, stop_gradient
 from ..numerics.minimise import AbstractMinimiser, Evaluation, TrustRegionNewton
-from ..numerics.types import Ring, Scalar
+from ..numerics.types import Reals, Ring, Scalar
 from ..numerics.units import unit
 from .azimuth import Azimuth, turn
 from .energy import response
@@ -41,9 +41,9 @@ class RowPlacement(NamedTuple):
             row's own axes [m].
     """
 
-    position: Annotated[Float[Array, "..."], unit("m")]
-    sign: Annotated[Float[Array, "..."], unit("1")]
-    offset: Annotated[Float[Array, "..."], unit("m")]
+    position: Annotated[Reals, unit("m")]
+    sign: Annotated[Reals, unit("1")]
+    offset: Annotated[Reals, unit("m")]
 
 
 class Row(eqx.Module):

@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..numerics.compiled import batched_loop
 from ..numerics.linear import dot
-from ..numerics.types import Scalar
+from ..numerics.types import Number, Scalar
 
 
 class SearchHints(eqx.Module):
@@ -37,7 +37,7 @@ class SearchHints(eqx.Module):
         return jnp.sum(jnp.abs(rings.difference[: self.element.n_displacements]))
 
     @property
-    def spread(self) -> Scalar | float:
+    def spread(self) -> Number:
         """Displacements from which contact coordinates are differences, over those of
         the element [1]: contact coordinates round by as much more."""
         return 1.0

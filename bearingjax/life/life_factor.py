@@ -10,11 +10,10 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..design.checks import in_range, positive
 from ..numerics.power import positive_power
-from ..numerics.types import Flag, Real, RealOrNone, Scalar, as_real
+from ..numerics.types import Flag, Number, Real, RealOrNone, Reals, Scalar, as_real
 from ..numerics.units import real
 
 LARGEST_FACTOR = 50.0
@@ -66,11 +65,8 @@ def viscosity_ratio(viscosity: Scalar, speed: Scalar, pitch_diameter: Scalar) ->
 
 
 def life_factor(
-    kappa: Scalar | float,
-    load_ratio: Float[Array, "..."] | float,
-    balls: bool,
-    thrust: Flag | bool,
-) -> Float[Array, "..."]:
+    kappa: Number, load_ratio: Reals | float, balls: bool, thrust: Flag | bool
+) -> Reals:
     """a_ISO of the systems approach [1], at most 50.
 
     Args:
@@ -102,9 +98,7 @@ def life_factor(
     return 0.1 * jnp.maximum(rest, least) ** -exponent
 
 
-def load_ratio(
-    contamination: Scalar, limit: Scalar, load: Float[Array, "..."]
-) -> Float[Array, "..."]:
+def load_ratio(contamination: Scalar, limit: Scalar, load: Reals) -> Reals:
     """e_C C_u/P [1]; a large number where there is no load.
 
     Args:
@@ -142,7 +136,7 @@ class Cleanliness(eqx.Module):
         if self.large is not None:
             positive(self, "large")
 
-    def factor(self, kappa: Scalar | float, pitch_diameter: Scalar | float) -> Scalar:
+    def factor(self, kappa: Number, pitch_diameter: Number) -> Scalar:
         """Contamination factor e_C, from 0 to 1 [1].
 
         Small bearings in dirty oil have 0.

@@ -33,7 +33,7 @@ from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, one_of, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program
-from ..numerics.types import Flag, Real, Scalar, as_real
+from ..numerics.types import Flag, Number, Real, Scalar, as_real
 from ..numerics.units import real, unit
 from . import row_rating as by_row
 from .row_rating import THRUST_ANGLE, BallRow, RollerRow, Rows
@@ -99,9 +99,9 @@ class Ratings(eqx.Module):
 
 def ratings(
     bearing: AbstractBearing | BearingSet,
-    dynamic_capacity: Scalar | float | None = None,
-    static_capacity: Scalar | float | None = None,
-    fatigue_load_limit: Scalar | float | None = None,
+    dynamic_capacity: Number | None = None,
+    static_capacity: Number | None = None,
+    fatigue_load_limit: Number | None = None,
 ) -> Ratings:
     """Load ratings of a bearing: as given, else as published, else by the standards.
 
@@ -231,7 +231,7 @@ def static_capacity(bearing: AbstractBearing | BearingSet) -> Scalar:
 
 def fatigue_load_limit(
     bearing: AbstractBearing | BearingSet,
-    static_capacity: Scalar | float | None = None,
+    static_capacity: Number | None = None,
     *,
     method: str = "static",
 ) -> Scalar:

@@ -16,7 +16,7 @@ import jax
 import jax.numpy as jnp
 
 from ..contact.hertz import ellipse
-from ..numerics.types import Flag, Scalar
+from ..numerics.types import Flag, Number, Scalar
 from ..numerics.units import unit
 
 _PER_MM = 1e3
@@ -47,10 +47,10 @@ class BallKind(NamedTuple):
         stress: Peak pressure under the static rating [Pa].
     """
 
-    reduction: Annotated[Scalar | float, unit("1")]
-    counted: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
-    open: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
-    stress: Annotated[Scalar | float, unit("Pa")]
+    reduction: Annotated[Number, unit("1")]
+    counted: Annotated[tuple[Number | None, Number], unit("1")]
+    open: Annotated[tuple[Number | None, Number], unit("1")]
+    stress: Annotated[Number, unit("Pa")]
 
 
 ANGULAR_CONTACT = BallKind(0.95, (0.52, 0.52), (0.53, 0.52), 4200e6)
@@ -78,7 +78,7 @@ class BallRow(NamedTuple):
     diameter: Annotated[Scalar, unit("m")]
     pitch_diameter: Annotated[Scalar, unit("m")]
     contact_angle: Annotated[Scalar, unit("rad")]
-    osculation: Annotated[tuple[Scalar | float | None, Scalar | float], unit("1")]
+    osculation: Annotated[tuple[Number | None, Number], unit("1")]
 
     @property
     def power(self) -> float:
@@ -125,7 +125,7 @@ class RollerRow(NamedTuple):
     length: Annotated[Scalar, unit("m")]
     pitch_diameter: Annotated[Scalar, unit("m")]
     contact_angle: Annotated[Scalar, unit("rad")]
-    quality: Annotated[Scalar | float, unit("1")] = 1.1
+    quality: Annotated[Number, unit("1")] = 1.1
 
     @property
     def power(self) -> float:

@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from ..design.checks import positive
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
-from ..numerics.types import as_real
+from ..numerics.types import Reals, as_real
 from ..numerics.units import unit
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
@@ -126,7 +126,7 @@ def band_levels(
     return level(band_root_mean_square(spectrum, bands, highest), reference)
 
 
-def total_root_mean_square(spectrum: Spectrum) -> Float[Array, "..."]:
+def total_root_mean_square(spectrum: Spectrum) -> Reals:
     """Return the RMS of a record about its mean (...) [unit of the record].
 
     It is of all lines, those outside of any bands too.

@@ -5,10 +5,9 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..design.checks import positive
-from ..numerics.types import as_real
+from ..numerics.types import Reals, as_real
 
 REFERENCE_ACCELERATION = 0.31e-4
 """Acceleration of 0 dB on the rigs for bearing noise of the source [m/s²].
@@ -28,9 +27,7 @@ LOWEST_LEVEL = -300.0
 """Level of accelerations below 1e-15 of the reference, zero included [dB]."""
 
 
-def level(
-    acceleration: Any, reference: Any = REFERENCE_ACCELERATION
-) -> Float[Array, "..."]:
+def level(acceleration: Any, reference: Any = REFERENCE_ACCELERATION) -> Reals:
     """Return the level L = 20 lg(a/a₀) of an acceleration [dB].
 
     Args:
@@ -57,9 +54,7 @@ def level(
     return jnp.where(held, LOWEST_LEVEL, 20.0 * jnp.log10(jnp.where(held, 1.0, ratio)))
 
 
-def acceleration_of(
-    level: Any, reference: Any = REFERENCE_ACCELERATION
-) -> Float[Array, "..."]:
+def acceleration_of(level: Any, reference: Any = REFERENCE_ACCELERATION) -> Reals:
     """Return the acceleration a = a₀ 10^(L/20) of a level [m/s²].
 
     Args:
@@ -73,7 +68,7 @@ def acceleration_of(
     return reference * 10.0 ** (as_real(level) / 20.0)
 
 
-def combine_levels(levels: Any) -> Float[Array, "..."]:
+def combine_levels(levels: Any) -> Reals:
     """Return the sum of incoherent levels, 10 lg Σ 10^(L/10) [dB].
 
     The parts are of different frequencies, or without relation to each other: their

@@ -6,16 +6,15 @@ numbers is taken and either axis may be the longer one.
 """
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+
+from .types import Reals
 
 # Enough for ratios from 1e-8 to 1e8 (mean) and for a zero argument (duplication).
 _MEANS = 8
 _DUPLICATIONS = 7
 
 
-def complete(
-    ratio: Float[Array, "..."],
-) -> tuple[Float[Array, "..."], Float[Array, "..."], Float[Array, "..."]]:
+def complete(ratio: Reals) -> tuple[Reals, Reals, Reals]:
     """Complete elliptic integrals K, B and D for the complementary modulus `ratio`.
 
     With Δ² = 1 - (1 - ratio²) sin²θ, over a quarter turn: K = ∫ dθ/Δ,
@@ -46,9 +45,7 @@ def complete(
     return k, k - d, d
 
 
-def carlson_rd(
-    x: Float[Array, "..."], y: Float[Array, "..."], z: Float[Array, "..."]
-) -> Float[Array, "..."]:
+def carlson_rd(x: Reals, y: Reals, z: Reals) -> Reals:
     """Carlson's R_D(x, y, z) = 3/2 ∫₀^∞ dt / ((t + z) sqrt((t+x)(t+y)(t+z))).
 
     Args:

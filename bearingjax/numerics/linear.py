@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .lapack import solve_any
-from .types import array_namespace
+from .types import Reals, array_namespace
 
 _WRITTEN_OUT = 8
 """Most unknowns of a system that is written out."""
@@ -59,7 +59,7 @@ def trace(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
     return _sum(_diagonal(matrix))
 
 
-def _sum(terms: Float[Array, "n ..."]) -> Float[Array, "..."]:
+def _sum(terms: Float[Array, "n ..."]) -> Reals:
     """Sum over the first axis; up to three terms written out, so that it fuses."""
     n = terms.shape[0]
     if n > 3:

@@ -19,6 +19,7 @@ from jaxtyping import Array, Bool, Float, Int
 from .compiled.batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
+from .types import Reals
 from .units import unit
 
 
@@ -38,7 +39,7 @@ class Evaluation(NamedTuple):
 
     value: Annotated[Float[Array, ""], unit("J")]
     gradient: Annotated[Float[Array, " n"], unit("J/unit of x")]
-    hessian: Float[Array, "..."]
+    hessian: Reals
     scale: Float[Array, ""]
     noise: Float[Array, ""]
     memory: Any = ()

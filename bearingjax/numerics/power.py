@@ -10,7 +10,9 @@ from functools import partial
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
+from jaxtyping import Array
+
+from .types import Reals
 
 # The bits of a float, read as an integer, are a piecewise linear log2. The seed of
 # x^(-1/9) is therefore `magic - bits/9`; `magic` balances the seed's relative error.
@@ -41,7 +43,7 @@ def _inverse_root_seed(x: Array) -> Array:
     return lax.bitcast_convert_type(seed, jnp.float32)
 
 
-def ninth_root(x: Float[Array, "..."]) -> Float[Array, "..."]:
+def ninth_root(x: Reals) -> Reals:
     """Ninth root of positive normal numbers, to 3e-15 (float32: 1.5e-6) relative.
 
     Two steps of the series (1 - e)^(-1/9) on y ≈ x^(-1/9) with e = 1 - x y⁹.
@@ -77,9 +79,7 @@ def ninth_root(x: Float[Array, "..."]) -> Float[Array, "..."]:
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(1, 2))
-def positive_power(
-    x: Float[Array, "..."], numerator: int, denominator: int
-) -> Float[Array, "..."]:
+def positive_power(x: Reals, numerator: int, denominator: int) -> Reals:
     """max(x, 0)^(numerator/denominator), safe to differentiate.
 
     Where x ≤ 0 value and all derivatives are zero: the argument is masked as well
@@ -120,9 +120,7 @@ def _positive_power_jvp(numerator, denominator, primals, tangents):
     return value, (numerator / denominator) * slope * dx
 
 
-def smooth_power(
-    x: Float[Array, "..."], exponent: float, scale: float
-) -> Float[Array, "..."]:
+def smooth_power(x: Reals, exponent: float, scale: float) -> Reals:
     """|x|^exponent, made smooth at x = 0 where the true power has no derivative.
 
     scale^exponent·y²·(1 + y²)^(exponent/2 - 1) with y = x/scale: the power itself to

@@ -36,6 +36,11 @@ else:
     Real = Scalar
     RealOrNone = Scalar | None
 
+Number = Scalar | float
+"""One number as users write it: of Python, or an array without axes."""
+Reals = Float[Array, "..."]
+"""Real numbers in an array of any shape."""
+
 
 def array_namespace(array: Any) -> Any:
     """Return NumPy for its own arrays, to avoid compilation; `jax.numpy` for others.

@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, number, one_of
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
-from ..numerics.types import Real, Scalar
+from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real, unit_of
 from ..statics.solution import RollerSolution, Solution
 from .smooth import SMOOTHING_EXPONENT, smooth_maximum, smooth_minimum
@@ -102,7 +102,7 @@ class AbstractLargest(AbstractSmooth):
     """The largest of many samples."""
 
     @abc.abstractmethod
-    def samples(self, solution: Any) -> Float[Array, "..."]:
+    def samples(self, solution: Any) -> Reals:
         """The numbers, at least 0, of which the measure is the largest.
 
         Args:
@@ -130,7 +130,7 @@ class PeakPressure(AbstractLargest):
     Static: exponent.
     """
 
-    def samples(self, solution: Any) -> Float[Array, "..."]:
+    def samples(self, solution: Any) -> Reals:
         return _pressures(solution)
 
     @property
@@ -179,7 +179,7 @@ class EdgeLoad(AbstractLargest):
     Static: exponent.
     """
 
-    def samples(self, solution: Any) -> Float[Array, "..."]:
+    def samples(self, solution: Any) -> Reals:
         solution = loads_of(solution)
         if not isinstance(solution, RollerSolution):
             raise ValueError(
@@ -211,7 +211,7 @@ class Displacement(AbstractLargest):
     def __check_init__(self):
         _check_freedom(self, self.freedom)
 
-    def samples(self, solution: Any) -> Float[Array, "..."]:
+    def samples(self, solution: Any) -> Reals:
         solution = loads_of(solution)
         if self.freedom not in solution.free:
             raise ValueError(

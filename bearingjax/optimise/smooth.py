@@ -8,17 +8,14 @@ below it by at most the same factor.
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar
+from ..numerics.types import Reals, Scalar
 
 SMOOTHING_EXPONENT = 64.0
 """Default exponent: with 100 samples near a peak the maximum comes out 7 % above it."""
 
 
-def smooth_maximum(
-    values: Float[Array, "..."], exponent: float = SMOOTHING_EXPONENT
-) -> Scalar:
+def smooth_maximum(values: Reals, exponent: float = SMOOTHING_EXPONENT) -> Scalar:
     """p-norm of numbers ≥ 0: max ≤ result ≤ count^(1/exponent) max.
 
     Args:
@@ -35,9 +32,7 @@ def smooth_maximum(
     return top * total ** (1.0 / exponent)
 
 
-def smooth_minimum(
-    values: Float[Array, "..."], exponent: float = SMOOTHING_EXPONENT
-) -> Scalar:
+def smooth_minimum(values: Reals, exponent: float = SMOOTHING_EXPONENT) -> Scalar:
     """Norm of order -p of numbers > 0: min/count^(1/exponent) ≤ result ≤ min.
 
     Args:

@@ -12,7 +12,7 @@ from ..element.bearing_element import BearingElement, check_element
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.result import Result
-from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.types import Number, Scalar, as_count, as_real
 from ..numerics.units import meaning, unit
 from ..statics.load_result import solution_at
 from ..statics.options import SolveOptions
@@ -111,7 +111,7 @@ class BearingSupport(AbstractSupport):
         must_be(self, "turned", self.turned, known, "True or False", TypeError)
 
     def force(
-        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Number = 0.0
     ) -> Five:
         """Return the force that moves the station against the bearing (5,) [N, N m].
 

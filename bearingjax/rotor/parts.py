@@ -21,7 +21,7 @@ from ..design.checks import (
 )
 from ..design.material import Material
 from ..numerics.compiled.programs import program
-from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.types import Number, Real, Scalar, as_count, as_real
 from ..numerics.units import real, unit
 from ..numerics.warning import Warning
 
@@ -242,7 +242,7 @@ class AbstractSupport(eqx.Module):
 
     @abstractmethod
     def force(
-        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Number = 0.0
     ) -> Five:
         """Force that moves the station against the support (5,) [N, N m].
 
@@ -359,7 +359,7 @@ class LinearSupport(AbstractSupport):
         )
 
     def force(
-        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Number = 0.0
     ) -> Five:
         """Force that moves the station against the support (5,) [N, N m]."""
         return self.stiffness @ motion + self.damping @ velocity

@@ -9,7 +9,7 @@ from ..design.bearing_set import bearings_of
 from ..design.checks import are_known, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..statics.load import solve_load
 from ..statics.support import Support
 from .bearing_support import BearingSupport
@@ -20,7 +20,7 @@ from .statics import search_by_parts
 
 def preload_offset(
     element: BearingElement,
-    force: Scalar | float,
+    force: Number,
     *,
     throw: bool = True,
     inertia: bool | None = None,

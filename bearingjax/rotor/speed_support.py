@@ -7,7 +7,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..design.checks import of_shape, positive
-from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.types import Number, Real, Scalar, as_count, as_real
 from ..numerics.units import real, unit
 from .parts import (
     DAMPING_UNITS,
@@ -53,7 +53,7 @@ class SpeedSupport(AbstractSupport):
         of_shape(self, "stiffness", fits, "(order, 5, 5)")
 
     def force(
-        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Number = 0.0
     ) -> Five:
         """Return `AbstractSupport.force` without the load at rest [N, N m]."""
         share = jnp.minimum(2.0 * jnp.abs(speed) / self.top_speed - 1.0, 1.0)

@@ -12,6 +12,7 @@ from ..contact.point_law import ball_ellipses, balls_of
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
+from ..numerics.types import Reals
 from ..numerics.units import unit
 from .ball_motion import BallState, sliding, tractions
 from .contact_loads import loaded_ball
@@ -35,11 +36,11 @@ class Conditions(NamedTuple):
             (…, 2) [m]; of rollers `None`.
     """
 
-    peak_pressure: Annotated[Float[Array, "..."], unit("Pa")]
-    least_film: Annotated[Float[Array, "..."], unit("m")]
+    peak_pressure: Annotated[Reals, unit("Pa")]
+    least_film: Annotated[Reals, unit("m")]
     regime: Int[Array, "..."]
     outside_fluid_range: Bool[Array, "..."]
-    shear: Annotated[Float[Array, "..."], unit("1")]
+    shear: Annotated[Reals, unit("1")]
     semi_axes: Annotated[Float[Array, "... half_axis=2"] | None, unit("m")] = None
 
     to_xarray = to_xarray

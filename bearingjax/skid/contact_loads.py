@@ -27,7 +27,7 @@ from ..lubrication import (
     point_film,
 )
 from ..numerics.expansion import expand
-from ..numerics.types import Ring
+from ..numerics.types import Reals, Ring
 from ..statics import rollers
 from ..statics.balls import ball_results
 from .ball_motion import LoadedBall
@@ -39,7 +39,7 @@ _SLICES = 16
 
 
 def orbiting_model(
-    element: BearingElement, speed: Speed, excess: Float[Array, "..."]
+    element: BearingElement, speed: Speed, excess: Reals
 ) -> BearingModel:
     """Return the bearing with orbits faster than in pure rolling.
 

@@ -6,7 +6,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import real_numbers
 from ..element.inertia import Speed
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from .ring_load import rising_and_finite
 
@@ -50,9 +50,7 @@ class SpeedTable(eqx.Module):
         )
 
 
-def ramp(
-    duration: Scalar | float, end: Speed, start: Speed | None = None
-) -> SpeedTable:
+def ramp(duration: Number, end: Speed, start: Speed | None = None) -> SpeedTable:
     """Create a table with a linear ramp between two speeds, then constant.
 
     Args:

@@ -5,14 +5,13 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from ..cases.cases import Cases, case_support, solve_case
 from ..design.checks import instance, number
 from ..element.bearing_element import BearingElement
 from ..element.inertia import Speed
 from ..numerics.result import Result
-from ..numerics.types import Real
+from ..numerics.types import Real, Reals
 from ..numerics.units import real, unit_of
 from ..numerics.warning import Warning
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
@@ -150,7 +149,7 @@ class CageSlip(AbstractLargest):
     Static: exponent.
     """
 
-    def samples(self, solution: Any) -> Float[Array, "..."]:
+    def samples(self, solution: Any) -> Reals:
         return jnp.abs(_skidding(self, solution).cage_slip)
 
     @property

@@ -11,7 +11,7 @@ from ..design.bearing_set import is_self_aligning
 from ..design.checks import positive
 from ..element.bearing_element import BearingElement, check_element
 from ..element.inertia import Speed
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from .load import solve_load
 from .solution import Solution
@@ -39,7 +39,7 @@ class SetPreload(NamedTuple):
 
 
 def preload(
-    element: BearingElement[Any], force: Scalar | float, *, throw: bool = True
+    element: BearingElement[Any], force: Number, *, throw: bool = True
 ) -> BearingElement[Any]:
     """Return the set with its rings ground so that its rows have a given preload.
 
@@ -143,7 +143,7 @@ def row_preload_force(solution: Solution) -> Scalar:
     return jnp.where(solution.converged, force, jnp.nan)
 
 
-def check_preload(bearing: AbstractBearing | BearingSet, force: Scalar | float) -> None:
+def check_preload(bearing: AbstractBearing | BearingSet, force: Number) -> None:
     """Raise unless `preload` can preload this bearing.
 
     Args:

@@ -25,7 +25,7 @@ from ..element.solved_row import RowResults
 from ..numerics.labels import axes_of, to_xarray
 from ..numerics.minimise import TrustRegionNewton
 from ..numerics.result import Result
-from ..numerics.types import Ring, Scalar
+from ..numerics.types import Number, Ring, Scalar
 from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results
 from .rollers import RollerResults, roller_results
@@ -264,7 +264,7 @@ def describe(
     points: int,
     solved: SolvedElements,
     rolling: BearingModel | None = None,
-    least: Scalar | float = 0.0,
+    least: Number = 0.0,
     fixed_stiffness: bool = False,
 ) -> tuple[dict, BearingResponse]:
     """All fields of a `Solution` that follow from the ring freedoms.

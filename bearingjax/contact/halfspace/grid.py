@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.checks import check, positive
-from ...numerics.types import Real, Scalar, as_real
+from ...numerics.types import Number, Real, Scalar, as_real
 from ...numerics.units import real, unit
 
 
@@ -88,8 +88,8 @@ class Grid(eqx.Module):
 
 
 def even_grid(
-    length: Scalar | float,
-    half_width: Scalar | float,
+    length: Number,
+    half_width: Number,
     n_across: int,
     n_along: int,
     *,
@@ -107,8 +107,8 @@ def even_grid(
 
 
 def graded_grid(
-    length: Scalar | float,
-    half_width: Scalar | float,
+    length: Number,
+    half_width: Number,
     n_across: int,
     n_along: int,
     *,

@@ -24,7 +24,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, as_real
 from .grid import Grid
 from .love import corner, namespace, strip
 
@@ -103,7 +103,7 @@ class GradedInfluence(AbstractInfluence):
 
 
 def influence(
-    grid: Grid, modulus: Scalar | float, mirrored: Callable[..., Any] | None = None
+    grid: Grid, modulus: Number, mirrored: Callable[..., Any] | None = None
 ) -> AbstractInfluence:
     """Influence of pressure on a grid.
 

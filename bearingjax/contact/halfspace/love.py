@@ -13,15 +13,11 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 from jax.core import Tracer
-from jaxtyping import Array, Float
+
+from ...numerics.types import Reals
 
 
-def love(
-    x: Float[Array, "..."],
-    y: Float[Array, "..."],
-    a: Float[Array, "..."],
-    b: Float[Array, "..."],
-) -> Float[Array, "..."]:
+def love(x: Reals, y: Reals, a: Reals, b: Reals) -> Reals:
     """∫∫ dA/r over a rectangle of half sides a, b, from a point of its plane [m].
 
     Args:

@@ -19,7 +19,7 @@ from ...numerics.implicit import attach_by, stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Count, Flag, Scalar, as_real
+from ...numerics.types import Count, Flag, Number, Scalar, as_real
 from ...numerics.units import unit
 from .gradients import (
     AbstractPressureSolver,
@@ -153,10 +153,10 @@ def solve_pressure(
     influence: AbstractInfluence,
     gap: Float[Array, "m n"],
     *,
-    load: Scalar | float | None = None,
-    approach: Scalar | float | None = None,
-    moment: Scalar | float | None = None,
-    tilt: Scalar | float | None = None,
+    load: Number | None = None,
+    approach: Number | None = None,
+    moment: Number | None = None,
+    tilt: Number | None = None,
     solver: AbstractPressureSolver | None = None,
     throw: bool = True,
 ) -> ContactSolution:

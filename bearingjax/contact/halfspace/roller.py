@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ...design.checks import check, floats, in_range, is_traced, positive
 from ...design.material import Material, contact_modulus
 from ...design.profile import AbstractProfile, Straight, between_arcs, sagitta
-from ...numerics.types import Real, RealOrNone, Scalar, as_real
+from ...numerics.types import Number, Real, RealOrNone, Reals, Scalar, as_real
 from ...numerics.units import real
 from ...numerics.warning import Warning
 from .ends import FreeEnds
@@ -162,7 +162,7 @@ class RollerContact(eqx.Module):
             mirrored = self.free_ends.weight(self.material, self.raceway_material)
         return influence(grid, self.modulus, mirrored)
 
-    def roller_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+    def roller_radius(self, y: Reals) -> Reals:
         """Radius of curvature of the roller normal to the generatrix at y [m]."""
         slope = (self.large_diameter - self.small_diameter) / self.roller_length
         radius, cosine = 0.5 * (self.diameter - slope * y), jnp.cos(self.angle)
@@ -172,7 +172,7 @@ class RollerContact(eqx.Module):
         lean = self.angle + jnp.arcsin(y / arc)
         return (radius - sagitta(y, arc) * cosine) / jnp.cos(lean)
 
-    def relative_radius(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+    def relative_radius(self, y: Reals) -> Reals:
         """Radius of relative curvature 1/(1/roller + 1/raceway) at y [m]."""
         return 1.0 / (1.0 / self.roller_radius(y) + self._raceway_curvature(y))
 
@@ -188,7 +188,7 @@ class RollerContact(eqx.Module):
         lean = jnp.cos(angle - side * jnp.arcsin(y / arc)) / jnp.cos(angle)
         return lean / (self.raceway_radius + side * wider)
 
-    def drop(self, y: Float[Array, "..."]) -> Float[Array, "..."]:
+    def drop(self, y: Reals) -> Reals:
         """Material removed from both bodies at y [m]."""
         length, diameter = self.roller_length, self.diameter
         drop = self.roller_profile.drop(
@@ -241,7 +241,7 @@ class RollerContact(eqx.Module):
 
     def grid(
         self,
-        half_width: Scalar | float,
+        half_width: Number,
         n_across: int = 35,
         n_along: int = 64,
         grading: float = 2.0,
@@ -259,7 +259,7 @@ class RollerContact(eqx.Module):
             self.roller_length, half_width, n_across, n_along, grading=grading
         )
 
-    def line_half_width(self, load: Scalar | float) -> Scalar:
+    def line_half_width(self, load: Number) -> Scalar:
         """Half width of an endless roller under the mean line load (Hertz) [m]."""
         radius = self.relative_radius(jnp.zeros_like(self.roller_length))
         line_load = as_real(load) / self.roller_length
@@ -267,11 +267,11 @@ class RollerContact(eqx.Module):
 
     def solve(
         self,
-        load: Scalar | float | None = None,
+        load: Number | None = None,
         *,
-        approach: Scalar | float | None = None,
-        moment: Scalar | float | None = None,
-        tilt: Scalar | float | None = None,
+        approach: Number | None = None,
+        moment: Number | None = None,
+        tilt: Number | None = None,
         grid: Grid | None = None,
         solver: AbstractPressureSolver | None = None,
         throw: bool = True,

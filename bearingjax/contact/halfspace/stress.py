@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 from ...design.checks import check
 from ...numerics.compiled.programs import program
 from ...numerics.lapack import eigh
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, Reals, Scalar, as_real
 from .grid import Grid
 from .pressure import ContactSolution
 
@@ -34,15 +34,15 @@ class Stress(eqx.Module):
         xy, yz, zx: Shear stresses (...) [Pa].
     """
 
-    xx: Float[Array, "..."]
-    yy: Float[Array, "..."]
-    zz: Float[Array, "..."]
-    xy: Float[Array, "..."]
-    yz: Float[Array, "..."]
-    zx: Float[Array, "..."]
+    xx: Reals
+    yy: Reals
+    zz: Reals
+    xy: Reals
+    yz: Reals
+    zx: Reals
 
     @property
-    def von_mises(self) -> Float[Array, "..."]:
+    def von_mises(self) -> Reals:
         """Equivalent stress of von Mises [Pa]; zero, with derivative zero, at rest."""
         normal = (self.xx - self.yy) ** 2 + (self.yy - self.zz) ** 2
         normal = normal + (self.zz - self.xx) ** 2
@@ -66,18 +66,14 @@ class Stress(eqx.Module):
         return jnp.vectorize(eigh, signature="(n,n)->(n),(n,n)")(self.tensor)[0]
 
     @property
-    def greatest_shear(self) -> Float[Array, "..."]:
+    def greatest_shear(self) -> Reals:
         """Largest shear stress in any plane, half of Tresca's [Pa]."""
         principal = self.principal
         return 0.5 * (principal[..., 2] - principal[..., 0])
 
 
 def stress_below(
-    solution: ContactSolution,
-    x: Places,
-    y: Places,
-    z: Places,
-    poisson: Scalar | float = 0.3,
+    solution: ContactSolution, x: Places, y: Places, z: Places, poisson: Number = 0.3
 ) -> Stress:
     """Stress under a solved contact, in either body.
 
@@ -134,12 +130,7 @@ def _stress(grid, pressure, places, poisson, shape):
     return Stress(*(found[:, k].reshape(shape) for k in range(6)))
 
 
-def corner_stress(
-    u: Float[Array, "..."],
-    v: Float[Array, "..."],
-    z: Float[Array, "..."],
-    poisson: Scalar,
-) -> tuple[Float[Array, "..."], ...]:
+def corner_stress(u: Reals, v: Reals, z: Reals, poisson: Scalar) -> tuple[Reals, ...]:
     """Stress under one corner of a uniformly loaded rectangle.
 
     That of the rectangle is the sum over its corners, + at the two whose x and y are

@@ -12,7 +12,7 @@ from ...contact.hertz import POINT_EXPONENT
 from ...contact.point_law import at_angle
 from ...numerics.expansion import Expansion
 from ...numerics.power import positive_power
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ..energy import ball_energy
 from ..rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from ..search_hints import SearchHints
@@ -65,7 +65,7 @@ class Ball(AbstractRollingElement):
         return self.ball_diameter
 
     @property
-    def tether(self) -> Float[Array, "..."]:
+    def tether(self) -> Reals:
         return self.spring
 
     def axes(self, azimuth: Scalar) -> Float[Array, "h 6"]:

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...numerics.linear import dot
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ...numerics.units import unit
 from ..rolling_element import Unknowns
 
@@ -192,7 +192,7 @@ def bend_step(c: Contacts, load: Float[Array, " contact"], step: Unknowns) -> Un
     return jnp.where(bends, step - short * new, step)
 
 
-def add(terms: Float[Array, "contact ..."]) -> Float[Array, "..."]:
+def add(terms: Float[Array, "contact ..."]) -> Reals:
     """Sum over the contacts, written out so that it fuses."""
     total = terms[0]
     for k in range(1, terms.shape[0]):

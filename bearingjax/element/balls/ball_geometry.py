@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ...numerics.types import Scalar
+from ...numerics.types import Number, Scalar
 from ..frame import section_matrix, turn_factors
 from ..rolling_element import RingMotion, Unknowns
 
@@ -62,7 +62,7 @@ class AbstractBallGeometry(eqx.Module):
     def reach(self, rings: RingMotion) -> Scalar:
         """Relative displacement of the rings in the ball's section [m]."""
 
-    def lever(self, x: Unknowns) -> Scalar | float:
+    def lever(self, x: Unknowns) -> Number:
         """z of the ball from the origin of its row's axes [m]."""
         return 0.0
 
@@ -209,5 +209,5 @@ class FiniteBall(AbstractBallGeometry):
         moved = self.travel(rings, self.midpoint(rings))
         return jnp.max(jnp.sum(jnp.abs(moved), axis=1))
 
-    def lever(self, x: Unknowns) -> Scalar | float:
+    def lever(self, x: Unknowns) -> Number:
         return self.along + x[0]

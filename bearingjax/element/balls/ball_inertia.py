@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.ball import AbstractBallBearing
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ...numerics.units import unit, units
 from ..frame import orbit, roll_ratio
 from ..inertia import Speed
@@ -127,9 +127,7 @@ def carried_loads(
     )
 
 
-def gyroscopic_moment(
-    moment_of_inertia: Float[Array, "..."], kinematics: BallKinematics
-) -> Float[Array, "..."]:
+def gyroscopic_moment(moment_of_inertia: Reals, kinematics: BallKinematics) -> Reals:
     """Moment that turns the ball's axis with its orbit, I ω_c ω_R sin β [N m].
 
     Args:

@@ -8,11 +8,10 @@ Source: Kurushin, Kurushin, Zhilnikov, Murashkin, Vestnik SGAU (2011), which pri
 import equinox as eqx
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
 
 from ...design.checks import positive
 from ...numerics.implicit import attach_roots, stop_gradient
-from ...numerics.types import Real, Scalar
+from ...numerics.types import Real, Reals, Scalar
 from ...numerics.units import real
 
 _STEPS = 12
@@ -46,7 +45,7 @@ class CageContact(eqx.Module):
         for name in ("film", "elastic", "elastic_exponent", "film_exponent"):
             positive(self, name)
 
-    def force(self, approach: Float[Array, "..."]) -> Float[Array, "..."]:
+    def force(self, approach: Reals) -> Reals:
         """Return the contact force, zero where the parts are apart (...) [N].
 
         Finite, with three derivatives, for every approach that is.
@@ -63,7 +62,7 @@ class CageContact(eqx.Module):
         most = 0.99 * jnp.log(jnp.finfo(approach.dtype).max)
         return jnp.where(apart, 0.0, jnp.exp(jnp.minimum(root, most)))
 
-    def approach(self, force: Float[Array, "..."]) -> Float[Array, "..."]:
+    def approach(self, force: Reals) -> Reals:
         """Return the approach under a positive force, the inverse of `force` [m].
 
         Args:

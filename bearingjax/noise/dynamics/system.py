@@ -33,7 +33,7 @@ from jaxtyping import Array, Float
 from ...design.form_error import FormErrors, Surfaces
 from ...element.frame import RINGS, orbit, roll_ratio
 from ...element.row import Row, RowPlacement
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ...numerics.units import unit, units
 from ..sensor import Sensor
 from .cage import GuidedCage, cage_forces, cage_loads
@@ -74,7 +74,7 @@ class NoiseSystem(eqx.Module):
     placements: RowPlacement | None
     errors: tuple[FormErrors, ...] | None
     surfaces: tuple[Surfaces, ...]
-    speeds: tuple[Scalar, Scalar, Float[Array, "..."], Float[Array, "..."]]
+    speeds: tuple[Scalar, Scalar, Reals, Reals]
     mass: Float[Array, " k"]
     load: Float[Array, " k"]
     sensor: Sensor | None

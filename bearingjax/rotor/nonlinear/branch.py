@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ...design.checks import positive
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, as_real
 from ...numerics.units import unit, units
 from ...numerics.warning import Warning
 from .continuation import (
@@ -101,8 +101,8 @@ class Branch(NamedTuple):
 
 def follow(
     system: AbstractVibratingSystem,
-    begin: Scalar | float,
-    end: Scalar | float,
+    begin: Number,
+    end: Number,
     method: AbstractMethod,
     start: Float[Array, "sample n"] | None = None,
     *,

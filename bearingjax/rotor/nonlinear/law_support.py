@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.checks import instance
-from ...numerics.types import Scalar, as_count, as_real
+from ...numerics.types import Number, Scalar, as_count, as_real
 from ...numerics.units import unit
 from ..parts import (
     DAMPING_UNITS,
@@ -47,7 +47,7 @@ class LawSupport(AbstractSupport):
         instance(self, "turned", bool)
 
     def force(
-        self, motion: Five, velocity: Five, speed: Scalar, angle: Scalar | float = 0.0
+        self, motion: Five, velocity: Five, speed: Scalar, angle: Number = 0.0
     ) -> Five:
         """Return `AbstractSupport.force` [N, N m]; the balls do not orbit."""
         side = as_real((1.0, 1.0, -1.0 if self.turned else 1.0)).astype(motion.dtype)

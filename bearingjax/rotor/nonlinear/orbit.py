@@ -13,7 +13,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Flag, Scalar, as_real
+from ...numerics.types import Flag, Number, Scalar, as_real
 from ...numerics.units import unit
 from .method import AbstractMethod, Motion
 from .system import AbstractVibratingSystem, frequency_of
@@ -185,7 +185,7 @@ def along_frequency(size: int, dtype: Any) -> Float[Array, " x"]:
 
 def solve_orbit(
     system: AbstractVibratingSystem,
-    frequency: Scalar | float,
+    frequency: Number,
     method: AbstractMethod,
     start: Float[Array, "sample n"] | None = None,
     *,

@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 
 from ...design.checks import positive
 from ...numerics.lapack import cholesky, congruent, eigh
-from ...numerics.types import Real, Scalar, as_real
+from ...numerics.types import Number, Real, Scalar, as_real
 from ...numerics.units import real, unit
 from ..damping import ModalDamping
 from .support_law import AbstractSupportLaw
@@ -138,11 +138,11 @@ def rigid_rotor(
     a: AbstractSupportLaw,
     b: AbstractSupportLaw,
     *,
-    scale: Scalar | float,
-    damping_ratio: Scalar | float = 0.01,
-    unbalance: Scalar | float = 0.0,
-    base_acceleration: Scalar | float = 0.0,
-    speed: Scalar | float | None = None,
+    scale: Number,
+    damping_ratio: Number = 0.01,
+    unbalance: Number = 0.0,
+    base_acceleration: Number = 0.0,
+    speed: Number | None = None,
 ) -> VibratingSystem:
     """Create the system of the rotor on its bearings for `solve_orbit` and `follow`.
 

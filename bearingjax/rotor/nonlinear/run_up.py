@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.checks import check, is_traced, non_negative, real_numbers
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, Scalar, as_real
 from ...numerics.units import unit
 from ...skid.ring_load import rising_and_finite
 
@@ -107,8 +107,8 @@ class FrequencyTable(eqx.Module):
 def as_frequency_table(
     owner: str,
     frequency: Any,
-    duration: Scalar | float | None = None,
-    end_frequency: Scalar | float | None = None,
+    duration: Number | None = None,
+    end_frequency: Number | None = None,
 ) -> FrequencyTable:
     """Return a table, also for a constant frequency or a linear change.
 

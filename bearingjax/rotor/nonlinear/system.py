@@ -17,7 +17,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
-from ...numerics.types import Real, RealOrNone, Scalar, as_real
+from ...numerics.types import Number, Real, RealOrNone, Scalar, as_real
 from ...numerics.units import real, unit
 
 
@@ -49,7 +49,7 @@ class AbstractVibratingSystem(eqx.Module):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar | float,
+        phase: Number,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         """Restoring forces f, positive against the displacement [N, N m].
@@ -63,7 +63,7 @@ class AbstractVibratingSystem(eqx.Module):
 
     @abc.abstractmethod
     def excitation(
-        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
+        self, phase: Number, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         """Return the external forces e [N, N m].
 
@@ -126,13 +126,13 @@ class VibratingSystem(AbstractVibratingSystem):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar | float,
+        phase: Number,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         return self.restoring(q, velocity, phase, frequency)
 
     def excitation(
-        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
+        self, phase: Number, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 

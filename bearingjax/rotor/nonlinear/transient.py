@@ -23,7 +23,7 @@ from ...numerics.in_time import IntegrationOptions, Stepping
 from ...numerics.in_time import integrate as in_time
 from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, Scalar, as_real
 from .run_up import FrequencyTable, as_frequency_table
 from .system import AbstractVibratingSystem
 
@@ -82,10 +82,10 @@ Start = tuple[Any, Any]
 def simulate(
     system: AbstractVibratingSystem,
     times: Any,
-    frequency: Scalar | float | FrequencyTable,
+    frequency: Number | FrequencyTable,
     *,
     start: Start | None = None,
-    end_frequency: Scalar | float | None = None,
+    end_frequency: Number | None = None,
     force: Callable | None = None,
     options: IntegrationOptions | None = None,
     throw: bool = True,
@@ -145,7 +145,7 @@ def _integrate(system, table, start, force, times, duration, options, throw):
 
 def poincare(
     system: AbstractVibratingSystem,
-    frequency: Scalar | float | FrequencyTable,
+    frequency: Number | FrequencyTable,
     n_points: int,
     *,
     settle: int = 0,

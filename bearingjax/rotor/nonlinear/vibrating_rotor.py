@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Number, Scalar, as_real
 from ...numerics.units import unit
 from ..like_parts import map_parts
 from ..linear.reduction import craig_bampton, held_motions
@@ -67,7 +67,7 @@ class VibratingRotor(AbstractVibratingSystem):
         self,
         q: Float[Array, " n"],
         velocity: Float[Array, " n"],
-        phase: Scalar | float,
+        phase: Number,
         frequency: Scalar,
     ) -> Float[Array, " n"]:
         force, speed = self.stiffness @ q, self._speed(frequency)
@@ -85,7 +85,7 @@ class VibratingRotor(AbstractVibratingSystem):
         return force + jnp.einsum("sim,si->m", self.rows, each)
 
     def excitation(
-        self, phase: Scalar | float, frequency: Scalar, acceleration: Scalar
+        self, phase: Number, frequency: Scalar, acceleration: Scalar
     ) -> Float[Array, " n"]:
         return self.load(phase, frequency, acceleration)
 
@@ -103,10 +103,10 @@ def vibrating_rotor(
     rotor: Rotor,
     loads: RotorLoads | Callable | Any,
     *,
-    scale: Scalar | float,
-    reference_frequency: Scalar | float,
-    speed: Scalar | float | None = None,
-    rotation: Scalar | float | None = None,
+    scale: Number,
+    reference_frequency: Number,
+    speed: Number | None = None,
+    rotation: Number | None = None,
     modes: int | None = None,
     about: Float[Array, " motion"] | StaticEquilibrium | None = None,
 ) -> VibratingRotor:

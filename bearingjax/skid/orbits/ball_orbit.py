@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from ...element.balls.ball_speed import ball_mass
 from ...element.solved_row import RowResults, SolvedRow
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ..ball_motion import (
     LEAST_LOAD,
     BallState,
@@ -41,9 +41,7 @@ class BallOrbit(AbstractOrbit):
     n_own: ClassVar = 4
     n_common: ClassVar = 0
 
-    def excess(
-        self, own: Float[Array, "place k"], common: Float[Array, " c"]
-    ) -> Float[Array, "..."]:
+    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
         return own[:, 3]
 
     def bodies_of(self, row: RowResults) -> tuple[Any, Array]:

@@ -22,7 +22,7 @@ from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import solve_any
 from ...numerics.linear import solve
 from ...numerics.result import Result
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ...numerics.units import unit, units
 from ...statics.balance import Balance
 from ..contact_loads import orbiting_model, ring_forces
@@ -86,9 +86,7 @@ class AbstractOrbit(eqx.Module):
     """
 
     @abc.abstractmethod
-    def excess(
-        self, own: Float[Array, "place k"], common: Float[Array, " c"]
-    ) -> Float[Array, "..."]:
+    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
         """Return orbital speeds relative to pure rolling (place,) or () [rad/s]."""
 
     @abc.abstractmethod

@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 
 from ...element.inertia import Speed, mass_and_inertia
 from ...element.solved_row import RowResults, SolvedRow
-from ...numerics.types import Scalar
+from ...numerics.types import Reals, Scalar
 from ..conditions import conditions_of
 from ..contact_loads import loaded_rollers
 from ..roller_motion import (
@@ -39,9 +39,7 @@ class RollerOrbit(AbstractOrbit):
     n_own: ClassVar = 1
     n_common: ClassVar = 1
 
-    def excess(
-        self, own: Float[Array, "place k"], common: Float[Array, " c"]
-    ) -> Float[Array, "..."]:
+    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
         return common[0]
 
     def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
