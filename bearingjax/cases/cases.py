@@ -11,14 +11,12 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from ..design.checks import is_traced, must_be, real_numbers
-from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, LOAD_UNITS, MOTION_UNITS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, BearingElement, Speed
+from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..numerics.units import unit
+from ..statics import Solution, SolveOptions, Support
 from ..statics.load import solve
-from ..statics.options import SolveOptions
-from ..statics.solution import Solution
-from ..statics.support import DICT_OF_FREEDOMS, RESTRAINED, Support
+from ..statics.support import DICT_OF_FREEDOMS, RESTRAINED
 
 
 class Cases(eqx.Module):

@@ -2,8 +2,7 @@
 
 from ..design.bearing_set import bearings_of
 from ..design.rib import RIB_NAMES
-from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS
+from ..element import FREEDOMS, RINGS, BearingElement
 from ..statics.support import Support
 from .cases import Cases
 

@@ -16,12 +16,10 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..design import CylindricalRollerBearing, NeedleRollerBearing, rows_of
 from ..design.places import has_empty_places
-from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS
+from ..element import FREEDOMS, RINGS, BearingElement
 from ..numerics.linear import solve
 from ..numerics.units import unit, units
-from ..statics.solution import Solution
-from ..statics.support import Support
+from ..statics import Solution, Support
 from ..statics.warning_sizes import unrestrained_directions
 from .cases import Cases
 

@@ -28,10 +28,9 @@ from ..numerics.labels import make_dataset
 from ..numerics.result import Result
 from ..numerics.types import with_fields
 from ..numerics.warning import Warning, exceeded_kinds, warnings_of_cases
+from ..statics import Solution, SolveOptions, Support
 from ..statics.empty_places import blank_empty_places
-from ..statics.options import SolveOptions
-from ..statics.solution import Solution
-from ..statics.support import RESTRAINED, Support, check_held
+from ..statics.support import RESTRAINED, check_held
 from .batches import Batches
 from .cases import Cases
 from .names_of_zeros import structural_zeros

@@ -21,9 +21,7 @@ from ..life.life import LifeConditions, life_outputs, rating_life
 from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
-from ..statics.options import SolveOptions
-from ..statics.solution import Solution
-from ..statics.support import Support
+from ..statics import Solution, SolveOptions, Support
 from ..statics.warning import sizes
 from .cases import Cases, solve_case
 from .near_starts import (

@@ -17,8 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-from ..design.bearing_set import rows_of
-from ..design.keywords import bearing_of
+from ..design import bearing_of, rows_of
 from ..design.published import PublishedRatings, rated_dimensions, with_published
 from ..fits.fit_limits import (
     CLEARANCE_CLASSES,

@@ -24,11 +24,10 @@ from jaxtyping import Array, Float
 
 from ..design.material import Material
 from ..design.profile import AbstractProfile, between_arcs, sagitta
+from ..numerics import AbstractQuadrature, ContactMapped, positive_power
 from ..numerics.expansion import Expansion, expanded_all
 from ..numerics.implicit import stop_gradient
 from ..numerics.pieces import Pieces, of_intervals
-from ..numerics.power import positive_power
-from ..numerics.quadrature import AbstractQuadrature, ContactMapped
 from ..numerics.types import Reals, Scalar
 from ..numerics.units import unit
 from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren

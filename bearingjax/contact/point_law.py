@@ -13,9 +13,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.ball import AbstractBallBearing, Groove
+from ..design import AbstractBallBearing, Groove, contact_modulus
 from ..design.checks import positive
-from ..design.material import contact_modulus
 from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real, unit
 from .hertz import Ellipse, ellipse

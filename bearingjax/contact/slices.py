@@ -6,12 +6,10 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
 
+from ..numerics import ContactMapped, Result, Warning, as_real
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
-from ..numerics.quadrature import ContactMapped
-from ..numerics.result import Result
-from ..numerics.types import Number, Scalar, as_real
-from ..numerics.warning import Warning
+from ..numerics.types import Number, Scalar
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
 from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren, peak_pressure

@@ -7,16 +7,13 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..contact.line import AbstractLineLaw
-from ..contact.point_law import AbstractPointLaw
+from ..contact import AbstractLineLaw, AbstractPointLaw
 from ..design import AbstractBearing, BearingSet, SetRow, rows_of
 from ..design.bearing_set import bearings_of
 from ..design.checks import flag, is_traced, of_class
 from ..design.deviation import deviation_of
-from ..numerics.minimise import AbstractMinimiser, TrustRegionNewton
-from ..numerics.quadrature import AbstractQuadrature
+from ..numerics import AbstractMinimiser, AbstractQuadrature, TrustRegionNewton, Warning
 from ..numerics.types import Ring, Scalar
-from ..numerics.warning import Warning
 from .azimuth import azimuths, orbit_ratio
 from .balls.ball_speed import AbstractRacewayControl
 from .bearing_model import BearingModel, BearingResponse, RowGroup

@@ -17,8 +17,7 @@ from ..contact.coupled import CoupledSlices
 from ..contact.line import AbstractLineLaw, Palmgren
 from ..contact.point_law import AbstractPointLaw, FreeAngle, balls_of
 from ..design import AbstractBallBearing, AbstractRollerBearing, SetRow
-from ..numerics.minimise import AbstractMinimiser
-from ..numerics.quadrature import AbstractQuadrature, ContactMapped
+from ..numerics import AbstractMinimiser, AbstractQuadrature, ContactMapped
 from ..numerics.types import Scalar
 from .balls.ball import Ball
 from .balls.ball_contacts import GrooveGeometry

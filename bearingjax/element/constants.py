@@ -13,8 +13,7 @@ from jaxtyping import Array, Float
 from ..contact.hertz import sphere_constant
 from ..contact.line import AbstractLineLaw, relative_radius
 from ..contact.line_contact import AbstractLineContact, LineContact
-from ..design.bearing import AbstractRollerBearing
-from ..design.material import contact_modulus
+from ..design import AbstractRollerBearing, contact_modulus
 from ..design.profile import sagitta
 from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Reals, Scalar

@@ -13,17 +13,12 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from ..numerics import AbstractMinimiser, Evaluation, Result, TrustRegionNewton
 from ..numerics.compiled import batched_loop
 from ..numerics.expansion import Expansion
 from ..numerics.implicit import attach, stop_gradient
 from ..numerics.linear import dot, norm, smallest_pivot, solve, trace
-from ..numerics.minimise import (
-    AbstractMinimiser,
-    Evaluation,
-    Problem,
-    TrustRegionNewton,
-)
-from ..numerics.result import Result
+from ..numerics.minimise import Problem
 from ..numerics.types import Scalar
 from ..numerics.units import unit, units
 from .energy import derivatives, response, ring_motions

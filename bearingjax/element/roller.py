@@ -10,10 +10,9 @@ from jaxtyping import Array, Bool, Float
 
 from ..contact.hertz import POINT_EXPONENT
 from ..contact.line_contact import expansion
+from ..numerics import AbstractQuadrature, positive_power
 from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
-from ..numerics.power import positive_power
-from ..numerics.quadrature import AbstractQuadrature
 from ..numerics.types import Number, Reals, Scalar
 from .constants import ContactConstants
 from .energy import roller_energy

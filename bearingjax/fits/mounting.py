@@ -11,16 +11,8 @@ from typing import Any
 
 import jax.numpy as jnp
 
-from ..design.ball_types import (
-    AngularContactBallBearing,
-)
-from ..design.bearing_set import (
-    AbstractBearing,
-    BearingSet,
-    SetRow,
-    rows_of,
-    shares_rings,
-)
+from ..design import AngularContactBallBearing, BearingSet, SetRow, rows_of
+from ..design.bearing_set import AbstractBearing, shares_rings
 from ..design.checks import number, of_class
 from ..numerics.types import Scalar, as_real
 from .fits import AxialStrains, FitConditions, FitState, Mounting, fit_state

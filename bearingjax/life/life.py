@@ -28,9 +28,8 @@ from ..design.checks import (
     positive,
 )
 from ..design.places import element_places, has_empty_places, with_places
-from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import RINGS
-from ..element.inertia import Speed
+from ..element import RINGS, BearingElement, Speed
+from ..element.bearing_element import check_element
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray

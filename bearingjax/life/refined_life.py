@@ -5,12 +5,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ..contact.halfspace import Grid
-from ..element.bearing_element import BearingElement
-from ..element.frame import RINGS
+from ..element import RINGS, BearingElement
 from ..numerics.units import unit
 from ..numerics.warning import Warning
-from ..statics.refine import RefinedContact, refine
-from ..statics.solution import RollerSolution
+from ..statics import RefinedContact, RollerSolution, refine
 from .reference_life import LEAST_LAMINAE, ROLLERS
 
 

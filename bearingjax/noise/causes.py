@@ -5,8 +5,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ..design import rows_of
-from ..design.form_error import FormErrors, Harmonics, RacewayErrors, Spall
+from ..design import FormErrors, Harmonics, RacewayErrors, Spall, rows_of
 from ..numerics.units import unit
 from .lines import Line
 from .model import NoiseModel

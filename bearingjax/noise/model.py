@@ -24,16 +24,12 @@ from ..design.checks import (
     positive,
 )
 from ..design.form_error import FormErrors, Surfaces
-from ..element.bearing_element import BearingElement
-from ..element.frame import FREEDOMS, RINGS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, RINGS, BearingElement, Speed
 from ..numerics.compiled.programs import program
 from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real, unit
+from ..statics import Solution, SolveOptions, Support
 from ..statics.load import solve
-from ..statics.options import SolveOptions
-from ..statics.solution import Solution
-from ..statics.support import Support
 from .dynamics.cage import GuidedCage
 from .dynamics.dynamic_row import DynamicRow, of_small_motions
 from .dynamics.system import NoiseSystem

@@ -14,10 +14,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from ..design import rows_of
+from ..design import FormErrors, RacewayErrors, rows_of
 from ..design.bearing_set import with_bearings
 from ..design.checks import check, count, is_traced, of_class
-from ..design.form_error import FormErrors, RacewayErrors
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result

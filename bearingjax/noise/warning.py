@@ -12,8 +12,7 @@ from ..design import rows_of
 from ..design.form_error import FormErrors, Harmonics, Surfaces
 from ..element.balls.ball_inertia import ball_inertia, carried_loads
 from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
-from ..numerics.result import Result
-from ..numerics.warning import Warning
+from ..numerics import Result, Warning
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_width import contact_half_width
 from .dynamics.contact_states import contact_states

@@ -6,8 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..cases.cases import Cases
-from ..cases.spectrum import spectrum_life
+from ..cases import Cases, spectrum_life
 from ..design.checks import of_class
 from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions, rating_life

@@ -15,9 +15,8 @@ from ..cases.cases import Cases
 from ..design.checks import all_of_class, count, in_range, must_be, of_class
 from ..life.rating import check_alike
 from ..numerics.units import meaning, shown_number, unit
-from ..statics.installed import Installed
-from ..statics.options import SolveOptions
-from ..statics.support import RESTRAINED, Support, check_held
+from ..statics import Installed, SolveOptions, Support
+from ..statics.support import RESTRAINED, check_held
 from .constraint import Constraint
 from .design_problem import Build, Measure, Outcome, Problem
 from .life import OfLife

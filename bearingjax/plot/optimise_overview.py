@@ -9,9 +9,8 @@ import numpy as np
 
 from ..design import rows_of
 from ..numerics.units import shown_count
-from ..optimise.life import Damage
+from ..optimise import Damage, OptimisedDesign
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
-from ..optimise.optimise import OptimisedDesign
 from ..optimise.system import element_of, loads_of
 from ..shafts import ShaftDesign
 from .panel import ALONG, PRESSURE, Axis, Bars, Curve, Panel

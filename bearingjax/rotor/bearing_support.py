@@ -8,9 +8,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design.checks import finite, instance, must_be, of_shape
-from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import FREEDOMS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, BearingElement, Speed
+from ..element.bearing_element import check_element
 from ..numerics.result import Result
 from ..numerics.types import Number, Scalar, as_count, as_real
 from ..numerics.units import meaning, unit

@@ -10,8 +10,7 @@ from ..design.checks import are_known, positive
 from ..element.bearing_element import BearingElement, check_element
 from ..numerics.result import Result
 from ..numerics.types import Number, Scalar, as_real
-from ..statics.load import solve_load
-from ..statics.support import Support
+from ..statics import Support, solve_load
 from .bearing_support import BearingSupport
 from .condensation import CondensedRotor
 from .rotor import N_STATION

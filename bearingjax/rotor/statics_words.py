@@ -6,9 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..design.checks import is_traced
+from ..numerics import Result, Warning
 from ..numerics.compiled.programs import program
-from ..numerics.result import Result
-from ..numerics.warning import Warning
 from .parts import LinearSupport
 from .rotor import N_STATION
 from .shaft import STATION_FREEDOMS

@@ -13,12 +13,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..contact.hertz import Ellipse
+from ..element import BearingModel, RingMotion, Speed, ball_mass
 from ..element.balls.ball_contacts import angles
-from ..element.balls.ball_speed import ball_mass
-from ..element.bearing_model import BearingModel
 from ..element.energy import derivatives, ring_motions
-from ..element.inertia import Speed
-from ..element.rolling_element import RingMotion, split_rings
+from ..element.rolling_element import split_rings
 from ..numerics.types import Scalar
 from ..statics.balance import Balance
 from .ball_motion import LoadedBall

@@ -21,8 +21,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..element.balls.ball_speed import ball_kinematics
-from ..element.inertia import Speed
+from ..element import Speed, ball_kinematics
 from ..lubrication import AbstractPatch, AbstractTraction, Film, Resultants, WarmInlet
 from ..lubrication.film_factors import at_least
 from ..numerics.types import Scalar

@@ -8,18 +8,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..contact.hertz import Ellipse
-from ..contact.line import half_width
-from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
+from ..contact import AbstractPointLaw, Ellipse, half_width
+from ..contact.point_law import ball_ellipses, balls_of
 from ..design.ball import AbstractBallBearing
-from ..element.balls.ball_speed import ball_mass
-from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel, RowGroup
+from ..element import BearingElement, BearingModel, Row, RowResults, Speed, ball_mass
+from ..element.bearing_model import RowGroup
 from ..element.constants import ContactConstants, relative_radii
 from ..element.equilibrium import condense
-from ..element.inertia import Speed, mass_and_inertia
-from ..element.row import Row
-from ..element.solved_row import RowResults, SolvedRow
+from ..element.inertia import mass_and_inertia
+from ..element.solved_row import SolvedRow
 from ..lubrication import (
     ellipse_patch,
     line_film,

@@ -8,17 +8,14 @@ import jax.numpy as jnp
 
 from ..cases.cases import Cases, case_support, solve_case
 from ..design.checks import instance, number
-from ..element.bearing_element import BearingElement
-from ..element.inertia import Speed
-from ..numerics.result import Result
+from ..element import BearingElement, Speed
+from ..numerics import Result, Warning
 from ..numerics.types import Real, Reals
 from ..numerics.units import real, unit_of
-from ..numerics.warning import Warning
 from ..optimise.measure import AbstractLargest, AbstractMeasure, hour_weights
 from ..optimise.system import AbstractSystem
+from ..statics import SolveOptions, Support
 from ..statics.load_case import load_case
-from ..statics.options import SolveOptions
-from ..statics.support import Support
 from .conditions import conditions
 from .model import SkidModel
 from .orbits.steady import check_places, end_state, enough_places

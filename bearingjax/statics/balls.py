@@ -11,10 +11,9 @@ from jaxtyping import Array, Float, Int
 
 from ..contact.point_law import AbstractPointLaw, ball_ellipses, balls_of
 from ..design import AbstractBallBearing
+from ..element import BallKinematics, RowResults
 from ..element.balls.ball_contacts import angles
 from ..element.balls.ball_inertia import gyroscopic_moment
-from ..element.balls.ball_speed import BallKinematics
-from ..element.solved_row import RowResults
 from ..numerics.units import unit
 
 

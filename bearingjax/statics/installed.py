@@ -9,8 +9,7 @@ import jax
 import numpy as np
 
 from ..design.checks import instance
-from ..element.bearing_element import BearingElement
-from ..element.inertia import Speed
+from ..element import BearingElement, Speed
 from ..fits import (
     FitConditions,
     FitStates,

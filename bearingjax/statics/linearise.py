@@ -7,9 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..element.bearing_element import BearingElement, check_element
-from ..element.frame import FREEDOMS, RINGS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, RINGS, BearingElement, Speed
+from ..element.bearing_element import check_element
 from ..numerics.lapack import pseudoinverse
 from ..numerics.types import Ring, RingStiffness
 from ..numerics.warning import Warning

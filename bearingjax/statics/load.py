@@ -12,9 +12,8 @@ import numpy as np
 from ..design import AbstractBallBearing, AbstractRollerBearing, rows_of
 from ..design.bearing_set import pitch_radius
 from ..design.checks import is_traced
-from ..element.bearing_element import BearingElement, check_element
-from ..element.bearing_model import BearingModel
-from ..element.inertia import Speed
+from ..element import BearingElement, BearingModel, Speed
+from ..element.bearing_element import check_element
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.result import Result, raise_unless_converged

@@ -9,8 +9,7 @@ from jaxtyping import Array, Float
 
 from ..design import AbstractBearing, BearingSet
 from ..design.bearing_set import bearings_of
-from ..element.frame import FREEDOMS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, Speed
 from ..numerics.types import as_array
 from .support import Support, check_held, restrained_freedoms, six_numbers
 

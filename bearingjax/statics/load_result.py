@@ -10,14 +10,10 @@ from jaxtyping import Array, Bool, Float, Int
 from ..design import Material
 from ..design.bearing_set import pitch_radius
 from ..design.checks import is_traced
-from ..element.bearing_element import BearingElement
-from ..element.bearing_model import BearingModel
-from ..element.frame import FREEDOMS
-from ..element.inertia import Speed
+from ..element import FREEDOMS, BearingElement, BearingModel, Speed
+from ..numerics import Minimum, Result
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
-from ..numerics.minimise import Minimum
-from ..numerics.result import Result
 from ..numerics.types import Ring, as_array
 from .balance import Balance
 from .empty_places import of_kind, points_of_kind, without_empty_places

@@ -6,21 +6,19 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
+from ..contact import AbstractLineContact, peak_pressure
 from ..contact.halfspace import (
     AbstractPressureSolver,
     FreeEnds,
     Grid,
     RollerContact,
 )
-from ..contact.line import peak_pressure
-from ..contact.line_contact import AbstractLineContact
 from ..contact.slices import SliceComparison, Slices
 from ..design import AbstractRollerBearing, rows_of
 from ..design.checks import one_of
-from ..element.bearing_element import BearingElement, check_element
+from ..element import RINGS, BearingElement, RowResults
+from ..element.bearing_element import check_element
 from ..element.constants import relative_radii
-from ..element.frame import RINGS
-from ..element.solved_row import RowResults
 from ..numerics.types import Scalar, as_real
 from .rollers import approaches, contact_loads
 from .solution import RollerSolution, Solution

@@ -22,9 +22,8 @@ from ..element.frame import (
 )
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults
+from ..numerics import Result, TrustRegionNewton
 from ..numerics.labels import axes_of, to_xarray
-from ..numerics.minimise import TrustRegionNewton
-from ..numerics.result import Result
 from ..numerics.types import Number, Ring, Scalar
 from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results

@@ -13,9 +13,7 @@ from ..design import (
     rows_of,
 )
 from ..design.bearing_set import bearings_of, is_self_aligning
-from ..element.bearing_element import BearingElement
-from ..element.inertia import Speed
-from ..element.kinematics import Linearised
+from ..element import BearingElement, Linearised, Speed
 from ..numerics.units import shown_count
 from ..numerics.warning import Kind
 from . import warning_sizes as sizes

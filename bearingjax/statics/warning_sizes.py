@@ -27,8 +27,7 @@ from ..design import (
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.material import contact_modulus
-from ..element.frame import FREEDOMS, RINGS
-from ..element.kinematics import Linearised
+from ..element import FREEDOMS, RINGS, Linearised
 from ..numerics.types import array_namespace
 from .balls import above_round_off
 from .rollers import EDGE_PRESSURE

@@ -15,12 +15,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.material import Material
+from ...element import FREEDOMS, RingMotion, Speed, ball_mass
 from ...element.balls.ball import Ball
-from ...element.balls.ball_speed import ball_mass
-from ...element.frame import FREEDOMS
-from ...element.inertia import Speed, inertia_force, mass_and_inertia
+from ...element.inertia import inertia_force, mass_and_inertia
 from ...element.roller import Roller
-from ...element.rolling_element import RingMotion
 from ...numerics.linear import combine_rows
 from ...numerics.types import Scalar
 

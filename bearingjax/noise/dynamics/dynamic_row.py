@@ -14,11 +14,9 @@ import numpy as np
 
 from ...design import rows_of
 from ...design.form_error import Surfaces
-from ...element.bearing_element import BearingElement
+from ...element import BearingElement, Linearised, Row, Speed
 from ...element.frame import orbit, rotation
-from ...element.inertia import Speed
-from ...element.kinematics import Linearised
-from ...element.row import Row, RowPlacement
+from ...element.row import RowPlacement
 from ...numerics.units import unit
 from .dynamic_element import dynamic_element
 

@@ -5,13 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...design import (
-    AbstractBallBearing,
-    AbstractBearing,
-    BearingSet,
-    rows_of,
-)
-from ...design.bearing_set import SetRow
+from ...design import AbstractBallBearing, AbstractBearing, BearingSet, SetRow, rows_of
 from ..style import COLOURS, GREY, ROLLER, SMALL, Ax, Axes, axes_or_new
 from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
 

@@ -8,15 +8,12 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import finite, is_traced, of_shape, one_of, real_numbers
-from ...element.bearing_element import BearingElement, check_element
-from ...element.frame import FREEDOMS, LOADS, RINGS
-from ...element.inertia import Speed
+from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
+from ...element.bearing_element import check_element
+from ...numerics import Result, Warning, as_real
 from ...numerics.compiled.programs import program
-from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import as_real
-from ...numerics.warning import Warning
-from ...statics.linearise import OperatingPoint, linearise
-from ...statics.support import Support, restrained_freedoms
+from ...numerics.result import raise_unless_converged
+from ...statics import OperatingPoint, Support, linearise, restrained_freedoms
 from ...statics.warning_sizes import SOFTEST_SHIFT, stiffness_scale
 from .modes import speed_list
 

@@ -9,11 +9,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...design.checks import positive
+from ...numerics import Result, Warning, as_real
 from ...numerics.compiled.programs import program
-from ...numerics.result import Result
-from ...numerics.types import Number, as_real
+from ...numerics.types import Number
 from ...numerics.units import unit, units
-from ...numerics.warning import Warning
 from .continuation import (
     Arclength,
     BranchEnd,

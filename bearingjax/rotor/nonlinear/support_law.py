@@ -17,11 +17,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...contact.hertz import ellipse
-from ...design.ball import AbstractBallBearing
+from ...design import AbstractBallBearing, Material, contact_modulus
 from ...design.checks import is_traced, positive
-from ...design.material import Material, contact_modulus
-from ...element.bearing_element import BearingElement
-from ...element.frame import FREEDOMS
+from ...element import FREEDOMS, BearingElement
 from ...numerics.power import positive_power
 from ...numerics.types import Real, Scalar, as_count, as_real
 from ...numerics.units import real, unit

@@ -9,26 +9,16 @@ from typing import Any
 from ...catalogue.entry import catalogue_entry
 from ...design import AbstractBearing, BearingSet, rows_of
 from ...element import RINGS, BearingElement, ConstantAngle, Speed
-from ...files.quantity import SceneError
-from ...files.scene_file import (
-    find_scene,
-    is_scene,
-    need_float64,
-    parse_bearing,
-    shipped_scenes,
-)
+from ...files import SceneError, shipped_scenes
+from ...files.scene_file import find_scene, is_scene, need_float64, parse_bearing
 from ...files.schema import read_keys
 from ...files.table import Table
 from ...fits import FitStates
-from ...life.life import LifeConditions
-from ...life.life_warning import given_rating_warnings
-from ...numerics import TrustRegionNewton
+from ...life import LifeConditions, given_rating_warnings
+from ...numerics import TrustRegionNewton, Warning
 from ...numerics.compiled.programs import program
-from ...numerics.warning import Warning
-from ...statics.installed import Installed
-from ...statics.options import DEFAULT_TOLERANCE, SolveOptions
-from ...statics.preload import SetPreload
-from ...statics.support import Support
+from ...statics import Installed, SetPreload, SolveOptions, Support
+from ...statics.options import DEFAULT_TOLERANCE
 from .catalogue_keys import FromCatalogue
 from .leftover_keys import leftover_warnings
 from .oil import Oil, read_oil

@@ -6,8 +6,7 @@ import functools
 import jax
 
 from ...files.scene_errors import scene_errors
-from ...life.life import Life, rating_life
-from ...life.life_warning import life_warnings
+from ...life import Life, life_warnings, rating_life
 from ...numerics.warning import Warning
 from ...statics.solution import Solution
 from ...statics.warning import solution_warnings

@@ -18,9 +18,8 @@ from ...files.scene_errors import scene_errors
 from ...life.life import LIFE_OUTPUTS, turns_against_load
 from ...life.rating import Ratings, ratings
 from ...life.reference_life import exponents_of
-from ...numerics.result import Result
+from ...numerics import Result, Warning
 from ...numerics.units import shown_count
-from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import CASES_SHOWN, NEWTONS, Column, Grid, Part, Report
 from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published

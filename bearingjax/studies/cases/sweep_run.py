@@ -7,10 +7,8 @@ from typing import Any
 import jax
 import numpy as np
 
-from ...cases.batches import Batches
-from ...cases.cases import Cases
+from ...cases import Batches, Cases, Sweep, sweep
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
-from ...cases.sweep import Sweep, sweep
 from ...cases.sweep_program import not_run
 from ...cases.sweep_table import columns
 from ...design import rows_of

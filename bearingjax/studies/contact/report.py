@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 
 from ...contact.slices import SliceComparison, compared_warnings
-from ...numerics.result import Result
+from ...numerics import Result, Warning
 from ...numerics.units import shown_count
-from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Report
 from .read import ContactScene

@@ -15,8 +15,7 @@ from ...files.scene_errors import problem_of
 from ...files.schema import read_keys
 from ...files.table import Table
 from ...numerics.compiled.programs import program
-from ...statics.refine import refine
-from ...statics.solution import Solution
+from ...statics import Solution, refine
 from ...statics.warning import solution_warnings
 from ..bearing.read_scene import Scene
 from .read import ContactNumericsKeys, ContactOperatingKeys, ContactScene

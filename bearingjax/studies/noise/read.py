@@ -9,8 +9,7 @@ import numpy as np
 
 from ...design import FormErrors, rows_of
 from ...design.bearing_set import bearings_of, with_bearings
-from ...element import FREEDOMS, RINGS
-from ...element.bearing_element import BearingElement
+from ...element import FREEDOMS, RINGS, BearingElement
 from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
 from ...files.schema import Keys, direction_json, key_of, read_keys, scene_key

@@ -4,15 +4,14 @@ import contextlib
 import dataclasses
 from typing import Any
 
-from ...design import rows_of
-from ...design.tolerance import (
+from ...design import (
     BALL_GRADES,
-    ELEMENT_GRADES,
     ROLLER_GRADES,
     TOLERANCE_CLASSES,
-    element_grade,
+    rows_of,
     running_accuracy,
 )
+from ...design.tolerance import ELEMENT_GRADES, element_grade
 from ...files.schema import Keys, key_of, scene_key
 from ...fits import Mounting
 from ...noise import RandomWaves, Tolerances

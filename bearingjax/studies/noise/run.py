@@ -43,9 +43,8 @@ from ...noise import (
 )
 from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
+from ...numerics import Result, Warning
 from ...numerics.labels import labelled_fields, make_dataset
-from ...numerics.result import Result
-from ...numerics.warning import Warning
 from .scene import NoiseScene
 
 LARGEST_LINES = 12

@@ -6,9 +6,8 @@ import numpy as np
 
 from ...numerics.units import CELSIUS, display_unit, shown_count, unit_of
 from ...numerics.warning import Warning, warnings_of
-from ...optimise.design_problem import Outcome
-from ...optimise.measure import AbstractMeasure, EdgeLoad, label_of
-from ...optimise.optimise import OptimisedDesign
+from ...optimise import EdgeLoad, OptimisedDesign, Outcome
+from ...optimise.measure import AbstractMeasure, label_of
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Report
 from ..bearing.read_scene import Scene

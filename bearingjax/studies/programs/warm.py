@@ -6,16 +6,14 @@ import numpy as np
 
 from ...catalogue import catalogue_entries, catalogue_entry
 from ...design import bearing_of
-from ...element.bearing_element import BearingElement
-from ...element.inertia import Speed
+from ...element import BearingElement, Speed
 from ...life.life import LifeConditions, rating_life
 from ...numerics.compiled.programs import n_compiled
 from ...numerics.compiled.structure import structure
 from ...numerics.types import as_real
+from ...statics import SolveOptions, solve_load
 from ...statics.empty_places import with_empty_places
-from ...statics.load import solve_load
 from ...statics.load_result import solution_at
-from ...statics.options import SolveOptions
 
 
 def kinds_of_catalogue(

@@ -15,8 +15,7 @@ from ...files.table import Table, not_among
 from ...numerics.warning import Warning, warnings_of
 from ...rotor import BearingSupport, Housing, Shaft, Unbalance
 from ...rotor.nonlinear import CubicExpansion, FixedAngle, MovingAngle
-from ...statics import restrained_freedoms
-from ...statics.installed import Installed
+from ...statics import Installed, restrained_freedoms
 from ..bearing.placed_bearing import bearing_inputs, read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene, scene_of
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from ...element import Speed
 from ...files.scene_errors import scene_errors
-from ...life.life import Life, rating_life
-from ...life.life_warning import life_warnings
+from ...life import Life, life_warnings, rating_life
 from ...numerics.labels import to_xarray
 from ...numerics.result import Result, SolveError
 from ...numerics.types import as_array

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...element import Speed
-from ...element.frame import LOADS
+from ...element import LOADS, Speed
 from ...files.schema import Keys, key_of, scene_key
 from ...skid import (
     Drag,

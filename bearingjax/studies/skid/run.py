@@ -8,14 +8,13 @@ import numpy as np
 
 from ... import skid
 from ...files.scene_errors import scene_errors
+from ...numerics import Result, Warning
 from ...numerics.labels import (
     LabelledArray,
     array_fields,
     labelled_fields,
     make_dataset,
 )
-from ...numerics.result import Result
-from ...numerics.warning import Warning
 from ...skid import conditions, rest_state, skid_warnings
 from ...statics.warning import solution_warnings
 from .read import SkidScene
