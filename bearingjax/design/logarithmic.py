@@ -7,7 +7,7 @@ import jax.numpy as jnp
 
 from ..numerics.types import Number, Real, Reals, Scalar
 from ..numerics.units import real
-from .checks import check_fields, in_range
+from .checks import in_range
 from .profile import AbstractProfile
 
 STEEL_MODULUS = 206e9 / (2.0 * (1.0 - 0.3**2))
@@ -31,9 +31,6 @@ class Logarithmic(AbstractProfile):
     coefficient: Real = eqx.field(
         **real("1", "coefficient of the logarithm", above=0), default=0.00035
     )
-
-    def __check_init__(self):
-        check_fields(self)
 
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return self.coefficient * diameter * _log_one_over(2.0 * position / length, 1.0)
@@ -60,9 +57,6 @@ class Lundberg(AbstractProfile):
     contact_modulus: Real = eqx.field(
         **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
-
-    def __check_init__(self):
-        check_fields(self)
 
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -94,9 +88,6 @@ class JohnsGohar(AbstractProfile):
     contact_modulus: Real = eqx.field(
         **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
-
-    def __check_init__(self):
-        check_fields(self)
 
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         unit = self.design_load / (jnp.pi * length * self.contact_modulus)
@@ -135,9 +126,6 @@ class FujiwaraKawase(AbstractProfile):
     contact_modulus: Real = eqx.field(
         **real("Pa", "E* of the pair", above=0), default=STEEL_MODULUS
     )
-
-    def __check_init__(self):
-        check_fields(self)
 
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         load = self.load_factor * self.design_load

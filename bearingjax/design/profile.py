@@ -36,6 +36,9 @@ class AbstractProfile(eqx.Module):
     """Whether the drop may be negative somewhere: no roller then counts as open because
     the straight line between its raceways is."""
 
+    def __check_init__(self):
+        check_fields(self)
+
     @abc.abstractmethod
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         """Material removed, measured along the normal of the straight generator.
@@ -127,9 +130,6 @@ class CircularCrown(AbstractProfile):
 
     crown_radius: Real = eqx.field(**real("m", "radius of the arc", above=0))
 
-    def __check_init__(self):
-        check_fields(self)
-
     def drop(self, position: Reals, length: Number, diameter: Number) -> Reals:
         return sagitta(position, self.crown_radius)
 
@@ -169,7 +169,6 @@ class CrownedEnds(AbstractProfile):
     )
 
     def __check_init__(self):
-        check_fields(self)
         if (self.dub_off_length is None) != (self.dub_off_radius is None):
             raise ValueError(
                 "CrownedEnds: `dub_off_length` and `dub_off_radius` go together; one of"

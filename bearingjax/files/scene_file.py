@@ -88,18 +88,15 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
         SceneError: As `parse_scene`; if it is the scene of one contact or of a rotor.
     """
     data = parse_scene(path, settings)
-    if is_contact(data):
-        problem = "is the scene of one contact, a [roller] on a [raceway], not of a"
-        cure = f"`bearingjax contact {path.stem}` solves it"
-        raise SceneError(f"{path.name}: {problem} [bearing]; {cure}")
-    if is_rotor(data):
-        problem = "is the scene of a [rotor], not of a [bearing]"
-        cure = f"`bearingjax rotor {path.stem}` solves it"
-        raise SceneError(f"{path.name}: {problem}; {cure}")
-    if is_shafts(data):
-        problem = "is the scene of a system of shafts, not of a [bearing]"
-        cure = f"`bearingjax shaft {path.stem}` solves it"
-        raise SceneError(f"{path.name}: {problem}; {cure}")
+    for is_it, command, what in (
+        (is_contact, "contact", "one contact, a [roller] on a [raceway]"),
+        (is_rotor, "rotor", "a [rotor]"),
+        (is_shafts, "shaft", "a system of shafts"),
+    ):
+        if is_it(data):
+            problem = f"is the scene of {what}, not of a [bearing]"
+            cure = f"`bearingjax {command} {path.stem}` solves it"
+            raise SceneError(f"{path.name}: {problem}; {cure}")
     return data
 
 

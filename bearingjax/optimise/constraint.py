@@ -25,12 +25,8 @@ class Constraint(eqx.Module):
     """
 
     measure: Any
-    lower: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
-    )
-    upper: Scalar | None = eqx.field(
-        converter=lambda x: None if x is None else as_real(x), default=None
-    )
+    lower: Scalar | None = eqx.field(converter=as_real, default=None)
+    upper: Scalar | None = eqx.field(converter=as_real, default=None)
 
     def __check_init__(self):
         of_class(self, "measure", self.measure, Callable, _A_MEASURE)

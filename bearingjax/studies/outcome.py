@@ -86,6 +86,22 @@ class Tools:
     until_written: Callable[[Any], Any]
 
 
+def picture(name: str, *given: Any, **more: Any) -> Draw:
+    """Return a function that draws a plot, which is imported only then: for seconds.
+
+    Args:
+        name: Name of the function in `bearingjax.plot`.
+        given, more: Its arguments.
+    """
+
+    def draw():
+        from .. import plot
+
+        return getattr(plot, name)(*given, **more)
+
+    return draw
+
+
 class Stage:
     """Display of the current stage of a run on standard error.
 

@@ -16,9 +16,10 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.element import BallKinematics
+from bearingjax.report.json_output import write_numbers
 from bearingjax.studies.bearing.read_scene import Scene
 from bearingjax.studies.bearing.solved import SolvedScene
-from bearingjax.studies.solve.output import solution_json, write_json
+from bearingjax.studies.solve.output import solution_json
 from bearingjax.studies.solve.report import report
 from bearingjax.studies.solve.run import run_scene
 
@@ -199,7 +200,7 @@ def test_edge_load_is_a_warning(rig):
 
 def test_json_is_the_dictionary(taper, tmp_path):
     path = tmp_path / "out.json"
-    write_json(path, taper.found)
+    write_numbers(path, solution_json(taper.found))
     text = path.read_text(encoding="utf-8")
     assert text.endswith("}\n")
     assert json.loads(text) == taper.numbers
@@ -210,7 +211,7 @@ def test_json_without_solution_omits_numbers(pulled, tmp_path):
     assert pulled.numbers["result"] == "no_load_path"
     assert pulled.numbers["message"].startswith("No load path in uz of the inner ring")
     assert pulled.numbers["warnings"] == []
-    write_json(tmp_path / "out.json", pulled.found)
+    write_numbers(tmp_path / "out.json", solution_json(pulled.found))
     read = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
     assert read == pulled.numbers
 
@@ -220,7 +221,7 @@ def test_json_has_null_for_nan(tmp_path):
     assert {*solved.numbers} == WORDS | SEARCH
     assert solved.numbers["result"] == "non_finite"
     assert solved.numbers["residual"] is None
-    write_json(tmp_path / "out.json", solved.found)
+    write_numbers(tmp_path / "out.json", solution_json(solved.found))
 
 
 ROW = re.compile(r"^ +(\d+) +(-?[\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+)(.*)$")

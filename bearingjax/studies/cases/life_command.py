@@ -4,7 +4,7 @@ import dataclasses
 from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 from ..solve.solution_outcome import solution_outcome
 
 
@@ -65,24 +65,19 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
     done, scene = run_life(table, tools.shown), table.scene
     solved = done.converged
 
-    def draw():
-        from ...plot import life_overview
-
-        return life_overview(done, title=scene.name)
-
-    def draw_bearing():
-        from ...plot import drawing
-
-        return drawing(scene.running().bearing, scene.name)
-
+    pictures = {
+        "Lives and damage of the cases": picture(
+            "life_overview", done, title=scene.name
+        )
+    }
     return Outcome(
         scene.name,
         table.inputs,
         lambda: spectrum_as_dict(done),
         spectrum_report(done) if solved else None,
         lambda: life_columns(done),
-        {"Lives and damage of the cases": draw} if solved else {},
-        draw_bearing,
+        pictures if solved else {},
+        lambda: picture("drawing", scene.running().bearing, scene.name)(),
         page=lambda: spectrum_page(done),
         table_on_page=True,
         problems=[] if solved else [done.failure_message],

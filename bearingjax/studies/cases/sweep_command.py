@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import jax_settings
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 from ..outputs import check_table
 from ..status import NOT_SOLVED, SOLVED
 
@@ -72,11 +72,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         solved = run_cases(table, tools.shown, interrupt)
     seconds = time.perf_counter() - begin
 
-    def draw():
-        from ...plot import sweep_overview
-
-        return sweep_overview(solved, design_columns(table), table.scene.name)
-
+    drawn = solved, design_columns(table), table.scene.name
+    pictures = {"Results over the cases": picture("sweep_overview", *drawn)}
     left = int((np.asarray(solved.result) == Result.NOT_RUN).sum())
     lost = int((~solved.converged).sum())
 
@@ -97,8 +94,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         table.inputs,
         lambda: sweep_as_dict(table, solved),
         sweep_report(table, solved, seconds),
-        lambda: sweep_table.columns(solved, design_columns(table)),
-        {"Results over the cases": draw} if solved.converged.any() else {},
+        lambda: sweep_table.columns(*drawn[:2]),
+        pictures if solved.converged.any() else {},
         table_on_page=True,
         problems=[words] if lost else [],
         interrupted=conclude,

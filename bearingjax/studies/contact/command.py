@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 from ..solve.solution_outcome import why_unsolved
 
 
@@ -69,15 +69,12 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         cases = run_contact(scene)
     lost = _why_lost(scene, cases)
 
-    def draw():
-        from ...plot import contact_overview
-
-        return contact_overview(
-            [case.solution for case in cases],
-            [case.slices for case in cases],
-            title=scene.name,
-        )
-
+    draw = picture(
+        "contact_overview",
+        [case.solution for case in cases],
+        [case.slices for case in cases],
+        title=scene.name,
+    )
     none = len(lost) == len(cases)
     warned = contact_warnings(scene, cases) if none else []
     return Outcome(

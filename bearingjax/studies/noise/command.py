@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 
 
 def add(commands: Commands) -> ArgumentParser:
@@ -52,11 +52,6 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     done = run_noise(task, tools.stage)
     solved = done.converged
 
-    def draw():
-        from ...plot import noise_overview
-
-        return noise_overview(done, title=task.name)
-
     def write_sound(path):
         full = write_noise_sound(path, done)
         return f"{options.wav}: full scale is {full:.4g} m/s²"
@@ -67,7 +62,9 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         lambda: noise_as_dict(done),
         noise_report(done) if solved else None,
         (lambda: noise_columns(done)) if solved else None,
-        {"Overview": draw} if solved else {},
+        {"Overview": picture("noise_overview", done, title=task.name)}
+        if solved
+        else {},
         sound=write_sound if solved else None,
         problems=[] if solved else [f"{done.result.label}: {done.message}"],
     )

@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from functools import partial
 
 from ..options import Commands, add_plot, add_report, add_scene
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 
 
 def add(commands: Commands) -> ArgumentParser:
@@ -52,22 +52,14 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     if solved and alone:
         best = with_set_preload(best)
 
-    def draw():
-        from ...plot import optimise_overview
-
-        return optimise_overview(found, title=name)
-
-    def draw_bearing():
-        from ...plot import drawing
-
-        return drawing(element_of(found.element).bearing, f"{name}, optimised")
-
+    pictures = {"Before and after": picture("optimise_overview", found, title=name)}
+    bearing = element_of(found.element).bearing if alone else None
     return Outcome(
         name,
         inputs,
         lambda: optimisation_as_dict(task, found, best),
         optimisation_report(task, found, best) if solved else None,
-        pictures={"Before and after": draw} if solved else {},
-        drawing=draw_bearing if alone else None,
+        pictures=pictures if solved else {},
+        drawing=picture("drawing", bearing, f"{name}, optimised") if alone else None,
         problems=[] if solved else [f"{found.result}: {found.message}"],
     )

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 
 
 def add(commands: Commands) -> ArgumentParser:
@@ -43,11 +43,6 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     series = None if options.table is None else rotor_series(task, options.series)
     done = run_rotor(task, tools.stage)
 
-    def draw():
-        from ...plot import rotor_overview
-
-        return rotor_overview(done, title=task.name)
-
     settled = done.settled is not None
     columns = {} if series is None else rotor_columns(done, series)
     return Outcome(
@@ -56,7 +51,9 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         lambda: rotor_as_dict(done),
         rotor_report(done) if settled else None,
         (lambda: columns) if columns else None,
-        {"Overview": draw} if settled else {},
+        {"Overview": picture("rotor_overview", done, title=task.name)}
+        if settled
+        else {},
         problems=[
             f"{failure.result.label}: {failure.part}: {failure.message}"
             for failure in done.failures

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 
 
 def add(commands: Commands) -> ArgumentParser:
@@ -36,18 +36,15 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     done = run_shafts(task, tools.stage)
     solved = bool(done.bearings)
 
-    def draw():
-        from ...plot import shaft_overview
-
-        return shaft_overview(done, title=task.name)
-
     return Outcome(
         task.name,
         task.inputs,
         lambda: shafts_as_dict(done),
         shaft_report(done) if solved else None,
         (lambda: shaft_columns(done)) if done.converged else None,
-        {"Overview": draw} if solved else {},
+        {"Overview": picture("shaft_overview", done, title=task.name)}
+        if solved
+        else {},
         page=lambda: shaft_page(done),
         problems=[done.problem] if done.problem else [],
     )

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools
+from ..outcome import Outcome, Tools, picture
 
 
 def add(commands: Commands) -> ArgumentParser:
@@ -37,11 +37,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     task = read_skid(options.scene, options.set, steady=options.steady)
     done = run_skid(task, shown=tools.shown)
 
-    def draw():
-        from ...plot import skid_overview
-
-        return skid_overview(task.model, done.found, done.state, title=task.name)
-
+    shown = task.model, done.found, done.state
     solved = done.converged
     return Outcome(
         task.name,
@@ -49,6 +45,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         lambda: skid_as_dict(done),
         skid_report(done) if solved else None,
         (lambda: skid_columns(done)) if done.has_numbers else None,
-        {"Overview": draw} if solved else {},
+        {"Overview": picture("skid_overview", *shown, title=task.name)}
+        if solved
+        else {},
         problems=[] if solved else [f"{done.result.label}: {skid_message(done)}"],
     )

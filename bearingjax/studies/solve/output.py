@@ -1,11 +1,10 @@
 """Output of a solution as JSON, in SI."""
 
-from pathlib import Path
 from typing import Any
 
 from ...numerics.labels import array_fields
 from ...numerics.result import Result
-from ...report.json_output import run_json, to_json, write_numbers
+from ...report.json_output import run_json, to_json
 from ..bearing.fit_report import fit_as_dict, preload_as_dict
 from ..bearing.life_report import life_as_dict
 from ..bearing.oil import oil_as_dict
@@ -122,12 +121,3 @@ def _numbers(solution) -> dict[str, Any]:
     if (moving := getattr(solution, "kinematics", None)) is not None:
         numbers |= {name: getattr(moving, field) for name, field in KINEMATICS.items()}
     return to_json(numbers)
-
-
-def write_json(path: str | Path, found: SolvedScene) -> None:
-    """Write `solution_json` to a file.
-
-    Raises:
-        OSError: If the file cannot be written.
-    """
-    write_numbers(path, solution_json(found))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from ..outcome import Outcome
+from ..outcome import Outcome, picture
 
 
 def solution_outcome(
@@ -24,18 +24,9 @@ def solution_outcome(
     solution = found.solution
     full_report = report(found) if found.converged else None
 
-    def draw():
-        from ...plot import overview
-
-        return overview(solution.element.bearing, solution, title=scene.name)
-
-    def draw_bearing():
-        from ...plot import drawing
-
-        # Mounted and preloaded if given in the scene.
-        element = solution.element if found.converged else scene.element
-        return drawing(element.bearing, scene.name)
-
+    # Mounted and preloaded if given in the scene.
+    bearing = (solution if found.converged else scene).element.bearing
+    draw = picture("overview", bearing, solution, title=scene.name)
     return Outcome(
         scene.name,
         scene.inputs,
@@ -45,7 +36,7 @@ def solution_outcome(
         else full_report.with_sections(brief),
         page=None if full_report is None else lambda: full_report,
         pictures={"Section, load zone, contacts": draw} if found.converged else {},
-        drawing=draw_bearing,
+        drawing=picture("drawing", bearing, scene.name),
         problems=[] if found.converged else [why_unsolved(found)],
     )
 
