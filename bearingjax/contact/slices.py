@@ -4,12 +4,11 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
-from jaxtyping import Array, Float
 
 from ..numerics import ContactMapped, Result, Warning, as_real
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
-from ..numerics.types import Number, Scalar
+from ..numerics.types import Number, Scalar, Vector
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
 from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
@@ -37,8 +36,8 @@ class Slices(eqx.Module):
     """
 
     approach: Scalar
-    line_load: Float[Array, " n"]
-    pressure: Float[Array, " n"]
+    line_load: Vector
+    pressure: Vector
 
     @property
     def peak_pressure(self) -> Scalar:
@@ -51,7 +50,7 @@ def slices(
     contact: RollerContact,
     load: Number,
     tilt: Number,
-    position: Float[Array, " n"],
+    position: Vector,
     law: AbstractLineLaw | None = None,
 ) -> Slices:
     """Return the solution of independent slices.

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Real, Reals, Scalar, as_real
+from ..numerics.types import Real, Reals, Scalar, Vector, as_real
 from ..numerics.units import real, unit
 from .abstract import AbstractBearing
 from .checks import all_of_class, check, finite, instance, is_real, is_traced, must_be
@@ -41,7 +41,7 @@ class Surface(NamedTuple):
     half_width: Annotated[Scalar | None, unit("m")] = None
     pressure: Scalar | None = None
 
-    def bridged_share(self, order: Float[Array, " n"]) -> Float[Array, " n"]:
+    def bridged_share(self, order: Vector) -> Vector:
         """Share of waves that acts on a contact, the mean over its pressure (n,) [1].
 
         Args:

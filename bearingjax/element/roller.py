@@ -13,7 +13,7 @@ from ..contact.line_contact import expansion
 from ..numerics import AbstractQuadrature, positive_power
 from ..numerics.expansion import Expansion, compose
 from ..numerics.linear import norm, solve
-from ..numerics.types import Number, Reals, Scalar
+from ..numerics.types import Number, Reals, Scalar, Vector
 from .constants import ContactConstants
 from .energy import roller_energy
 from .frame import section_matrix
@@ -155,7 +155,7 @@ class RollerSearchHints(SearchHints):
     def may_be_ejected(self) -> bool:
         return not self.element.geometry.is_linear or super().may_be_ejected
 
-    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
+    def is_ejected(self, rings: Any, x: Vector) -> Bool[Array, ""]:
         gone = super().is_ejected(rings, x)
         if self.element.geometry.is_linear:
             return gone
@@ -175,7 +175,7 @@ class RollerSearchHints(SearchHints):
         open_ = jnp.all(at.raceway[:, 0] + jnp.abs(at.raceway[:, 1]) <= 0)
         return open_ if at.rib is None else open_ & jnp.all(at.rib <= 0)
 
-    def start(self, rings: Any) -> Float[Array, " n"]:
+    def start(self, rings: Any) -> Vector:
         element, midway = self.element, self._aligned_start(rings)
         if element.body_force is None:
             return midway

@@ -16,11 +16,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.expansion import Expansion, expand
-from ..numerics.types import Reals, Scalar
+from ..numerics.types import Reals, Scalar, Vector
 from ..numerics.units import units
 from .search_hints import SearchHints
 
-Unknowns = Float[Array, " n"]
+Unknowns = Vector
 
 
 class RingMotion(NamedTuple):

@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..numerics.compiled import batched_loop
 from ..numerics.linear import dot
-from ..numerics.types import Number, Scalar
+from ..numerics.types import Number, Scalar, Vector
 
 
 class SearchHints(eqx.Module):
@@ -54,7 +54,7 @@ class SearchHints(eqx.Module):
         """Size of the inertia forces [N], or `None` if there are none."""
         return None
 
-    def midpoint(self, rings: Any) -> Float[Array, " n"]:
+    def midpoint(self, rings: Any) -> Vector:
         """Position given by the rings, where the tether holds the element (n,) [m]."""
         return jnp.zeros((self.element.n_unknowns,), rings.outer.dtype)
 
@@ -68,11 +68,11 @@ class SearchHints(eqx.Module):
         """
         return None
 
-    def start(self, rings: Any) -> Float[Array, " n"]:
+    def start(self, rings: Any) -> Vector:
         """Start of the search for the equilibrium (n,) [m]."""
         return self.midpoint(rings)
 
-    def at_rest(self, rings: Any) -> tuple[Float[Array, " n"], Bool[Array, ""]] | None:
+    def at_rest(self, rings: Any) -> tuple[Vector, Bool[Array, ""]] | None:
         """Place where inertia lays the element in one ring, if the other one is apart.
 
         It is then the equilibrium but for round-off, and the search starts there,
@@ -106,13 +106,7 @@ class SearchHints(eqx.Module):
         """Whether `correct_step` saves time. Static."""
         return False
 
-    def correct_step(
-        self,
-        rings: Any,
-        x: Float[Array, " n"],
-        step: Float[Array, " n"],
-        size: Scalar,
-    ) -> Float[Array, " n"]:
+    def correct_step(self, rings: Any, x: Vector, step: Vector, size: Scalar) -> Vector:
         """Improve a step of x, from the known state of the contacts.
 
         Args:
@@ -135,7 +129,7 @@ class SearchHints(eqx.Module):
         """Whether `is_ejected` needs to be evaluated. Static."""
         return self.inertia_scale() is not None
 
-    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
+    def is_ejected(self, rings: Any, x: Vector) -> Bool[Array, ""]:
         """Whether inertia has moved the element to where no contact can hold it."""
         off = x - self.midpoint(rings)
         return dot(off, off) > (10.0 * self.element.diameter) ** 2

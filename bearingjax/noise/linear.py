@@ -23,7 +23,7 @@ from jaxtyping import Array, Complex, Float, Int
 from ..design.checks import check, of_class, real_numbers
 from ..numerics.compiled.programs import program
 from ..numerics.lapack import solve_any
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, Square, Vector, as_real
 from ..numerics.units import unit, units
 from .model import NoiseModel
 from .natural import contact_stiffness
@@ -45,9 +45,9 @@ class LinearModel(NamedTuple):
         result: `Result` code of the place at which it is.
     """
 
-    mass: Annotated[Float[Array, " n"], units("kg", "kg m²")]
-    stiffness: Annotated[Float[Array, "n n"], units("N/m", "N", "N m")]
-    damping: Annotated[Float[Array, "n n"], units("N s/m", "N s", "N m s")]
+    mass: Annotated[Vector, units("kg", "kg m²")]
+    stiffness: Annotated[Square, units("N/m", "N", "N m")]
+    damping: Annotated[Square, units("N s/m", "N s", "N m s")]
     push: Annotated[Float[Array, "n element 2 3"], units("N/m", "N")]
     retardation: Annotated[Scalar, unit("s")]
     result: Int[Array, ""]

@@ -23,6 +23,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.lapack import eigh
+from ..numerics.types import Square, Vector
 from ..numerics.units import unit, units
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -56,9 +57,7 @@ class NaturalModes(NamedTuple):
     to_xarray = to_xarray
 
 
-def contact_stiffness(
-    system: NoiseSystem, motion: Float[Array, " n"]
-) -> Float[Array, "n n"]:
+def contact_stiffness(system: NoiseSystem, motion: Vector) -> Square:
     """Return the second derivatives of the energy of all contacts [N/m, N, N m].
 
     Args:
@@ -70,7 +69,7 @@ def contact_stiffness(
     return 0.5 * (k + k.T)
 
 
-def stiffness(system: NoiseSystem, motion: Float[Array, " n"]) -> Float[Array, "n n"]:
+def stiffness(system: NoiseSystem, motion: Vector) -> Square:
     """Return `contact_stiffness` plus the stiffness of the sensor."""
     k = contact_stiffness(system, motion)
     if system.sensor is None:

@@ -3,13 +3,13 @@
 import dataclasses
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Int
 
 from ..element.balls.ball_speed import CentrifugalOnly
 from ..numerics.implicit import stop_gradient
 from ..numerics.linear import combine_rows
 from ..numerics.result import Result
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, Vector
 from .dynamics.element_positions import ElementPositions
 from .dynamics.system import NoiseSystem
 from .model import NoiseModel
@@ -21,7 +21,7 @@ _CARRIES = 1e-7
 
 def static_start(
     model: NoiseModel, system: NoiseSystem, orbits: bool = True
-) -> tuple[Float[Array, " n"], Int[Array, ""]]:
+) -> tuple[Vector, Int[Array, ""]]:
     """Return the equilibrium of ring and elements under load, without form errors.
 
     The inertia of the orbit acts as it does in the equations of motion.

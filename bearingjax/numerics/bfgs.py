@@ -4,11 +4,11 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from .compiled.batched_loop import Either
 from .linear import norm
 from .minimise import AbstractMinimiser, Problem, State, first_state
+from .types import Square, Vector
 
 
 class BFGS(AbstractMinimiser):
@@ -76,9 +76,7 @@ class BFGS(AbstractMinimiser):
         return Either(accept, taken, stayed)
 
 
-def inverse_update(
-    inverse: Float[Array, "n n"], s: Float[Array, " n"], z: Float[Array, " n"]
-) -> Float[Array, "n n"]:
+def inverse_update(inverse: Square, s: Vector, z: Vector) -> Square:
     """Inverse BFGS update: maps z to s, symmetric, positive definite if s·z > 0.
 
     Args:

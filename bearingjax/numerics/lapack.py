@@ -17,6 +17,8 @@ from jax import lax
 from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Complex, Float, Inexact
 
+from .types import Square
+
 _PADE = [math.comb(13, k) / math.perm(26, k) for k in range(14)]
 """Coefficients of the Padé approximant of order 13 of the exponential [1]."""
 _PADE_REACH = 5.37
@@ -118,7 +120,7 @@ def solve_any(
 
 
 @jax.custom_jvp
-def cholesky(matrix: Float[Array, "n n"]) -> Float[Array, "n n"]:
+def cholesky(matrix: Square) -> Square:
     """Lower triangular L of A = L Lᵀ [root of the unit]; NaN if there is none.
 
     Args:
@@ -138,9 +140,7 @@ def _cholesky_rule(primals, tangents):
 _factor = one_by_one(jnp.linalg.cholesky)
 
 
-def congruent(
-    factor: Float[Array, "n n"], matrix: Float[Array, "n n"]
-) -> Float[Array, "n n"]:
+def congruent(factor: Square, matrix: Square) -> Square:
     """L⁻¹ A L⁻ᵀ: a matrix in coordinates in which L Lᵀ is one.
 
     Args:
@@ -151,7 +151,7 @@ def congruent(
     return solve_any(factor, half.T, "lower").T
 
 
-def determinant_sign(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
+def determinant_sign(matrix: Square) -> Float[Array, ""]:
     """Sign of the determinant [1]; it has no derivative."""
     return _sign(lax.stop_gradient(matrix))
 
@@ -219,7 +219,7 @@ _eigh = one_by_one(lambda matrix: tuple(jnp.linalg.eigh(matrix)))
 
 
 def eig(
-    matrix: Float[Array, "n n"],
+    matrix: Square,
 ) -> tuple[Complex[Array, " n"], Complex[Array, "n n"], Complex[Array, "n n"]]:
     """Eigenvalues of any matrix, left and right unit vectors, column by column.
 
@@ -235,7 +235,7 @@ _eig = one_by_one(lambda matrix: tuple(lax.linalg.eig(matrix)))
 
 
 @jax.custom_jvp
-def eigvals(matrix: Float[Array, "n n"]) -> Complex[Array, " n"]:
+def eigvals(matrix: Square) -> Complex[Array, " n"]:
     """Eigenvalues of any matrix, in no order; on processors only.
 
     They have first derivatives; where several are the same, those of a mixture.

@@ -11,13 +11,13 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .lapack import solve_any
-from .types import Reals, array_namespace
+from .types import Reals, Square, Vector, array_namespace
 
 _WRITTEN_OUT = 8
 """Most unknowns of a system that is written out."""
 
 
-def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
+def dot(a: Vector, b: Vector) -> Float[Array, ""]:
     """a · b.
 
     Args:
@@ -26,7 +26,7 @@ def dot(a: Float[Array, " n"], b: Float[Array, " n"]) -> Float[Array, ""]:
     return _sum(a * b)
 
 
-def norm(a: Float[Array, " n"]) -> Float[Array, ""]:
+def norm(a: Vector) -> Float[Array, ""]:
     """|a| [unit of a]."""
     return jnp.sqrt(dot(a, a))
 
@@ -42,19 +42,17 @@ def lengths(vectors: Any) -> Any:
     return xp.where(none, 0.0, xp.sqrt(xp.where(none, 1.0, squares)))
 
 
-def combine_rows(
-    rows: Float[Array, "n m"], shares: Float[Array, " n"]
-) -> Float[Array, " m"]:
+def combine_rows(rows: Float[Array, "n m"], shares: Vector) -> Float[Array, " m"]:
     """Σ shares_i rows_i, for a few rows [any unit]."""
     return _sum(rows * shares[:, None])
 
 
-def quadratic(matrix: Float[Array, "n n"], a: Float[Array, " n"]) -> Float[Array, ""]:
+def quadratic(matrix: Square, a: Vector) -> Float[Array, ""]:
     """aᵀ M a, for a symmetric M."""
     return dot(a, _sum(matrix * a[:, None]))
 
 
-def trace(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
+def trace(matrix: Square) -> Float[Array, ""]:
     """Sum of the diagonal."""
     return _sum(_diagonal(matrix))
 
@@ -67,12 +65,12 @@ def _sum(terms: Float[Array, "n ..."]) -> Reals:
     return sum((terms[i] for i in range(1, n)), start=terms[0])
 
 
-def _diagonal(matrix: Float[Array, "n n"]) -> Float[Array, " n"]:
+def _diagonal(matrix: Square) -> Vector:
     return jnp.stack([matrix[i, i] for i in range(matrix.shape[0])])
 
 
 def solve_symmetric(
-    matrix: Float[Array, "n n"], rhs: Float[Array, "n ..."]
+    matrix: Square, rhs: Float[Array, "n ..."]
 ) -> Float[Array, "n ..."]:
     """Solve a symmetric positive (semi)definite system, L D Lᵀ with unit scaling.
 
@@ -92,7 +90,7 @@ def solve_symmetric(
 
 
 def solve(
-    matrix: Float[Array, "n n"], rhs: Float[Array, "n ..."], symmetric: bool = True
+    matrix: Square, rhs: Float[Array, "n ..."], symmetric: bool = True
 ) -> Float[Array, "n ..."]:
     """Solve by `solve_symmetric`, or by elimination without pivoting if unsymmetric.
 
@@ -150,7 +148,7 @@ def _solve_scaled(matrix, rhs):
     return sizes * solve_any(scaled, sizes * rhs)
 
 
-def null_space(matrix: Float[Array, "n n"]) -> Float[Array, "n n"]:
+def null_space(matrix: Square) -> Square:
     """Projector on the directions that a matrix does not hold, (n, n) [1].
 
     Zero if it holds all. It is not to be differentiated.
@@ -171,7 +169,7 @@ def null_space(matrix: Float[Array, "n n"]) -> Float[Array, "n n"]:
     return share
 
 
-def smallest_pivot(matrix: Float[Array, "n n"]) -> Float[Array, ""]:
+def smallest_pivot(matrix: Square) -> Float[Array, ""]:
     """Smallest pivot of the matrix scaled to a unit diagonal [1].
 
     Negative beyond round-off: the matrix is indefinite.

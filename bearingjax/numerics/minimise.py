@@ -19,7 +19,7 @@ from jaxtyping import Array, Bool, Float, Int
 from .compiled.batched_loop import Either, Loop
 from .linear import dot, norm, quadratic, solve, trace
 from .result import Result
-from .types import Reals
+from .types import Reals, Vector
 from .units import unit
 
 
@@ -38,7 +38,7 @@ class Evaluation(NamedTuple):
     """
 
     value: Annotated[Float[Array, ""], unit("J")]
-    gradient: Annotated[Float[Array, " n"], unit("J/unit of x")]
+    gradient: Annotated[Vector, unit("J/unit of x")]
     hessian: Reals
     scale: Float[Array, ""]
     noise: Float[Array, ""]
@@ -46,9 +46,7 @@ class Evaluation(NamedTuple):
 
 
 Function = Callable[..., Evaluation]
-Shape = Callable[
-    [Float[Array, " n"], Float[Array, " n"], Float[Array, ""]], Float[Array, " n"]
-]
+Shape = Callable[[Vector, Vector, Float[Array, ""]], Vector]
 
 
 class Problem(NamedTuple):
@@ -76,13 +74,13 @@ class Problem(NamedTuple):
     """
 
     function: Function
-    start: Float[Array, " n"]
+    start: Vector
     radius: Float[Array, ""]
     shape: Shape | None = None
     memory: Any = ()
-    direction: Float[Array, " n"] | None = None
+    direction: Vector | None = None
     limit: Float[Array, ""] | None = None
-    force: Annotated[Float[Array, " n"] | None, unit("J/unit of x")] = None
+    force: Annotated[Vector | None, unit("J/unit of x")] = None
     tolerance: Float[Array, ""] | float | None = None
     max_steps: Int[Array, ""] | int | None = None
 
@@ -115,7 +113,7 @@ class State(NamedTuple):
         own: Further state of the method, any pytree.
     """
 
-    x: Float[Array, " n"]
+    x: Vector
     now: Evaluation
     radius: Float[Array, ""]
     steps: Annotated[Int[Array, ""], unit("1")]
@@ -135,7 +133,7 @@ class Minimum(NamedTuple):
         memory: Memory of the evaluation at x.
     """
 
-    x: Float[Array, " n"]
+    x: Vector
     residual: Annotated[Float[Array, ""], unit("1")]
     unbalanced: Float[Array, ""]
     steps: Int[Array, ""]
@@ -167,7 +165,7 @@ class AbstractMinimiser(eqx.Module):
     def minimise(
         self,
         function: Function,
-        start: Float[Array, " n"],
+        start: Vector,
         radius: Float[Array, ""],
         **choices: Any,
     ) -> Minimum:
@@ -317,7 +315,7 @@ class TrustRegionNewton(AbstractMinimiser):
         there = problem.evaluate(state.x + p, True, state.now.memory)
         return self.judge(problem, state, p, there)
 
-    def propose(self, problem: Problem, state: State) -> Float[Array, " n"]:
+    def propose(self, problem: Problem, state: State) -> Vector:
         """Return the step of x to the point that `judge` asks for (n,).
 
         Args:
@@ -340,7 +338,7 @@ class TrustRegionNewton(AbstractMinimiser):
         return jnp.where(first, 0.0, p)
 
     def judge(
-        self, problem: Problem, state: State, p: Float[Array, " n"], there: Evaluation
+        self, problem: Problem, state: State, p: Vector, there: Evaluation
     ) -> Either:
         """Return the state after a step that was proposed.
 

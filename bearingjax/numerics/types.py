@@ -40,6 +40,9 @@ Number = Scalar | float
 """One number as users write it: of Python, or an array without axes."""
 Reals = Float[Array, "..."]
 """Real numbers in an array of any shape."""
+Vector = Float[Array, " n"]
+Square = Float[Array, "n n"]
+"""Row of n numbers, and matrix of n rows; in one function all have the same n."""
 
 
 def array_namespace(array: Any) -> Any:

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...design.checks import check, positive
-from ...numerics.types import Number, Real, Scalar, as_real
+from ...numerics.types import Number, Real, Scalar, Vector, as_real
 from ...numerics.units import real, unit
 
 
@@ -49,7 +49,7 @@ class Grid(eqx.Module):
         return self.half_width / self.n_across
 
     @property
-    def half_y(self) -> Float[Array, " n"]:
+    def half_y(self) -> Vector:
         """Half the length of each cell [m]."""
         return 0.5 * jnp.diff(self.edges)
 
@@ -62,7 +62,7 @@ class Grid(eqx.Module):
         return 2.0 * self.half_x * place
 
     @property
-    def y(self) -> Float[Array, " n"]:
+    def y(self) -> Vector:
         """Middles of the cells along the roller [m]."""
         return 0.5 * (self.edges[1:] + self.edges[:-1])
 

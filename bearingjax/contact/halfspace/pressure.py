@@ -19,7 +19,7 @@ from ...numerics.implicit import attach_by, stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Count, Flag, Number, Scalar, as_real
+from ...numerics.types import Count, Flag, Number, Scalar, Vector, as_real
 from ...numerics.units import unit
 from .gradients import (
     AbstractPressureSolver,
@@ -92,7 +92,7 @@ class ContactSolution(eqx.Module):
         return self.result == Result.CONVERGED
 
     @property
-    def line_load(self) -> Float[Array, " n"]:
+    def line_load(self) -> Vector:
         """Load per length along the roller [N/m]."""
         width = 2.0 * self.grid.half_x * self.grid.times
         return jnp.sum(width[:, None] * self.pressure, axis=0)
@@ -113,7 +113,7 @@ class ContactSolution(eqx.Module):
         return jnp.max(self.pressure)
 
     @property
-    def centre_pressure(self) -> Float[Array, " n"]:
+    def centre_pressure(self) -> Vector:
         """Pressure at x = 0 along the roller [Pa].
 
         Of an even number of cells across, by the parabola through the inner ones.

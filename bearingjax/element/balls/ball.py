@@ -12,7 +12,7 @@ from ...contact.hertz import POINT_EXPONENT
 from ...contact.point_law import at_angle
 from ...numerics.expansion import Expansion
 from ...numerics.power import positive_power
-from ...numerics.types import Reals, Scalar
+from ...numerics.types import Reals, Scalar, Vector
 from ..energy import ball_energy
 from ..rolling_element import AbstractRollingElement, RingMotion, Unknowns
 from ..search_hints import SearchHints
@@ -205,10 +205,10 @@ class BallSearchHints(SearchHints):
         inertia = self.element.ball_inertia
         return None if inertia is None else inertia.centrifugal
 
-    def midpoint(self, rings: Any) -> Float[Array, " n"]:
+    def midpoint(self, rings: Any) -> Vector:
         return self.element.geometry.midpoint(rings)
 
-    def at_rest(self, rings: Any) -> tuple[Float[Array, " n"], Bool[Array, ""]] | None:
+    def at_rest(self, rings: Any) -> tuple[Vector, Bool[Array, ""]] | None:
         """A turning ball that does not reach the inner ring lies in the outer one.
 
         From the midpoint a small centrifugal force would take it there in steps of any
@@ -247,9 +247,7 @@ class BallSearchHints(SearchHints):
     def corrects_steps(self) -> bool:
         return True
 
-    def correct_step(
-        self, rings: Any, x: Float[Array, " n"], step: Float[Array, " n"], size: Scalar
-    ) -> Float[Array, " n"]:
+    def correct_step(self, rings: Any, x: Vector, step: Vector, size: Scalar) -> Vector:
         """Step along the groove that carries most, no deeper into others than needed.
 
         Straight, a step along a groove would press the ball into it by step²/(2l);
@@ -277,7 +275,7 @@ class BallSearchHints(SearchHints):
     def may_be_ejected(self) -> bool:
         return self.element.grooves.washers or super().may_be_ejected
 
-    def is_ejected(self, rings: Any, x: Float[Array, " n"]) -> Bool[Array, ""]:
+    def is_ejected(self, rings: Any, x: Vector) -> Bool[Array, ""]:
         away = super().is_ejected(rings, x)
         if not self.element.grooves.washers:
             return away

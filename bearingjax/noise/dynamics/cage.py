@@ -23,6 +23,7 @@ from ...numerics.linear import lengths
 from ...numerics.types import Real, Scalar, as_real
 from ...numerics.units import real, unit, units
 from .cage_contact import CageContact
+from .element_positions import Each
 
 
 class GuidedCage(eqx.Module):
@@ -79,7 +80,7 @@ class CageForces(NamedTuple):
         ring: To the guiding ring along x and y (2,) [N].
     """
 
-    arcs: Annotated[Float[Array, " element"], unit("N")]
+    arcs: Annotated[Each, unit("N")]
     cage: Annotated[Float[Array, "3"], units("N", "N m")]
     ring: Annotated[Float[Array, "2"], unit("N")]
 
@@ -87,11 +88,11 @@ class CageForces(NamedTuple):
 def cage_loads(
     cage: GuidedCage,
     place: Float[Array, "3"],
-    arcs: Float[Array, " element"],
+    arcs: Each,
     ring: Float[Array, "2"],
     pitch_radius: Scalar,
-    azimuth: Float[Array, " element"],
-) -> tuple[Float[Array, " element"], Scalar]:
+    azimuth: Each,
+) -> tuple[Each, Scalar]:
     """Return forces of pockets along the pitch circle, and of the land normally [N].
 
     Args:
@@ -110,13 +111,13 @@ def cage_loads(
 
 
 def cage_forces(
-    pockets: Float[Array, " element"],
+    pockets: Each,
     land: Scalar,
     place: Float[Array, "3"],
-    arcs: Float[Array, " element"],
+    arcs: Each,
     ring: Float[Array, "2"],
     pitch_radius: Scalar,
-    azimuth: Float[Array, " element"],
+    azimuth: Each,
 ) -> CageForces:
     """Return reversed forces of pockets and land, as derivatives of an energy.
 

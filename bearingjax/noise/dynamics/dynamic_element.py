@@ -20,7 +20,7 @@ from ...element.balls.ball import Ball
 from ...element.inertia import inertia_force, mass_and_inertia
 from ...element.roller import Roller
 from ...numerics.linear import combine_rows
-from ...numerics.types import Scalar
+from ...numerics.types import Scalar, Vector
 
 
 class DynamicElement(eqx.Module):
@@ -38,9 +38,9 @@ class DynamicElement(eqx.Module):
     """
 
     element: Any
-    mass: Float[Array, " n"]
-    force: Float[Array, " n"]
-    scale: Float[Array, " n"]
+    mass: Vector
+    force: Vector
+    scale: Vector
     own: Float[Array, "h 3"]
 
     def in_element_axes(
@@ -59,9 +59,7 @@ class DynamicElement(eqx.Module):
         """Return forces on (u, v, θ) of a ring, from those in its axes [N, N m]."""
         return combine_rows(self.own, forces)
 
-    def unknowns(
-        self, rings: RingMotion, place: Float[Array, " n"]
-    ) -> Float[Array, " n"]:
+    def unknowns(self, rings: RingMotion, place: Vector) -> Vector:
         """Return the own unknowns x of the rolling element [m].
 
         Args:
@@ -74,19 +72,17 @@ class DynamicElement(eqx.Module):
         """Return a copy with material added in its contacts [m]."""
         return dataclasses.replace(self, element=self.element.with_heights(heights))
 
-    def energy(self, rings: RingMotion, place: Float[Array, " n"]) -> Scalar:
+    def energy(self, rings: RingMotion, place: Vector) -> Scalar:
         """Return the strain energy of its contacts [J]; arguments as in `unknowns`."""
         return self.element.energy(rings, self.unknowns(rings, place))
 
-    def loads(
-        self, rings: RingMotion, place: Float[Array, " n"]
-    ) -> Float[Array, " contact"]:
+    def loads(self, rings: RingMotion, place: Vector) -> Float[Array, " contact"]:
         """Return the load of each contact [N]; arguments as in `unknowns`."""
         at = self.element.coordinates(rings, self.unknowns(rings, place))
         return self.element.respond(at).aux
 
     def load_and_cosine(
-        self, rings: RingMotion, place: Float[Array, " n"]
+        self, rings: RingMotion, place: Vector
     ) -> tuple[Scalar, Scalar]:
         """Return the sum of a ball's loads [N] and the cosine of its contact angle [1].
 
@@ -152,7 +148,7 @@ def _own_freedoms(element):
 
 
 def forces(
-    element: DynamicElement, rings: RingMotion, place: Float[Array, " n"]
-) -> tuple[RingMotion, Float[Array, " n"]]:
+    element: DynamicElement, rings: RingMotion, place: Vector
+) -> tuple[RingMotion, Vector]:
     """Return derivatives of the energy by both ring motions and by place [N, N m]."""
     return jax.grad(DynamicElement.energy, argnums=(1, 2))(element, rings, place)

@@ -8,6 +8,9 @@ from jaxtyping import Array, Float
 from ...element.row import RowPlacement
 from ...numerics.units import unit, units
 
+Each = Float[Array, " element"]
+"""A number for each rolling element."""
+
 
 class Section(NamedTuple):
     """Motions of a ring in the axial sections of the elements, or forces on them.
@@ -18,9 +21,9 @@ class Section(NamedTuple):
         tilt: From the axis outwards (element,) [rad, N m]; `None`: none.
     """
 
-    axial: Annotated[Float[Array, " element"], units("m", "N")]
-    outwards: Annotated[Float[Array, " element"], units("m", "N")]
-    tilt: Annotated[Float[Array, " element"] | None, units("rad", "N m")]
+    axial: Annotated[Each, units("m", "N")]
+    outwards: Annotated[Each, units("m", "N")]
+    tilt: Annotated[Each | None, units("rad", "N m")]
 
     @property
     def components(self) -> Float[Array, "element 3"]:
@@ -44,15 +47,15 @@ class ElementPositions(NamedTuple):
             none.
     """
 
-    azimuth: Annotated[Float[Array, " element"], unit("rad")]
-    cosine: Annotated[Float[Array, " element"], unit("1")]
-    sine: Annotated[Float[Array, " element"], unit("1")]
+    azimuth: Annotated[Each, unit("rad")]
+    cosine: Annotated[Each, unit("1")]
+    sine: Annotated[Each, unit("1")]
     axial: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
     outwards: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
     heights: Annotated[Float[Array, "2 element"] | None, unit("m")] = None
 
     @classmethod
-    def from_azimuth(cls, azimuth: Float[Array, " element"]) -> "ElementPositions":
+    def from_azimuth(cls, azimuth: Each) -> "ElementPositions":
         """Create positions on raceways without deviations."""
         return cls(azimuth, jnp.cos(azimuth), jnp.sin(azimuth))
 

@@ -21,10 +21,8 @@ from jax import lax
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
-from ...numerics.types import Scalar
+from ...numerics.types import Scalar, Vector
 from ...numerics.units import units
-
-Vector = Float[Array, " n"]
 
 REACH = 32
 """Number of samples before and after that contribute to a sample."""

@@ -33,13 +33,13 @@ from jaxtyping import Array, Float
 from ...design.form_error import FormErrors, Surfaces
 from ...element.frame import RINGS, orbit, roll_ratio
 from ...element.row import Row, RowPlacement
-from ...numerics.types import Reals, Scalar
+from ...numerics.types import Reals, Scalar, Vector
 from ...numerics.units import unit, units
 from ..sensor import Sensor
 from .cage import GuidedCage, cage_forces, cage_loads
 from .dynamic_balls import ball_forces, is_written_out
 from .dynamic_element import DynamicElement, forces
-from .element_positions import ElementPositions, Section
+from .element_positions import Each, ElementPositions, Section
 
 
 class NoiseSystem(eqx.Module):
@@ -85,7 +85,7 @@ class NoiseSystem(eqx.Module):
     cage: GuidedCage | None = None
 
     @property
-    def masses(self) -> Float[Array, " n"]:
+    def masses(self) -> Vector:
         """Masses of all coordinates [kg, kg m²]."""
         each = self._of_each("mass")
         masses = [self.mass, each.T.ravel()]
@@ -99,7 +99,7 @@ class NoiseSystem(eqx.Module):
         return self.row.map(lambda element, _: getattr(element, name), self.row.azimuth)
 
     def split(
-        self, motion: Float[Array, " n"]
+        self, motion: Vector
     ) -> tuple[Float[Array, " k"], Float[Array, "element m"]]:
         """Split coordinates into those of ring and rolling elements."""
         k = self.mass.shape[0]
@@ -107,16 +107,12 @@ class NoiseSystem(eqx.Module):
         end = k + count * self.row.element.mass.shape[-1]
         return motion[:k], motion[k:end].reshape(-1, count).T
 
-    def cage_places(
-        self, motion: Float[Array, " n"]
-    ) -> tuple[Float[Array, " element"], Float[Array, "3"]]:
+    def cage_places(self, motion: Vector) -> tuple[Each, Float[Array, "3"]]:
         """Return places along the pitch circle and the coordinates of the cage."""
         count = self.row.azimuth.shape[0]
         return motion[-3 - count : -3], motion[-3:]
 
-    def azimuth(
-        self, time: Scalar, motion: Float[Array, " n"] | None = None
-    ) -> Float[Array, " element"]:
+    def azimuth(self, time: Scalar, motion: Vector | None = None) -> Each:
         """Return the azimuths of the rolling elements [rad].
 
         Args:
@@ -130,7 +126,7 @@ class NoiseSystem(eqx.Module):
         return even + self.cage_places(motion)[0] / self.row.pitch_radius
 
     def deviations(
-        self, azimuth: Float[Array, " element"], time: Scalar
+        self, azimuth: Each, time: Scalar
     ) -> Float[Array, "element 2 3"] | None:
         """Return `Deviation.raceway` at every rolling element [m].
 
@@ -159,9 +155,7 @@ class NoiseSystem(eqx.Module):
             else _smooth_step(time / self.growth) * deviations
         )
 
-    def positions(
-        self, azimuth: Float[Array, " element"], time: Scalar
-    ) -> ElementPositions:
+    def positions(self, azimuth: Each, time: Scalar) -> ElementPositions:
         """Return positions with deviations; arguments as in `deviations`."""
         found = ElementPositions.from_azimuth(azimuth)
         deviations = self.deviations(azimuth, time)
@@ -233,7 +227,7 @@ class NoiseSystem(eqx.Module):
         return [Section(*force.T) for force in on_rings], on_places
 
     def on_raceways(
-        self, motion: Float[Array, " n"], positions: ElementPositions
+        self, motion: Vector, positions: ElementPositions
     ) -> tuple[Section, Section]:
         """Return reversed forces of the rolling elements on both raceways [N, N m].
 
@@ -245,10 +239,10 @@ class NoiseSystem(eqx.Module):
 
     def contact_forces(
         self,
-        motion: Float[Array, " n"],
+        motion: Vector,
         time: Scalar,
         deviations: Float[Array, "element 2 3"] | None = None,
-    ) -> Float[Array, " n"]:
+    ) -> Vector:
         """Return ∂E/∂(q, p) at a time [N, N m].
 
         Args:
@@ -264,9 +258,7 @@ class NoiseSystem(eqx.Module):
             )
         return self.resistance(motion, self.positions(azimuth, time))
 
-    def resistance(
-        self, motion: Float[Array, " n"], positions: ElementPositions
-    ) -> Float[Array, " n"]:
+    def resistance(self, motion: Vector, positions: ElementPositions) -> Vector:
         """Return ∂E/∂(q, p) at given positions [N, N m].
 
         Args:
@@ -285,7 +277,7 @@ class NoiseSystem(eqx.Module):
             pockets, land = cage_loads(self.cage, *given, positions.azimuth)
         return _Pressed(on_ring, on_places - self._of_each("force"), pockets, land)
 
-    def _assembled(self, motion, positions, pressed: "_Pressed") -> Float[Array, " n"]:
+    def _assembled(self, motion, positions, pressed: "_Pressed") -> Vector:
         """Assemble these forces on all coordinates."""
         on_ring = positions.push(pressed.on_ring, self.mass.shape[0], self.placements)
         parts = [on_ring, pressed.on_places.T.ravel()]
@@ -308,7 +300,7 @@ class NoiseSystem(eqx.Module):
         return place, arcs, guide, self.row.pitch_radius
 
     def contact_loads(
-        self, motion: Float[Array, " n"], time: Scalar
+        self, motion: Vector, time: Scalar
     ) -> Float[Array, "element contact"]:
         """Return the load of every contact [N]; arguments as in `contact_forces`."""
         positions = self.positions(self.azimuth(time, motion), time)
@@ -317,10 +309,10 @@ class NoiseSystem(eqx.Module):
     def traction(
         self,
         cage: GuidedCage,
-        motion: Float[Array, " n"],
-        velocity: Float[Array, " n"],
+        motion: Vector,
+        velocity: Vector,
         positions: ElementPositions,
-    ) -> Float[Array, " element"]:
+    ) -> Each:
         """Return the traction of both raceways on every ball on its orbit [N].
 
         It draws the ball to the orbit on which it would roll: that of its own diameter
@@ -348,12 +340,12 @@ class NoiseSystem(eqx.Module):
 
     def forces(
         self,
-        motion: Float[Array, " n"],
-        velocity: Float[Array, " n"],
+        motion: Vector,
+        velocity: Vector,
         time: Scalar,
-        start: Float[Array, " n"],
+        start: Vector,
         course: tuple[ElementPositions, ElementPositions] | None = None,
-    ) -> Float[Array, " n"]:
+    ) -> Vector:
         """Return the forces on all coordinates [N, N m].
 
         Args:
@@ -395,7 +387,7 @@ class _Pressed(NamedTuple):
 
     on_ring: Annotated[Section, units("N", "N m")]
     on_places: Annotated[Float[Array, "element m"], units("N", "N m")]
-    pockets: Annotated[Float[Array, " element"] | None, unit("N")]
+    pockets: Annotated[Each | None, unit("N")]
     land: Annotated[Scalar | None, unit("N")]
 
 

@@ -27,7 +27,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eig, pseudoinverse, solve_any
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Scalar, as_real
+from ...numerics.types import Scalar, Square, Vector, as_real
 from .method import AbstractMethod
 from .orbit import amplitudes, newton
 from .system import AbstractVibratingSystem, out_of_balance, rates
@@ -74,11 +74,11 @@ class Backbone(eqx.Module):
 class _Free(AbstractVibratingSystem):
     """System without excitation, with reduced damping."""
 
-    mass: Float[Array, "n n"]
-    scale: Float[Array, " n"]
+    mass: Square
+    scale: Vector
     reference_frequency: Scalar
     system: AbstractVibratingSystem
-    constant: Float[Array, " n"]
+    constant: Vector
     damping_ratio: Scalar
 
     def damping_matrix(self, frequency):

@@ -23,10 +23,10 @@ from jaxtyping import Array, Float, Int
 
 from ...numerics.lapack import determinant_sign, solve_any
 from ...numerics.result import Result
-from ...numerics.types import Real, Scalar
+from ...numerics.types import Real, Scalar, Vector
 from ...numerics.units import real, unit
 from .method import AbstractMethod
-from .orbit import along_frequency, amplitudes, correct
+from .orbit import Point, along_frequency, amplitudes, correct
 from .system import AbstractVibratingSystem
 
 
@@ -53,9 +53,7 @@ class BranchEnd(enum.IntEnum):
 class Arclength(eqx.Module):
     """Hold the length along the branch (pseudo-arclength)."""
 
-    def direction(
-        self, tangent: Float[Array, " x"], before: Float[Array, " x"]
-    ) -> tuple[Float[Array, " x"], Float[Array, " x"]]:
+    def direction(self, tangent: Point, before: Point) -> tuple[Point, Point]:
         """Return the unit vector of prediction and the normal of the correction plane.
 
         Args:
@@ -71,9 +69,7 @@ class ChangeOfParameter(eqx.Module):
     Source: Filipkovskii & Belomyttsev (2014), eq. (13).
     """
 
-    def direction(
-        self, tangent: Float[Array, " x"], before: Float[Array, " x"]
-    ) -> tuple[Array, Array]:
+    def direction(self, tangent: Point, before: Point) -> tuple[Array, Array]:
         """Return directions as in `Arclength.direction`."""
         unknowns, ratio = jnp.abs(before[:-1]), jnp.abs(before[-1])
         fastest = jnp.argmax(unknowns)
@@ -141,11 +137,11 @@ class TracedBranch(NamedTuple):
 class BranchPoint(NamedTuple):
     """Point of a branch; fields as in `TracedBranch`."""
 
-    x: Float[Array, " x"]
-    tangent: Float[Array, " x"]
+    x: Point
+    tangent: Point
     monodromy: Float[Array, "state state"]
     motion: Float[Array, "sample n"]
-    amplitude: Float[Array, " n"]
+    amplitude: Vector
     residual: Scalar
     side: Scalar
     newton: Int[Array, ""]
@@ -154,7 +150,7 @@ class BranchPoint(NamedTuple):
 class _State(NamedTuple):
     points: BranchPoint
     last: BranchPoint
-    before: Float[Array, " x"]
+    before: Point
     step: Scalar
     n_points: Int[Array, ""]
     refused: Int[Array, ""]
@@ -173,9 +169,9 @@ _FIRST_NEWTON = 50
 def place(
     system: AbstractVibratingSystem,
     method: AbstractMethod,
-    x: Float[Array, " x"],
-    direction: Float[Array, " x"],
-    towards: Float[Array, " x"],
+    x: Point,
+    direction: Point,
+    towards: Point,
     limit: int | Int[Array, ""] = _NEWTON,
 ) -> tuple[BranchPoint, Int[Array, ""]]:
     """Return the point of a branch in the plane through `x`, and its `Result` code.
@@ -214,7 +210,7 @@ def place(
 def trace(
     system: AbstractVibratingSystem,
     method: AbstractMethod,
-    begin: Float[Array, " x"],
+    begin: Point,
     end: Scalar,
     parameter: Arclength | ChangeOfParameter,
     steps: Steps,

@@ -22,7 +22,7 @@ from jaxtyping import Array, Float
 
 from ...numerics.implicit import attach_by, recall, stop_gradient
 from ...numerics.lapack import expm, solve_any
-from ...numerics.types import Scalar
+from ...numerics.types import Scalar, Vector
 from ...numerics.units import unit
 from .system import AbstractVibratingSystem, inertia, out_of_balance
 
@@ -86,8 +86,8 @@ class StepStart(NamedTuple):
     system: AbstractVibratingSystem
     ratio: Annotated[Scalar, unit("1")]
     phase: Annotated[Scalar, unit("rad")]
-    u: Annotated[Float[Array, " n"], unit("1")]
-    rate: Annotated[Float[Array, " n"], unit("1")]
+    u: Annotated[Vector, unit("1")]
+    rate: Annotated[Vector, unit("1")]
 
 
 def _stage_motion(at, begin, second):

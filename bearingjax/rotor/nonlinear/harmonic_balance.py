@@ -18,10 +18,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
-from ...numerics.types import Scalar, as_count
+from ...numerics.types import Scalar, Vector, as_count
 from ...numerics.units import meaning, unit
 from .flow import transition, transition_phases
-from .method import AbstractMethod, Motion
+from .method import AbstractMethod, Jacobian, Motion, Unknowns
 from .system import AbstractVibratingSystem, inertia, out_of_balance
 
 
@@ -121,7 +121,7 @@ class HarmonicBalance(AbstractMethod):
     def _series(self, z):
         return z.reshape(2 * self.harmonics + 1, -1)
 
-    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
+    def unknowns(self, motion: Motion) -> Unknowns:
         u = motion[0]
         given = u.shape[0]
         found = jnp.asarray(
@@ -132,9 +132,7 @@ class HarmonicBalance(AbstractMethod):
         short = jnp.zeros((self.harmonics - cosine.shape[0], u.shape[1]), u.dtype)
         return jnp.concatenate([mean, cosine, short, sine, short]).reshape(-1)
 
-    def state(
-        self, z: Float[Array, " m"]
-    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+    def state(self, z: Unknowns) -> tuple[Vector, Vector]:
         at, series = self._basis(z.dtype), self._series(z)
         return at.value[0] @ series, at.rate[0] @ series
 
@@ -144,8 +142,8 @@ class HarmonicBalance(AbstractMethod):
         return at.value @ series, at.rate @ series, at.second @ series
 
     def residual(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> Float[Array, " m"]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> Unknowns:
         at = self._basis(z.dtype)
         left = jax.vmap(
             lambda phase, *motion: out_of_balance(system, phase, ratio, *motion)
@@ -153,7 +151,7 @@ class HarmonicBalance(AbstractMethod):
         return (at.analysis @ left).reshape(-1)
 
     def slopes(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
     ) -> Any:
         """Return the residual of the equations of motion (sample, n), and its Jacobians
         in u, u', u'' (sample, n, n) and ν (sample, n)."""
@@ -178,8 +176,8 @@ class HarmonicBalance(AbstractMethod):
         return jnp.tensordot(analysis, terms, 1).reshape(size, size)
 
     def linearise(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> tuple[Unknowns, Jacobian, Any]:
         at = self._basis(z.dtype)
         left, (*slopes, speed) = self.slopes(system, z, ratio)
         columns = self.project(slopes, (at.value, at.rate, at.second))
@@ -188,7 +186,7 @@ class HarmonicBalance(AbstractMethod):
         return both[0], jacobian, jnp.stack(slopes[:2])
 
     def motion(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
     ) -> Motion:
         return self._motion(z)[:2]
 
@@ -196,7 +194,7 @@ class HarmonicBalance(AbstractMethod):
         self,
         system: AbstractVibratingSystem,
         ratio: Scalar,
-        jacobian: Float[Array, "m x"],
+        jacobian: Jacobian,
         slopes: Any,
     ) -> Float[Array, "state state"]:
         # Between the samples the slopes are those of the trigonometric interpolant,

@@ -11,31 +11,34 @@ from typing import Any
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from ...numerics.types import Scalar
+from ...numerics.types import Scalar, Vector
 from .system import AbstractVibratingSystem
 
 Motion = tuple[Float[Array, "sample n"], Float[Array, "sample n"]]
 """Freedoms over `scale` and their derivatives with respect to the phase, at even phases
 over the period from 0 on [1]."""
 
+Unknowns = Float[Array, " m"]
+"""Dimensionless unknowns z, or as many residuals [1]."""
+Jacobian = Float[Array, "m x"]
+"""Derivatives of the residuals with respect to z and ν [1]."""
+
 
 class AbstractMethod(eqx.Module):
     """Method to find an orbit. Static: all fields."""
 
     @abc.abstractmethod
-    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
+    def unknowns(self, motion: Motion) -> Unknowns:
         """Unknowns z of a motion given by its samples [1]."""
 
     @abc.abstractmethod
-    def state(
-        self, z: Float[Array, " m"]
-    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+    def state(self, z: Unknowns) -> tuple[Vector, Vector]:
         """Freedoms over `scale` and their derivatives by the phase, at phase 0 [1]."""
 
     @abc.abstractmethod
     def residual(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> Float[Array, " m"]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> Unknowns:
         """Zero where the motion repeats and obeys the equations of motion [1].
 
         Args:
@@ -46,13 +49,13 @@ class AbstractMethod(eqx.Module):
 
     @abc.abstractmethod
     def linearise(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> tuple[Unknowns, Jacobian, Any]:
         """`residual`, its Jacobian in (z, ν), and what `monodromy` makes use of."""
 
     @abc.abstractmethod
     def motion(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
     ) -> Motion:
         """The motion over a period."""
 
@@ -61,7 +64,7 @@ class AbstractMethod(eqx.Module):
         self,
         system: AbstractVibratingSystem,
         ratio: Scalar,
-        jacobian: Float[Array, "m x"],
+        jacobian: Jacobian,
         slopes: Any,
     ) -> Float[Array, "state state"]:
         """Return the derivative of the state after a period by the initial state [1].

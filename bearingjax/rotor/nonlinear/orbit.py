@@ -13,9 +13,9 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
-from ...numerics.types import Flag, Number, Scalar, as_real
+from ...numerics.types import Flag, Number, Scalar, Vector, as_real
 from ...numerics.units import unit
-from .method import AbstractMethod, Motion
+from .method import AbstractMethod, Jacobian, Motion, Unknowns
 from .system import AbstractVibratingSystem, frequency_of
 
 TOLERANCE = {"float64": 1e-10, "float32": 1e-4}
@@ -29,6 +29,9 @@ _FINE = 8
 """Number of places between samples at which a peak is sought."""
 _NEARER = 3
 """Newton steps from there to the peak: its error falls from 1e-2 to round-off."""
+
+Point = Float[Array, " x"]
+"""Unknowns z and frequency ratio ν: a point of a branch, or a direction there [1]."""
 
 
 class PeriodicOrbit(eqx.Module):
@@ -50,10 +53,10 @@ class PeriodicOrbit(eqx.Module):
     frequency: Scalar
     displacement: Float[Array, "sample n"]
     velocity: Float[Array, "sample n"]
-    amplitude: Float[Array, " n"]
+    amplitude: Vector
     multipliers: Complex[Array, " state"]
     stable: Flag
-    unknowns: Float[Array, " m"]
+    unknowns: Unknowns
     residual: Scalar
     steps: Int[Array, ""]
     result: Int[Array, ""]
@@ -71,9 +74,9 @@ class CorrectedPoint(NamedTuple):
         result: `Result` code.
     """
 
-    x: Annotated[Float[Array, " x"], unit("1")]
-    left: Annotated[Float[Array, " m"], unit("1")]
-    jacobian: Annotated[Float[Array, "m x"], unit("1")]
+    x: Annotated[Point, unit("1")]
+    left: Annotated[Unknowns, unit("1")]
+    jacobian: Annotated[Jacobian, unit("1")]
     slopes: Any
     steps: Int[Array, ""]
     result: Int[Array, ""]
@@ -82,8 +85,8 @@ class CorrectedPoint(NamedTuple):
 def correct(
     system: AbstractVibratingSystem,
     method: AbstractMethod,
-    x: Float[Array, " x"],
-    direction: Float[Array, " x"],
+    x: Point,
+    direction: Point,
     limit: int | Int[Array, ""],
 ) -> CorrectedPoint:
     """Solve for an orbit in the plane through `x` across `direction`.
@@ -118,7 +121,7 @@ def correct(
 
 def newton(
     linearised: Callable[[Any], tuple[Any, Any, Any]],
-    x: Float[Array, " x"],
+    x: Point,
     limit: int | Int[Array, ""],
 ) -> CorrectedPoint:
     """Run Newton's method, with steps halved where the residual more than doubles.
@@ -178,7 +181,7 @@ def newton(
     return CorrectedPoint(x, left, jacobian, slopes, steps, result.astype(jnp.int32))
 
 
-def along_frequency(size: int, dtype: Any) -> Float[Array, " x"]:
+def along_frequency(size: int, dtype: Any) -> Point:
     """Return the direction that holds the frequency."""
     return jnp.zeros(size + 1, dtype).at[-1].set(1.0)
 
@@ -268,7 +271,7 @@ def _solve(system, frequency, method, motion, max_steps):
 def describe_orbit(
     system: AbstractVibratingSystem,
     method: AbstractMethod,
-    x: Float[Array, " x"],
+    x: Point,
     residual: Scalar,
     steps: Int[Array, ""],
     result: Int[Array, ""],
@@ -301,7 +304,7 @@ def describe_orbit(
     )
 
 
-def amplitudes(samples: Float[Array, "sample n"]) -> Float[Array, " n"]:
+def amplitudes(samples: Float[Array, "sample n"]) -> Vector:
     """Return half of peak to peak of the trigonometric interpolant over the period.
 
     Args:

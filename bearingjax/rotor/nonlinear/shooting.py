@@ -9,9 +9,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ...numerics.types import Scalar, as_count
+from ...numerics.types import Scalar, Vector, as_count
 from .flow import flow_slopes, integrate
-from .method import AbstractMethod, Motion
+from .method import AbstractMethod, Jacobian, Motion, Unknowns
 from .system import AbstractVibratingSystem
 
 
@@ -28,28 +28,26 @@ class Shooting(AbstractMethod):
 
     steps: int = eqx.field(static=True, converter=as_count, default=48)
 
-    def unknowns(self, motion: Motion) -> Float[Array, " m"]:
+    def unknowns(self, motion: Motion) -> Unknowns:
         return jnp.concatenate([motion[0][0], motion[1][0]])
 
-    def state(
-        self, z: Float[Array, " m"]
-    ) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
+    def state(self, z: Unknowns) -> tuple[Vector, Vector]:
         u, rate = jnp.split(z, 2)
         return u, rate
 
     def residual(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> Float[Array, " m"]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> Unknowns:
         return integrate(system, z, ratio, self.steps)[0] - z
 
     def linearise(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
-    ) -> tuple[Float[Array, " m"], Float[Array, "m x"], Any]:
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
+    ) -> tuple[Unknowns, Jacobian, Any]:
         end, jacobian = flow_slopes(system, z, ratio, self.steps)
         return end - z, jacobian - jnp.eye(*jacobian.shape, dtype=z.dtype), ()
 
     def motion(
-        self, system: AbstractVibratingSystem, z: Float[Array, " m"], ratio: Scalar
+        self, system: AbstractVibratingSystem, z: Unknowns, ratio: Scalar
     ) -> Motion:
         _, states = integrate(system, z, ratio, self.steps)
         u, rate = jnp.split(states, 2, axis=1)
@@ -59,7 +57,7 @@ class Shooting(AbstractMethod):
         self,
         system: AbstractVibratingSystem,
         ratio: Scalar,
-        jacobian: Float[Array, "m x"],
+        jacobian: Jacobian,
         slopes: Any,
     ) -> Float[Array, "state state"]:
         return jacobian[:, :-1] + jnp.eye(jacobian.shape[0], dtype=jacobian.dtype)

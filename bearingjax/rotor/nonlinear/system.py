@@ -17,7 +17,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ...numerics.lapack import solve_any
-from ...numerics.types import Number, Real, RealOrNone, Scalar, as_real
+from ...numerics.types import Number, Real, RealOrNone, Scalar, Square, Vector, as_real
 from ...numerics.units import real, unit
 
 
@@ -30,12 +30,12 @@ class AbstractVibratingSystem(eqx.Module):
         reference_frequency: Frequency that is called one, best a natural one [rad/s].
     """
 
-    mass: eqx.AbstractVar[Float[Array, "n n"]]
-    scale: eqx.AbstractVar[Float[Array, " n"]]
+    mass: eqx.AbstractVar[Square]
+    scale: eqx.AbstractVar[Vector]
     reference_frequency: eqx.AbstractVar[Scalar]
 
     @abc.abstractmethod
-    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
+    def damping_matrix(self, frequency: Scalar) -> Square:
         """Damping and gyroscopic matrix D [N s/m, N m s/rad].
 
         What depends on the frequency must be gyroscopic.
@@ -46,12 +46,8 @@ class AbstractVibratingSystem(eqx.Module):
 
     @abc.abstractmethod
     def force(
-        self,
-        q: Float[Array, " n"],
-        velocity: Float[Array, " n"],
-        phase: Number,
-        frequency: Scalar,
-    ) -> Float[Array, " n"]:
+        self, q: Vector, velocity: Vector, phase: Number, frequency: Scalar
+    ) -> Vector:
         """Restoring forces f, positive against the displacement [N, N m].
 
         Args:
@@ -64,7 +60,7 @@ class AbstractVibratingSystem(eqx.Module):
     @abc.abstractmethod
     def excitation(
         self, phase: Number, frequency: Scalar, acceleration: Scalar
-    ) -> Float[Array, " n"]:
+    ) -> Vector:
         """Return the external forces e [N, N m].
 
         Args:
@@ -91,20 +87,14 @@ class VibratingSystem(AbstractVibratingSystem):
     Traced: all numbers.
     """
 
-    mass: Float[Array, "n n"] = eqx.field(
-        converter=as_real, metadata=unit(("kg", "kg m²"))
-    )
-    damping: Float[Array, "n n"] = eqx.field(
+    mass: Square = eqx.field(converter=as_real, metadata=unit(("kg", "kg m²")))
+    damping: Square = eqx.field(
         converter=as_real, metadata=unit(("N s/m", "N m s/rad"))
     )
-    gyroscopic: Float[Array, "n n"] = eqx.field(
-        converter=as_real, metadata=unit(("kg", "kg m²"))
-    )
+    gyroscopic: Square = eqx.field(converter=as_real, metadata=unit(("kg", "kg m²")))
     restoring: Callable
     load: Callable
-    scale: Float[Array, " n"] = eqx.field(
-        converter=as_real, metadata=unit(("m", "rad"))
-    )
+    scale: Vector = eqx.field(converter=as_real, metadata=unit(("m", "rad")))
     reference_frequency: Real = eqx.field(**real("rad/s"))
     speed: RealOrNone = eqx.field(**real("rad/s"), default=None)
 
@@ -118,22 +108,18 @@ class VibratingSystem(AbstractVibratingSystem):
                     f" a matrix ({n}, {n}) is wanted"
                 )
 
-    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
+    def damping_matrix(self, frequency: Scalar) -> Square:
         speed = frequency if self.speed is None else self.speed
         return self.damping + speed * self.gyroscopic
 
     def force(
-        self,
-        q: Float[Array, " n"],
-        velocity: Float[Array, " n"],
-        phase: Number,
-        frequency: Scalar,
-    ) -> Float[Array, " n"]:
+        self, q: Vector, velocity: Vector, phase: Number, frequency: Scalar
+    ) -> Vector:
         return self.restoring(q, velocity, phase, frequency)
 
     def excitation(
         self, phase: Number, frequency: Scalar, acceleration: Scalar
-    ) -> Float[Array, " n"]:
+    ) -> Vector:
         return self.load(phase, frequency, acceleration)
 
 
@@ -150,11 +136,11 @@ class HarmonicLoad(eqx.Module):
     Traced: all fields.
     """
 
-    constant: Float[Array, " n"]
-    cosine: Float[Array, " n"]
-    sine: Float[Array, " n"]
-    unbalance_cosine: Float[Array, " n"]
-    unbalance_sine: Float[Array, " n"]
+    constant: Vector
+    cosine: Vector
+    sine: Vector
+    unbalance_cosine: Vector
+    unbalance_sine: Vector
 
     @classmethod
     def zero(cls, size: int) -> "HarmonicLoad":
@@ -178,10 +164,10 @@ def out_of_balance(
     system: AbstractVibratingSystem,
     phase: Scalar,
     ratio: Scalar,
-    u: Float[Array, " n"],
-    rate: Float[Array, " n"],
-    second: Float[Array, " n"],
-) -> Float[Array, " n"]:
+    u: Vector,
+    rate: Vector,
+    second: Vector,
+) -> Vector:
     """Residual of the equations of motion, over M_ii·scale·(reference frequency)² [1].
 
     Args:
@@ -203,7 +189,7 @@ def out_of_balance(
     return left / unit_force
 
 
-def inertia(system: AbstractVibratingSystem, ratio: Scalar) -> Float[Array, "n n"]:
+def inertia(system: AbstractVibratingSystem, ratio: Scalar) -> Square:
     """Slope of `out_of_balance` in the second derivatives [1].
 
     Args:

@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 from ...numerics.compiled.programs import program
 from ...numerics.implicit import through_jacobian
 from ...numerics.lapack import pseudoinverse
-from ...numerics.types import Number, Scalar, as_real
+from ...numerics.types import Number, Scalar, Square, Vector, as_real
 from ...numerics.units import unit
 from ..like_parts import map_parts
 from ..linear.reduction import craig_bampton, held_motions
@@ -44,12 +44,12 @@ class VibratingRotor(AbstractVibratingSystem):
     Traced: all numbers.
     """
 
-    mass: Float[Array, "n n"]
-    scale: Float[Array, " n"]
+    mass: Square
+    scale: Vector
     reference_frequency: Scalar = eqx.field(metadata=unit("rad/s"))
-    damping: Float[Array, "n n"]
-    gyroscopic: Float[Array, "n n"]
-    stiffness: Float[Array, "n n"]
+    damping: Square
+    gyroscopic: Square
+    stiffness: Square
     supports: tuple[AbstractSupport, ...]
     rows: Float[Array, "support 5 n"]
     motions: Float[Array, "motion n"]
@@ -60,16 +60,12 @@ class VibratingRotor(AbstractVibratingSystem):
     def _speed(self, frequency):
         return self.rotation * frequency if self.speed is None else self.speed
 
-    def damping_matrix(self, frequency: Scalar) -> Float[Array, "n n"]:
+    def damping_matrix(self, frequency: Scalar) -> Square:
         return self.damping + self._speed(frequency) * self.gyroscopic
 
     def force(
-        self,
-        q: Float[Array, " n"],
-        velocity: Float[Array, " n"],
-        phase: Number,
-        frequency: Scalar,
-    ) -> Float[Array, " n"]:
+        self, q: Vector, velocity: Vector, phase: Number, frequency: Scalar
+    ) -> Vector:
         force, speed = self.stiffness @ q, self._speed(frequency)
         if not self.supports:
             return force
@@ -86,10 +82,10 @@ class VibratingRotor(AbstractVibratingSystem):
 
     def excitation(
         self, phase: Number, frequency: Scalar, acceleration: Scalar
-    ) -> Float[Array, " n"]:
+    ) -> Vector:
         return self.load(phase, frequency, acceleration)
 
-    def freedoms(self, motion: Float[Array, " motion"]) -> Float[Array, " n"]:
+    def freedoms(self, motion: Float[Array, " motion"]) -> Vector:
         """Return the least-squares freedoms of given motions.
 
         Args:

@@ -24,7 +24,7 @@ from ..ball_motion import (
     tractions,
 )
 from ..contact_loads import contact_loads, loaded_ball
-from .orbit_search import AbstractOrbit
+from .orbit_search import AbstractOrbit, Common, Own, Unknowns
 from .steady_results import Power, SteadyMotion, SteadySkid, driving
 
 
@@ -41,7 +41,7 @@ class BallOrbit(AbstractOrbit):
     n_own: ClassVar = 4
     n_common: ClassVar = 0
 
-    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
+    def excess(self, own: Float[Array, "place k"], common: Common) -> Reals:
         return own[:, 3]
 
     def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
@@ -51,9 +51,7 @@ class BallOrbit(AbstractOrbit):
         rolls = jax.vmap(partial(pure_rolling, speed=self.speed))(ball)
         return ball, jnp.concatenate([rolls.spin, rolls.orbit[:, None]], axis=1)
 
-    def motion(
-        self, body: Any, rolls: Float[Array, " k"], own: Float[Array, " k"]
-    ) -> Float[Array, " k"]:
+    def motion(self, body: Any, rolls: Own, own: Own) -> Own:
         normal, across = _axes(body)
         lever = body.pitch_radius + 0.5 * body.diameter * normal[1]
         turned = own[1] + own[3] * lever / (0.5 * body.diameter)
@@ -61,12 +59,7 @@ class BallOrbit(AbstractOrbit):
         return rolls + jnp.append(spin.at[0].add(own[0]), own[3])
 
     def local(
-        self,
-        body: Any,
-        rolls: Float[Array, " k"],
-        own: Float[Array, " k"],
-        slope: Float[Array, " k"],
-        common: Float[Array, " c"],
+        self, body: Any, rolls: Own, own: Own, slope: Own, common: Common
     ) -> tuple[Float[Array, " k+c"], Scalar]:
         state, _, pulls, drag = self.forces(body, rolls, own)
         moment, force = residual_moments(body, state, pulls, drag)
@@ -133,9 +126,7 @@ class BallOrbit(AbstractOrbit):
         whole = jnp.kron(jnp.eye(places, dtype=own.dtype), own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def describe(
-        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
-    ) -> SteadyMotion:
+    def describe(self, y: Unknowns, solved: SolvedRow, **known: Any) -> SteadyMotion:
         speed, (own, _, _) = self.speed, self.parts(y)
         ball, rolls = self.bodies(y, solved)
 

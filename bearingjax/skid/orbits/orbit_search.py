@@ -40,6 +40,12 @@ _RING = 6
 _FEW = 4
 """Most further unknowns of a system that is solved by explicit elimination."""
 
+Unknowns = Float[Array, " unknown"]
+"""All unknowns: those of the places, the common ones, and the ring's."""
+Own = Float[Array, " k"]
+Common = Float[Array, " c"]
+"""Unknowns of one place, and those that all places share."""
+
 
 class AbstractOrbit(eqx.Module):
     """Equations of a motion that is periodic from orbit to orbit, and of the ring.
@@ -77,7 +83,7 @@ class AbstractOrbit(eqx.Module):
     density: Scalar
     along: Float[Array, "place place"]
     least: Scalar
-    start: Float[Array, " unknown"]
+    start: Unknowns
 
     n_own: ClassVar[int]
     """Unknowns of each place."""
@@ -86,7 +92,7 @@ class AbstractOrbit(eqx.Module):
     """
 
     @abc.abstractmethod
-    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
+    def excess(self, own: Float[Array, "place k"], common: Common) -> Reals:
         """Return orbital speeds relative to pure rolling (place,) or () [rad/s]."""
 
     @abc.abstractmethod
@@ -95,9 +101,7 @@ class AbstractOrbit(eqx.Module):
         in pure rolling (element, k) [rad/s].
         """
 
-    def motion(
-        self, body: Any, rolls: Float[Array, " k"], own: Float[Array, " k"]
-    ) -> Float[Array, " k"]:
+    def motion(self, body: Any, rolls: Own, own: Own) -> Own:
         """Return the speeds at one place, whose derivatives `local` takes [rad/s].
 
         Args:
@@ -108,12 +112,7 @@ class AbstractOrbit(eqx.Module):
 
     @abc.abstractmethod
     def local(
-        self,
-        body: Any,
-        rolls: Float[Array, " k"],
-        own: Float[Array, " k"],
-        slope: Float[Array, " k"],
-        common: Float[Array, " c"],
+        self, body: Any, rolls: Own, own: Own, slope: Own, common: Common
     ) -> tuple[Float[Array, " k+c"], Scalar]:
         """Return residual forces of one place [N], and the size of those that cancel.
 
@@ -128,9 +127,7 @@ class AbstractOrbit(eqx.Module):
         """Return the mass matrix of the forces; the ring has no mass [kg m]."""
 
     @abc.abstractmethod
-    def describe(
-        self, y: Float[Array, " unknown"], solved: SolvedRow, **fields: Any
-    ) -> SteadyMotion:
+    def describe(self, y: Unknowns, solved: SolvedRow, **fields: Any) -> SteadyMotion:
         """Return the results of the steady motion.
 
         Args:
@@ -139,7 +136,7 @@ class AbstractOrbit(eqx.Module):
             **fields: Fields that do not follow from them.
         """
 
-    def parts(self, y: Float[Array, " unknown"]) -> tuple[Array, Array, Array]:
+    def parts(self, y: Unknowns) -> tuple[Array, Array, Array]:
         """Split unknowns: of places (place, k), common (c,) and of the ring (6,)."""
         places = self.azimuth.shape[0]
         end = places * self.n_own
@@ -174,9 +171,7 @@ class AbstractOrbit(eqx.Module):
         places = self.azimuth.size
         return jax.tree.map(lambda a: a[:places], self.bodies_of(found)), found
 
-    def bodies(
-        self, y: Float[Array, " unknown"], solved: SolvedRow
-    ) -> tuple[Any, Array]:
+    def bodies(self, y: Unknowns, solved: SolvedRow) -> tuple[Any, Array]:
         """Return balls or rollers at all places, and pure rolling, from `bodies_of`.
 
         Args:
@@ -211,7 +206,7 @@ class AbstractOrbit(eqx.Module):
             [out[:, :k].reshape(-1), jnp.mean(out[:, k:], axis=0), left]
         )
 
-    def residual(self, y: Float[Array, " unknown"]) -> Float[Array, " unknown"]:
+    def residual(self, y: Unknowns) -> Unknowns:
         """Return the residual forces [N].
 
         Args:
@@ -221,7 +216,7 @@ class AbstractOrbit(eqx.Module):
         (out, pulls, _), _ = self._forces(own, common, ring)
         return self._assemble(out, pulls, ring)
 
-    def evaluate(self, y: Float[Array, " unknown"]) -> "ResidualSlopes":
+    def evaluate(self, y: Unknowns) -> "ResidualSlopes":
         """Return `residual` with its Jacobian.
 
         Args:
@@ -284,8 +279,8 @@ class ResidualSlopes(NamedTuple):
         solved: The row in equilibrium there.
     """
 
-    out: Annotated[Float[Array, " unknown"], unit("N")]
-    sizes: Annotated[Float[Array, " unknown"], unit("N")]
+    out: Annotated[Unknowns, unit("N")]
+    sizes: Annotated[Unknowns, unit("N")]
     jacobian: Annotated[Float[Array, "unknown unknown"], units("N s/rad", "N/m")]
     solved: SolvedRow
 
@@ -302,7 +297,7 @@ class OrbitSolution(NamedTuple):
         solved: The row in equilibrium there.
     """
 
-    y: Annotated[Float[Array, " unknown"], units("rad/s", "m")]
+    y: Annotated[Unknowns, units("rad/s", "m")]
     residual: Annotated[Scalar, unit("1")]
     steps: Int[Array, ""]
     result: Int[Array, ""]
@@ -325,8 +320,8 @@ def search(orbit: AbstractOrbit) -> OrbitSolution:
 
 
 def with_derivatives(
-    orbit: AbstractOrbit, y: Float[Array, " unknown"], result: Int[Array, ""]
-) -> Float[Array, " unknown"]:
+    orbit: AbstractOrbit, y: Unknowns, result: Int[Array, ""]
+) -> Unknowns:
     """Return the unknowns found, with derivatives; NaN if the search failed.
 
     Args:
@@ -358,7 +353,7 @@ def derivatives(count: int) -> np.ndarray:
 
 
 class _State(NamedTuple):
-    y: Float[Array, " unknown"]
+    y: Unknowns
     at: ResidualSlopes
     step: Scalar
     steps: Int[Array, ""]

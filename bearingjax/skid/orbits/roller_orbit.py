@@ -29,7 +29,7 @@ from ..roller_motion import (
     sliding,
     tractions,
 )
-from .orbit_search import AbstractOrbit
+from .orbit_search import AbstractOrbit, Common, Own, Unknowns
 from .steady_results import Power, SteadyMotion, SteadyRollerSkid, driving
 
 
@@ -39,7 +39,7 @@ class RollerOrbit(AbstractOrbit):
     n_own: ClassVar = 1
     n_common: ClassVar = 1
 
-    def excess(self, own: Float[Array, "place k"], common: Float[Array, " c"]) -> Reals:
+    def excess(self, own: Float[Array, "place k"], common: Common) -> Reals:
         return common[0]
 
     def bodies_of(self, row: RowResults) -> tuple[Any, Array]:
@@ -51,12 +51,7 @@ class RollerOrbit(AbstractOrbit):
         return pure_rolling(roller, self.speed)
 
     def local(
-        self,
-        body: Any,
-        rolls: Float[Array, " k"],
-        own: Float[Array, " k"],
-        slope: Float[Array, " k"],
-        common: Float[Array, " c"],
+        self, body: Any, rolls: Own, own: Own, slope: Own, common: Common
     ) -> tuple[Float[Array, " k+c"], Scalar]:
         state, _, pulls, drag = self.forces(body, own[0], common[0])
         moment, force = residual_moments(body, pulls, drag)
@@ -89,9 +84,7 @@ class RollerOrbit(AbstractOrbit):
         whole = jnp.diag(jnp.append(own, turn)).at[:-1, -1].set(own)
         return jnp.pad(whole, (0, self.start.size - whole.shape[0]))
 
-    def describe(
-        self, y: Float[Array, " unknown"], solved: SolvedRow, **known: Any
-    ) -> SteadyMotion:
+    def describe(self, y: Unknowns, solved: SolvedRow, **known: Any) -> SteadyMotion:
         speed, (own, common, _) = self.speed, self.parts(y)
         roller, _ = self.bodies(y, solved)
 
