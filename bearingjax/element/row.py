@@ -220,8 +220,7 @@ class Row(eqx.Module):
     def results(self, q: Ring, azimuth: Azimuth, solved: SolvedRow) -> RowResults:
         """Results of the elements of a solved row, with derivatives.
 
-        Args:
-            q, azimuth, solved: As in `energy`.
+        Args: as `energy`.
         """
         local, travel = self.local(q), None
         if self.spring is not None:

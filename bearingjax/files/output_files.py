@@ -156,8 +156,7 @@ def _name_in_errors(path: Path):
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     """Return the files read by a scene: itself, cases, profiles, bearings of a rotor.
 
-    Args:
-        source, settings: As in `read_scene`.
+    Args: as `read_scene`.
 
     Raises:
         SceneError: If there is no such scene, or it cannot be read.

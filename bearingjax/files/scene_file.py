@@ -103,8 +103,7 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
 def has_cases(source: str | Path, settings: Iterable[str] = ()) -> bool:
     """Whether the scene of a bearing has [cases].
 
-    Args:
-        source, settings: As in `read_scene`.
+    Args: as `read_scene`.
 
     Raises:
         SceneError: If it cannot be read.

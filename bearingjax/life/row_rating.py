@@ -140,8 +140,7 @@ class RollerRow(NamedTuple):
     def capacity(self, rows: "Rows", is_thrust: bool, axial: Flag) -> Capacity:
         """C of radial and steep rows, and C0 of an element [N].
 
-        Args:
-            rows, is_thrust, axial: As in `BallRow.capacity`.
+        Args: as `BallRow.capacity`.
         """
         dynamic = radial_roller_dynamic(self, rows.n_rows)
         return dynamic, steep_roller_dynamic(self, rows.one_way), roller_static(self)

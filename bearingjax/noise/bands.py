@@ -241,8 +241,7 @@ def band_shift(
 def band_power(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any, Any, Any]:
     """Return the mean square in each band, and its change by skirts of strong lines.
 
-    Args:
-        spectrum, bands: As in `band_shift`.
+    Args: as `band_shift`.
 
     Returns:
         The mean square, the gain and the loss over the edges (band, ...) [unit

@@ -39,8 +39,7 @@ class OfLife(AbstractMeasure):
     def life(self, element: BearingElement, cases: Cases, solution: Any) -> Any:
         """Life under all cases [1, h].
 
-        Args:
-            element, cases, solution: As in `__call__`.
+        Args: as `__call__`.
 
         Raises:
             ValueError: For hours of cases without speeds, and as `rating_life`.
@@ -63,8 +62,7 @@ class OfLife(AbstractMeasure):
         """Life under each case, as if it were alone (case,) [1, h]; infinite without
         load.
 
-        Args:
-            element, solution: As in `life`.
+        Args: as `life`.
         """
 
         def case_life(solution):

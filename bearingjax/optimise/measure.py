@@ -41,8 +41,7 @@ class AbstractMeasure(eqx.Module):
     def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
         """The measure with the true maximum or minimum in place of the smooth one.
 
-        Args:
-            element, cases, solution: As in `__call__`.
+        Args: as `__call__`.
         """
         return self(element, cases, solution)
 

@@ -36,8 +36,7 @@ it is round-off. Whether they converged is judged by the gradient (`is_minimum`)
 def takes_gradients(method: Any) -> bool:
     """Whether a search uses gradients; a user's own search does not.
 
-    Args:
-        method: As in `search`.
+    Args: as `search`.
     """
     return not (method == "nelder-mead" or callable(method))
 

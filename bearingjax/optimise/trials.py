@@ -65,8 +65,7 @@ def projected_gradient(trial: Trial, near: float) -> np.ndarray:
 def optimality(trial: Trial, near: float) -> float:
     """Largest component of `projected_gradient` in size; NaN without gradients.
 
-    Args:
-        trial, near: As in `projected_gradient`.
+    Args: as `projected_gradient`.
     """
     return float(np.abs(projected_gradient(trial, near)).max())
 

@@ -65,8 +65,7 @@ def contact_line_load(
 
     Each line is labelled with its load.
 
-    Args:
-        solutions, ax, slices: As in `centre_pressure`.
+    Args: as `centre_pressure`.
     """
     ax = axes_or_new(ax, (8.0, 5.0))
     values = [1e-3 * np.asarray(s.line_load) for s in solutions]

@@ -117,8 +117,7 @@ class BearingSupport(AbstractSupport):
         With the preload's share: it is not zero where nothing has moved. NaN where a
         rolling element did not converge.
 
-        Args:
-            motion, velocity, speed, angle: As in `AbstractSupport.force`.
+        Args: as `AbstractSupport.force`.
         """
         sense, sign = self._sense(motion.dtype)
         model, rings = self._model(motion, speed)

@@ -246,8 +246,7 @@ class Installed(eqx.Module):
     def seat_warnings(self, load_fixed_to: str = "space") -> list[Warning]:
         """Warnings about its seats, at the speeds of `conditions`.
 
-        Args:
-            load_fixed_to: As in `LifeConditions`.
+        Args: as `LifeConditions`.
         """
         states = self.fit_states()
         if states is None:

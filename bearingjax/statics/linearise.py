@@ -122,8 +122,7 @@ def linearise(
     Jacobian there, gz held. The rolling elements are at the azimuths that belong to
     gz; for gz = 0 they are those of `first_azimuth`.
 
-    Args:
-        element, load, speed, support, throw: As in `solve_load`.
+    Args: as `solve_load`.
 
     Returns:
         OperatingPoint, differentiable with respect to design, load and speeds; its

@@ -119,8 +119,7 @@ def solve(
 ) -> Solution:
     """Solve as `solve_load`, of an element that is one; no error if the solve fails.
 
-    Args:
-        element, load, support, options, speed, start: As in `solve_load`.
+    Args: as `solve_load`.
     """
     case = load_case(element.bearing, load, support, speed=speed, start=start)
     options = SolveOptions() if options is None else options

@@ -40,8 +40,7 @@ def warnings(found: Any) -> list[Warning]:
 def solution_warnings(solution: Solution) -> list[Warning]:
     """Warnings about a solution without those of its design.
 
-    Args:
-        solution: As in `warnings`.
+    Args: as `warnings`.
 
     Raises:
         TypeError: As `warnings`.

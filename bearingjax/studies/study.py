@@ -56,8 +56,7 @@ with [optimise] to that."""
 def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
     """Return which of `STUDIES` a scene describes.
 
-    Args:
-        source, settings: As in `read_scene`.
+    Args: as `read_scene`.
 
     Raises:
         SceneError: If there is no such scene, or it cannot be read.

@@ -231,8 +231,7 @@ class NoiseSystem(eqx.Module):
     ) -> tuple[Section, Section]:
         """Return reversed forces of the rolling elements on both raceways [N, N m].
 
-        Args:
-            motion, positions: As in `resistance`.
+        Args: as `resistance`.
         """
         (outer, inner), _ = self._contacts(motion, positions)
         return outer, inner

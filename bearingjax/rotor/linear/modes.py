@@ -27,7 +27,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
-from ...numerics.types import Number, array_namespace, as_count, as_real
+from ...numerics.types import Scalar, array_namespace, as_count, as_real
 from ...numerics.units import unit
 from ...numerics.warning import Warning
 from ..rotor import Rotor, RotorMatrices
@@ -520,7 +520,7 @@ def largest_real(
 
 
 def direction(
-    shape: Complex[Array, "*mode node 5"], length: Number
+    shape: Complex[Array, "*mode node 5"], length: Scalar | float
 ) -> Int[Array, "*mode"]:
     """Return the whirl of a mode: +1 from x towards y, -1 opposite, 0 neither.
 

@@ -233,8 +233,7 @@ def flow_slopes(
 ) -> tuple[Float[Array, " state"], Float[Array, "state x"]]:
     """Return the state at phase 2π, and its Jacobian in the state at phase 0 and ν.
 
-    Args:
-        system, start, ratio, steps: As in `integrate`.
+    Args: as `integrate`.
     """
     at = _stages_of(steps, start.dtype)
 

@@ -21,8 +21,7 @@ from .read_design import BALLS, ROLLERS, read_design
 def listed_bearing(designation: str) -> CatalogueEntry:
     """Look up a bearing named on the command line.
 
-    Args:
-        designation: As in `catalogue_entry`.
+    Args: as `catalogue_entry`.
 
     Raises:
         SceneError: If there is no such bearing.

@@ -62,8 +62,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
 def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]:
     """Format C, C0 and C_u in kN, each with its origin, and that of Y and Y0.
 
-    Args:
-        ratings, origins: As in `ratings_as_dict`.
+    Args: as `ratings_as_dict`.
     """
     return {
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"

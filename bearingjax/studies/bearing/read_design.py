@@ -40,8 +40,7 @@ def read_design(table: Table) -> AbstractBearing | BearingSet:
 def read_row(table: Table) -> AbstractBearing:
     """Read a bearing of one row.
 
-    Args:
-        table: As in `read_design`.
+    Args: as `read_design`.
     """
     kind = table.choice("type", (*ROLLERS, *BALLS))
     return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
@@ -103,8 +102,7 @@ PITCH_FOLLOWS = (
 def pitch_follows(table: Table) -> bool:
     """Whether the pitch diameter of a [bearing] follows from its other numbers.
 
-    Args:
-        table: As in `read_design`.
+    Args: as `read_design`.
     """
     return table.raw("type", None) in SPHERES and "pitch_diameter" not in table
 

@@ -190,11 +190,7 @@ class CasesKeys(Keys):
 def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
     """Read a scene with `[cases]`.
 
-    Args:
-        source, settings: As in `read_scene`.
-
-    Raises:
-        SceneError: One line with file, line, key, fault and the allowed values.
+    Args, raises: as `read_scene`.
     """
     path = find_scene(source)
     return case_table(parse_bearing(path, settings), path)

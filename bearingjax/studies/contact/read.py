@@ -253,8 +253,7 @@ class ContactScene:
 def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
     """Whether a scene describes a bearing, not a single contact.
 
-    Args:
-        source, settings: As in `read_scene`.
+    Args: as `read_scene`.
 
     Raises:
         SceneError: If there is no such scene, or it cannot be read.
@@ -266,11 +265,7 @@ def is_bearing(source: str | Path, settings: Iterable[str] = ()) -> bool:
 def read_contact(source: str | Path, settings: Iterable[str] = ()) -> ContactScene:
     """Read a scene of one roller on one raceway.
 
-    Args:
-        source, settings: As in `read_scene`.
-
-    Raises:
-        SceneError: One line with file, line, key, fault and the allowed values.
+    Args, raises: as `read_scene`.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)

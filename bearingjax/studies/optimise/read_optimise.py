@@ -216,11 +216,7 @@ def read_bearing_optimisation(
 ) -> Optimisation:
     """Read the scene of a bearing with [optimise].
 
-    Args:
-        source, settings: As in `read_scene`.
-
-    Raises:
-        SceneError: One line with file, line, key, fault and the allowed values.
+    Args, raises: as `read_scene`.
     """
     path = find_scene(source)
     data = parse_bearing(path, settings)

@@ -94,8 +94,7 @@ class ShaftOptimisation(SearchTask):
 def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     """Read a scene with [optimise], of a bearing or of a system of shafts.
 
-    Args:
-        source, settings: As in `read_scene`.
+    Args: as `read_scene`.
 
     Returns:
         `Optimisation`, or `ShaftOptimisation`.

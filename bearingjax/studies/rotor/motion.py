@@ -226,8 +226,7 @@ def run_in_time(
 ) -> RotorTransient:
     """Compute the motion in time of a rotor, from rest in the static equilibrium.
 
-    Args:
-        task, rotor, settled, modes: As in `respond`.
+    Args: as `respond`.
     """
     asked = task.transient
     assert asked is not None  # callers check it

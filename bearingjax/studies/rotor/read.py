@@ -252,11 +252,7 @@ class RotorKeys(Keys):
 def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
     """Read the scene of a rotor.
 
-    Args:
-        source, settings: As in `read_scene`.
-
-    Raises:
-        SceneError: One line with file, line, key, fault and the allowed values.
+    Args, raises: as `read_scene`.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)

@@ -281,11 +281,7 @@ class ShaftScene:
 def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     """Read the scene of a system of shafts.
 
-    Args:
-        source, settings: As in `read_scene`.
-
-    Raises:
-        SceneError: One line with file, line, key, fault and the allowed values.
+    Args, raises: as `read_scene`.
     """
     path = find_scene(source)
     data = parse_scene(path, settings)

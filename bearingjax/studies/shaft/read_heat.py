@@ -83,8 +83,7 @@ def read_heat(
 def heat_warnings(bearings: Mapping[str, Scene | None]) -> Iterator[Warning]:
     """Yield warnings about bearings of which [heat] finds the temperatures.
 
-    Args:
-        bearings: As in `read_heat`.
+    Args: as `read_heat`.
     """
     scenes = {name: one for name, one in bearings.items() if one is not None}
     loose = [name for name, one in scenes.items() if one.fits is None]
