@@ -83,8 +83,7 @@ def read_rows(path: Path) -> list[Line]:
     Semicolons, commas, or blanks part the numbers; decimal commas are those that blanks
     do not follow in a table with blanks, and those beside semicolons.
 
-    Raises:
-        ValueError: As `read_columns`.
+    Raises: as `read_columns`.
     """
     texts = [line.partition("#")[0] for line in read_text(path).split("\n")]
     ended = [text.strip().rstrip(",;").rstrip() for text in texts]

@@ -120,8 +120,7 @@ def fit_states(
         conditions: Temperatures and speeds in operation; `None`: as mounted.
         limits: Limits of its sizes; `None`: nothing is said of tolerances.
 
-    Raises:
-        ValueError: As `clearance_range`.
+    Raises: as `clearance_range`.
     """
     free = mounting.radial_clearance
     cold, warm = (fit_state(mounting, one) for one in (None, conditions))

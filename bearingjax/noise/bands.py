@@ -73,8 +73,7 @@ def third_octave_bands(lowest: float = 4.0, highest: float = 10000.0) -> Bands:
     Args:
         lowest, highest: As in `octave_bands`; such as 25, 31.5, 40.
 
-    Raises:
-        ValueError: As `octave_bands`.
+    Raises: as `octave_bands`.
 
     Source: IEC 61260-1 (2014), base ten.
     """

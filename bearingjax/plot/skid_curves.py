@@ -177,8 +177,7 @@ def sliding_spectrum(
         found: From `skid.simulate`, at even times.
         ball, raceway, begin: As in `skid.sliding_spectrum`.
 
-    Raises:
-        ValueError: As `skid.sliding_spectrum`.
+    Raises: as `skid.sliding_spectrum`.
     """
     lines = spectrum(found, ball=ball, raceway=raceway, begin=begin)
     ax = axes_or_new(ax)

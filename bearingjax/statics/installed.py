@@ -111,8 +111,7 @@ class Installed(eqx.Module):
             Bearing whose `drawing` has the `inner_offset` that `preload` gives, and
             whose `preload` is `None`.
 
-        Raises:
-            TypeError, ValueError, SolveError: As `bearingjax.preload`.
+        Raises: as `bearingjax.preload`.
         """
         if self.preload is None:
             return self

@@ -39,8 +39,7 @@ class OperatingPoint(eqx.Module):
     def warnings(self) -> tuple[Warning, ...]:
         """Warnings about its solution, such as a direction without stiffness.
 
-        Raises:
-            TypeError: As `warnings`.
+        Raises: as `warnings`.
         """
         return tuple(warnings(self.solution))
 
@@ -128,8 +127,7 @@ def linearise(
         OperatingPoint, differentiable with respect to design, load and speeds; its
         `warnings` say if a free direction has no stiffness there, as without load.
 
-    Raises:
-        TypeError, ValueError, SolveError: As `solve_load`.
+    Raises: as `solve_load`.
 
     Fails: as `solve_load`; with `throw=False` read `solution.result`.
     """

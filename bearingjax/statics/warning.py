@@ -40,10 +40,7 @@ def warnings(found: Any) -> list[Warning]:
 def solution_warnings(solution: Solution) -> list[Warning]:
     """Warnings about a solution without those of its design.
 
-    Args: as `warnings`.
-
-    Raises:
-        TypeError: As `warnings`.
+    Args, raises: as `warnings`.
     """
     if any(is_traced(leaf) for leaf in jax.tree.leaves(solution)):
         raise TypeError(

@@ -196,8 +196,7 @@ def scene_of(
         other_keys: Keys of the table of the bearing that are read elsewhere.
         places: As in `Table`, of a bearing that is part of a machine.
 
-    Raises:
-        SceneError: As `read_scene`.
+    Raises: as `read_scene`.
     """
     top = Table(data, path, places=places)
     # Tables of other commands.

@@ -203,8 +203,7 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
         data: The scene.
         path: Its path.
 
-    Raises:
-        SceneError: As `read_cases`.
+    Raises: as `read_cases`.
     """
     if "cases" not in data:
         raise SceneError(
