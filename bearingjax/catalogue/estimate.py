@@ -14,27 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..design import (
-    AbstractBearing,
-    AngularContactBallBearing,
-    BearingSet,
-    CrossedRollerRow,
-    CylindricalRollerBearing,
-    CylindricalThrustRollerBearing,
-    DeepGrooveBallBearing,
-    FourPointBallBearing,
-    Logarithmic,
-    NeedleRollerBearing,
-    Rib,
-    Ribs,
-    SelfAligningBallRow,
-    SphericalRollerRow,
-    SphericalThrustRollerBearing,
-    TaperedRollerBearing,
-    ThrustBallBearing,
-    ToroidalRollerBearing,
-    rows_of,
-)
+from .. import design
 from ..design.checks import check, in_range, is_traced, one_of, positive
 from ..life import row_rating
 from ..life.row_rating import BallKind, BallRow, RollerRow, Rows
@@ -167,7 +147,7 @@ class GeometryEstimate(eqx.Module):
     Static: all numbers but those of the bearing.
     """
 
-    bearing: AbstractBearing | BearingSet
+    bearing: design.AbstractBearing | design.BearingSet
     dynamic_error: float = eqx.field(static=True)
     static_error: float = eqx.field(static=True)
     raised: float = eqx.field(static=True)
@@ -181,7 +161,7 @@ class GeometryEstimate(eqx.Module):
 
     def report(self) -> str:
         """Description of the estimate and its misfit, also used for printing."""
-        row = rows_of(self.bearing)[0].bearing
+        row = design.rows_of(self.bearing)[0].bearing
         name, size = row.noun, float(row.element_diameter)
         length = row.element_length
         angle = np.rad2deg(float(row.nominal_contact_angle))
@@ -602,7 +582,7 @@ def _check_proportions(numbers, kind, contact_angle) -> Proportions:
     return typical._replace(angle=Typical(float(contact_angle), 1e-4))
 
 
-def _design(kind, known, fit) -> AbstractBearing | BearingSet:
+def _design(kind, known, fit) -> design.AbstractBearing | design.BearingSet:
     sizes = _sizes(_KINDS[kind], known, fit.sizes)
     balls = _KINDS[kind].balls
     diameter, pitch, length, angle = (float(size) for size in sizes)
@@ -611,31 +591,33 @@ def _design(kind, known, fit) -> AbstractBearing | BearingSet:
     if kind in ("spherical_roller", "toroidal_roller", "spherical_thrust_roller"):
         return _barrels(kind, fit.n_elements, pitch, diameter, length, angle, known)
     if balls is None:
-        sizes, profile = (pitch, diameter, length), Logarithmic()
+        sizes, profile = (pitch, diameter, length), design.Logarithmic()
         if kind == "crossed_roller":
-            row = CrossedRollerRow(2 * fit.n_elements, *sizes, roller_profile=profile)
-            return BearingSet.crossed(row)
+            row = design.CrossedRollerRow(
+                2 * fit.n_elements, *sizes, roller_profile=profile
+            )
+            return design.BearingSet.crossed(row)
         return _CYLINDERS[kind](fit.n_elements, *sizes, roller_profile=profile)
     outer, inner = balls.open
     row = fit.n_elements, pitch, diameter
     if kind == "self_aligning_ball":
         offset = 0.5 * pitch * np.tan(angle)
-        return BearingSet.self_aligning(
-            SelfAligningBallRow(*row, inner_osculation=inner, row_offset=offset)
+        return design.BearingSet.self_aligning(
+            design.SelfAligningBallRow(*row, inner_osculation=inner, row_offset=offset)
         )
     grooves: dict[str, Any] = dict(outer_osculation=outer, inner_osculation=inner)
     if kind == "angular_contact_ball":
-        return AngularContactBallBearing(*row, **grooves, contact_angle=angle)
+        return design.AngularContactBallBearing(*row, **grooves, contact_angle=angle)
     if kind == "four_point_ball":
-        return FourPointBallBearing(*row, **grooves, shim_angle=angle)
-    types = DeepGrooveBallBearing, ThrustBallBearing
+        return design.FourPointBallBearing(*row, **grooves, shim_angle=angle)
+    types = design.DeepGrooveBallBearing, design.ThrustBallBearing
     return types[kind == "thrust_ball"](*row, **grooves)
 
 
 _CYLINDERS: dict[str, Any] = {
-    "cylindrical_roller": CylindricalRollerBearing,
-    "needle_roller": NeedleRollerBearing,
-    "cylindrical_thrust_roller": CylindricalThrustRollerBearing,
+    "cylindrical_roller": design.CylindricalRollerBearing,
+    "needle_roller": design.NeedleRollerBearing,
+    "cylindrical_thrust_roller": design.CylindricalThrustRollerBearing,
 }
 
 
@@ -646,13 +628,13 @@ def _barrels(kind, count, pitch, diameter, length, angle, known):
         radius = 0.5 * (float(known.width) / _TRAVEL + diameter)
         arcs = dict(outer_raceway_radius=radius, inner_raceway_radius=radius)
         arcs["roller_profile_radius"] = _BARREL * radius
-        return ToroidalRollerBearing(*sizes, **arcs)
+        return design.ToroidalRollerBearing(*sizes, **arcs)
     radius = 0.5 * (pitch / np.cos(angle) + diameter)
     arcs = dict(inner_raceway_radius=radius, roller_profile_radius=_BARREL * radius)
     if kind == "spherical_roller":
-        row = SphericalRollerRow(*sizes, **arcs, contact_angle=angle)
-        return BearingSet.self_aligning(row)
-    return SphericalThrustRollerBearing(*sizes, **arcs, contact_angle=angle)
+        row = design.SphericalRollerRow(*sizes, **arcs, contact_angle=angle)
+        return design.BearingSet.self_aligning(row)
+    return design.SphericalThrustRollerBearing(*sizes, **arcs, contact_angle=angle)
 
 
 def _taper(count, pitch, diameter, length, angle):
@@ -663,13 +645,13 @@ def _taper(count, pitch, diameter, length, angle):
     axis = angle - half
     # Roller ends as spheres about nearly the common apex, touching the rib low down.
     apex = 0.5 * pitch / np.sin(axis) + 0.5 * length
-    return TaperedRollerBearing(
+    return design.TaperedRollerBearing(
         count,
         pitch,
         diameter,
         length,
         roller_axis_angle=axis,
         roller_half_angle=half,
-        roller_profile=Logarithmic(),
-        ribs=Ribs(inner_minus=Rib(0.95 * apex, 0.1 * diameter)),
+        roller_profile=design.Logarithmic(),
+        ribs=design.Ribs(inner_minus=design.Rib(0.95 * apex, 0.1 * diameter)),
     )

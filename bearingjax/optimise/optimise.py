@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ..cases.cases import Cases
-from ..design.checks import all_of_class, count, in_range, must_be, of_class
+from ..design.checks import all_of_class, count, must_be, of_class
 from ..life.rating import check_alike
 from ..numerics.units import meaning, shown_number, unit
 from ..statics import Installed, SolveOptions, Support
@@ -413,4 +413,5 @@ def _check_call(objective, constraints, max_steps, tolerance):
     of_class("optimise", "objective", objective, Callable, allowed)
     all_of_class("optimise", "constraints", constraints, Constraint, "Constraints")
     count("optimise", "max_steps", max_steps)
-    in_range("optimise", "tolerance", 0.0, 0.1, tolerance, "")
+    small = 0.0 < tolerance < 0.1
+    must_be("optimise", "tolerance", tolerance, small, "above 0 and below 0.1")

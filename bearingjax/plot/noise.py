@@ -5,16 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from .. import noise
 from ..element.frame import DIRECTIONS
-from ..noise import (
-    REFERENCE_ACCELERATION,
-    Bands,
-    ContactStates,
-    Line,
-    SourceContributions,
-    Spectrum,
-    Vibration,
-)
 from ..noise.level import LOWEST_LEVEL
 from ..noise.lines import UNNAMED
 from ..noise.scatter import SOURCES
@@ -32,7 +24,7 @@ _TICKS = 18
 
 
 @chart
-def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
+def acceleration_over_time(record: noise.Vibration, ax: Ax = None) -> Panel:
     """Plot the acceleration of the moving ring over the turns of the shaft [m/s²].
 
     Args:
@@ -58,11 +50,11 @@ def acceleration_over_time(record: Vibration, ax: Ax = None) -> Panel:
 
 
 def noise_spectrum(
-    spectrum: Spectrum,
-    lines: Sequence[Line] = (),
+    spectrum: noise.Spectrum,
+    lines: Sequence[noise.Line] = (),
     ax: Ax = None,
     *,
-    reference: float = REFERENCE_ACCELERATION,
+    reference: float = noise.REFERENCE_ACCELERATION,
 ) -> Axes:
     """Plot the level of every line of a spectrum, summed over directions.
 
@@ -130,12 +122,12 @@ def _names(ax, lines, decibel):
 
 
 def band_bars(
-    bands: Bands,
+    bands: noise.Bands,
     level: Any,
     ax: Ax = None,
     *,
     norm: Any = None,
-    reference: float = REFERENCE_ACCELERATION,
+    reference: float = noise.REFERENCE_ACCELERATION,
 ) -> Axes:
     """Plot the level of every band and direction, with the norm if there is one.
 
@@ -174,8 +166,8 @@ def band_bars(
 
 
 def contact_state_map(
-    record: Vibration,
-    states: ContactStates,
+    record: noise.Vibration,
+    states: noise.ContactStates,
     ax: Ax = None,
 ) -> Axes:
     """Map the number of contacts of every rolling element over turns of the shaft.
@@ -232,7 +224,7 @@ def contact_state_map(
 
 @chart
 def level_distribution(
-    level: Any, ax: Ax = None, *, reference: float = REFERENCE_ACCELERATION
+    level: Any, ax: Ax = None, *, reference: float = noise.REFERENCE_ACCELERATION
 ) -> Panel:
     """Plot the cumulative distribution of levels over bearings [%].
 
@@ -255,7 +247,7 @@ def level_distribution(
     )
 
 
-def source_bars(contributions: SourceContributions, ax: Ax = None) -> Any:
+def source_bars(contributions: noise.SourceContributions, ax: Ax = None) -> Any:
     """Plot the share of each source in the mean square of the acceleration [%].
 
     Args:

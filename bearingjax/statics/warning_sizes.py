@@ -10,20 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..design import (
-    AbstractBallBearing,
-    AbstractBearing,
-    AbstractRollerBearing,
-    AngularContactBallBearing,
-    BearingSet,
-    CylindricalRollerBearing,
-    NeedleRollerBearing,
-    SelfAligningBallRow,
-    SphericalRollerRow,
-    SphericalThrustRollerBearing,
-    ToroidalRollerBearing,
-    rows_of,
-)
+from .. import design
 from ..design.abstract import nearest_entry
 from ..design.bearing_set import bearings_of, is_self_aligning
 from ..design.material import contact_modulus
@@ -59,16 +46,16 @@ USUAL_TILT_OF_TOROIDAL_ROLLERS = math.radians(0.5)
 """Largest tilt of toroidal roller bearings that SKF allows for [rad] (catalogue)."""
 
 _USUAL_TILTS = {
-    AbstractBallBearing: USUAL_TILT_OF_BALLS,
-    AbstractRollerBearing: USUAL_TILT_OF_ROLLERS,
-    ToroidalRollerBearing: USUAL_TILT_OF_TOROIDAL_ROLLERS,
-    SphericalThrustRollerBearing: math.inf,
+    design.AbstractBallBearing: USUAL_TILT_OF_BALLS,
+    design.AbstractRollerBearing: USUAL_TILT_OF_ROLLERS,
+    design.ToroidalRollerBearing: USUAL_TILT_OF_TOROIDAL_ROLLERS,
+    design.SphericalThrustRollerBearing: math.inf,
 }
 
 _STATIC_LIMITS = {
-    AbstractBallBearing: 4200e6,
-    SelfAligningBallRow: 4600e6,
-    AbstractRollerBearing: 4000e6,
+    design.AbstractBallBearing: 4200e6,
+    design.SelfAligningBallRow: 4600e6,
+    design.AbstractRollerBearing: 4000e6,
 }
 """Contact pressures of the basic static load rating by class [Pa]."""
 
@@ -113,10 +100,11 @@ _PLAUSIBLE = {
 """Usual ranges: from miniature to slewing bearings, from polymers to hard metal."""
 
 
-def stiffness_scale(bearing: AbstractBearing | BearingSet) -> Any:
+def stiffness_scale(bearing: design.AbstractBearing | design.BearingSet) -> Any:
     """E* times the diameter of the rolling elements, the least of all rows [N/m]."""
     scales = [
-        _modulus(row.bearing) * _diameter(row.bearing) for row in rows_of(bearing)
+        _modulus(row.bearing) * _diameter(row.bearing)
+        for row in design.rows_of(bearing)
     ]
     least = scales[0]
     for scale in scales[1:]:
@@ -148,7 +136,7 @@ def _by_row(solution: Solution, values: Any) -> Iterator[tuple[Any, Any]]:
     """(bearing, values of its rolling elements) of every row."""
     ends = np.cumsum(solution.row_sizes)
     for row, count, end in zip(
-        rows_of(solution.element.bearing), solution.row_sizes, ends, strict=True
+        design.rows_of(solution.element.bearing), solution.row_sizes, ends, strict=True
     ):
         yield row.bearing, values[int(end) - count : int(end)]
 
@@ -285,7 +273,7 @@ def slack_numbers(solution: Solution) -> str:
     return f"row {number_ranges(np.flatnonzero(slack))}"
 
 
-def static_limit(bearing: AbstractBearing | BearingSet) -> float:
+def static_limit(bearing: design.AbstractBearing | design.BearingSet) -> float:
     """Contact pressure of the basic static load rating [Pa].
 
     Source: ISO 76:2006, 3.2 and 3.3.
@@ -372,7 +360,7 @@ def travel_error(solution: Solution) -> Any:
     q, shares = solution.displacement, []
     approach = 2.0 * _line_approach(solution)
     pressed = approach > 0
-    for row in rows_of(solution.element.bearing):
+    for row in design.rows_of(solution.element.bearing):
         b: Any = row.bearing
         _, outer, inner = b.arc_radii
         sin, cos, half = (
@@ -424,7 +412,7 @@ def prescribed_tilt(solution: Solution) -> Any:
     return _ones(solution, True) * square**0.5 / usual_tilt(solution.element.bearing)
 
 
-def usual_tilt(bearing: AbstractBearing | BearingSet) -> float:
+def usual_tilt(bearing: design.AbstractBearing | design.BearingSet) -> float:
     """Largest tilt of ring against ring that makers allow for [rad].
 
     None of bearings with a spherical raceway: their rings tilt freely.
@@ -450,17 +438,19 @@ def tilt_in_words(solution: Solution, share: Any) -> str:
     )
 
 
-def has_clearance(bearing: AbstractBearing | BearingSet) -> bool:
+def has_clearance(bearing: design.AbstractBearing | design.BearingSet) -> bool:
     """Whether it has a radial clearance of its own: a single bearing, one that does not
     need another to be set against."""
-    rows = rows_of(bearing)
+    rows = design.rows_of(bearing)
     row = rows[0].bearing
     if len(rows) > 1 and not is_self_aligning(bearing):
         return False
-    if isinstance(row, AbstractBallBearing):
+    if isinstance(row, design.AbstractBallBearing):
         return not row.is_one_sided
-    kinds = CylindricalRollerBearing | NeedleRollerBearing
-    return isinstance(row, kinds | SphericalRollerRow | ToroidalRollerBearing)
+    kinds = design.CylindricalRollerBearing | design.NeedleRollerBearing
+    return isinstance(
+        row, kinds | design.SphericalRollerRow | design.ToroidalRollerBearing
+    )
 
 
 def radial_share(solution: Solution) -> Any:
@@ -476,7 +466,7 @@ def radial_share(solution: Solution) -> Any:
 def clearance_lost(solution: Solution) -> Any:
     """Radial clearance below zero of a bearing that turns [m]."""
     assert solution.speed is not None
-    row: Any = rows_of(solution.element.bearing)[0].bearing
+    row: Any = design.rows_of(solution.element.bearing)[0].bearing
     clearance = row.clearance if row.is_ball else row.radial_internal_clearance
     turns = solution.speed.inner != solution.speed.outer
     return -clearance * _ones(solution, turns)
@@ -503,14 +493,14 @@ def _implausible(bearing):
 
 def implausible_dimensions(solution: Solution) -> Any:
     """Number of design values far outside their usual ranges."""
-    rows = rows_of(solution.element.bearing)
+    rows = design.rows_of(solution.element.bearing)
     found = [strange for row in rows for *_, strange in _implausible(row.bearing)]
     return sum(_ones(solution, flag) for flag in found)
 
 
 def odd_names(solution: Solution) -> str:
     """Numbers that `implausible_dimensions` counts, in words."""
-    rows = rows_of(solution.element.bearing)
+    rows = design.rows_of(solution.element.bearing)
     found = [part for row in rows for part in _implausible(row.bearing)]
     return ", ".join(
         dict.fromkeys(
@@ -521,7 +511,7 @@ def odd_names(solution: Solution) -> str:
 
 def interference(solution: Solution) -> Any:
     """Largest interference of a rib and the roller ends, unloaded [m]."""
-    every: Any = [row.bearing for row in rows_of(solution.element.bearing)]
+    every: Any = [row.bearing for row in design.rows_of(solution.element.bearing)]
     gaps = [getattr(b.ribs, n).axial_gap for b in every for n in b.ribs.present]
     return _largest_number(solution, [-gap for gap in gaps])
 
@@ -572,7 +562,7 @@ def load_beyond_groove(solution: Solution) -> Any:
     cut = xp.where(carrying, balls.contact_angle / half, xp.inf)
     for bearing, of_row in _by_row(solution, cut):
         sides = of_row.reshape(of_row.shape[0], 2, -1).min(axis=2)
-        if not isinstance(bearing, AngularContactBallBearing):
+        if not isinstance(bearing, design.AngularContactBallBearing):
             parts.append(sides < -xp.inf)
             continue
         osculations = xp.stack([bearing.outer_osculation, bearing.inner_osculation])

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ... import element
 from ...contact.coupled import CoupledSlices
 from ...contact.line import ISO16281, AbstractLineLaw, LineConstant, Palmgren
 from ...contact.point_law import (
@@ -12,19 +13,6 @@ from ...contact.point_law import (
     ZeroAngle,
 )
 from ...design import AbstractBearing, BearingSet, rows_of
-from ...element import (
-    AbstractRacewayControl,
-    CentrifugalOnly,
-    ConstantAngle,
-    EqualShare,
-    Finite,
-    FrictionLimited,
-    InnerControl,
-    Linearised,
-    LoadShare,
-    OperatingCentrifugal,
-    OuterControl,
-)
 from ...element.choices import usual_kinematics
 from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table
@@ -39,9 +27,9 @@ LINE_LAWS = {
 }
 QUADRATURES = {"contact_mapped": ContactMapped, "midpoint": Midpoint}
 KINEMATICS = {
-    "linearised": Linearised,
-    "constant_angle": ConstantAngle,
-    "finite": Finite,
+    "linearised": element.Linearised,
+    "constant_angle": element.ConstantAngle,
+    "finite": element.Finite,
 }
 POINT_LAWS = {
     "free_angle": FreeAngle,
@@ -49,13 +37,13 @@ POINT_LAWS = {
     "operating_angle": OperatingAngle,
 }
 CONTROLS = {
-    "outer": OuterControl,
-    "inner": InnerControl,
-    "equal_share": EqualShare,
-    "load_share": LoadShare,
-    "friction_limited": FrictionLimited,
-    "centrifugal_only": CentrifugalOnly,
-    "operating_centrifugal": OperatingCentrifugal,
+    "outer": element.OuterControl,
+    "inner": element.InnerControl,
+    "equal_share": element.EqualShare,
+    "load_share": element.LoadShare,
+    "friction_limited": element.FrictionLimited,
+    "centrifugal_only": element.CentrifugalOnly,
+    "operating_centrifugal": element.OperatingCentrifugal,
 }
 EQUILIBRIA = {"newton": TrustRegionNewton, "bfgs": BFGS}
 MOST_SLICES = 10_000
@@ -128,7 +116,7 @@ class ControlKeys(Keys):
         default="outer",
     )
     friction_coefficient: float | None = key_of(
-        FrictionLimited, "friction", default=None
+        element.FrictionLimited, "friction", default=None
     )
 
     def check(self) -> None:
@@ -140,12 +128,12 @@ class ControlKeys(Keys):
             raise self.table.error("friction_coefficient", problem)
 
     @property
-    def control(self) -> AbstractRacewayControl:
+    def control(self) -> element.AbstractRacewayControl:
         """Raceway control of the balls."""
         if self.friction_coefficient is None:
             return CONTROLS[self.raceway_control]()
         with self.table.building(friction="friction_coefficient"):
-            return FrictionLimited(self.friction_coefficient)
+            return element.FrictionLimited(self.friction_coefficient)
 
 
 class BallNumericsKeys(Keys):

@@ -1,17 +1,6 @@
 """A bearing from the keys of its design."""
 
-from ...design import (
-    MATERIALS,
-    RIB_NAMES,
-    AbstractBearing,
-    AbstractProfile,
-    AbstractRollerBearing,
-    BearingSet,
-    Material,
-    Rib,
-    Ribs,
-    pitch_on_sphere,
-)
+from ... import design
 from ...design.bearing_set import shares_rings
 from ...design.keywords import BALLS, PROFILES, ROLLERS, both_rows
 from ...design.rib import ARRANGEMENTS
@@ -25,7 +14,7 @@ WITH_LETTERS = "cylindrical_roller", "needle_roller"
 """Rollers whose ribs have an `arrangement` by letters."""
 
 
-def read_design(table: Table) -> AbstractBearing | BearingSet:
+def read_design(table: Table) -> design.AbstractBearing | design.BearingSet:
     """Read a bearing, or the set of both rows that share its rings.
 
     Args:
@@ -37,7 +26,7 @@ def read_design(table: Table) -> AbstractBearing | BearingSet:
     return with_both_rows(table, read_row(table))
 
 
-def read_row(table: Table) -> AbstractBearing:
+def read_row(table: Table) -> design.AbstractBearing:
     """Read a bearing of one row.
 
     Args: as `read_design`.
@@ -47,8 +36,8 @@ def read_row(table: Table) -> AbstractBearing:
 
 
 def with_both_rows(
-    table: Table, bearing: AbstractBearing
-) -> AbstractBearing | BearingSet:
+    table: Table, bearing: design.AbstractBearing
+) -> design.AbstractBearing | design.BearingSet:
     """Return the set of both rows of a bearing whose rows share rings, else itself.
 
     Args:
@@ -65,7 +54,7 @@ def with_both_rows(
         return both_rows(bearing, staggered)
 
 
-def two_row_name(bearing: AbstractBearing) -> str:
+def two_row_name(bearing: design.AbstractBearing) -> str:
     """Name the kind of a bearing of two rows.
 
     Args:
@@ -107,11 +96,11 @@ def pitch_follows(table: Table) -> bool:
     return table.raw("type", None) in SPHERES and "pitch_diameter" not in table
 
 
-def _balls(table: Table, kind: str) -> AbstractBearing:
+def _balls(table: Table, kind: str) -> design.AbstractBearing:
     return build(BALLS[kind], table, required_numbers(kind), **_materials(table))
 
 
-def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
+def _rollers(table: Table, kind: str) -> design.AbstractRollerBearing:
     derived = pitch_follows(table)
     if derived and "outer_raceway_radius" not in table:
         problem = "is missing, and so is `outer_raceway_radius`; one of them must be a"
@@ -122,7 +111,7 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
         "roller_profile": read_profile(table.table("roller_profile")),
     }
     if derived:
-        values["pitch_diameter"] = pitch_on_sphere(**values)
+        values["pitch_diameter"] = design.pitch_on_sphere(**values)
         table.fill("pitch_diameter", format_number(values["pitch_diameter"], "m"))
     raceways = table.table("raceway_profile")
     for ring in RINGS:
@@ -133,9 +122,9 @@ def _rollers(table: Table, kind: str) -> AbstractRollerBearing:
         return ROLLERS[kind](**values)
 
 
-def _materials(table: Table) -> dict[str, Material | None]:
+def _materials(table: Table) -> dict[str, design.Material | None]:
     found = {
-        "material": read_material(table, "material") or Material(),
+        "material": read_material(table, "material") or design.Material(),
         "ring_material": read_material(table, "ring_material"),
     }
     for key, material in found.items():
@@ -144,29 +133,31 @@ def _materials(table: Table) -> dict[str, Material | None]:
     return found
 
 
-def read_material(table: Table, key: str) -> Material | None:
+def read_material(table: Table, key: str) -> design.Material | None:
     """Read the material at a key, by its name or its numbers; `None` if absent."""
-    given = table.table_or_word(key, tuple(MATERIALS))
+    given = table.table_or_word(key, tuple(design.MATERIALS))
     if given is None:
         return None
     if isinstance(given, str):
-        return MATERIALS[given]()
-    return build(Material, given)
+        return design.MATERIALS[given]()
+    return build(design.Material, given)
 
 
-def _ribs(table: Table, kind: str) -> Ribs:
+def _ribs(table: Table, kind: str) -> design.Ribs:
     if kind == "crossed_roller":
         for key in ("ribs", "rib", "arrangement"):
             if key in table:
                 raise table.error(key, "is for others; crossed rollers have no ribs")
-        return Ribs()
+        return design.Ribs()
     if "arrangement" not in table:
         for key in ("rib", "axial_internal_clearance"):
             if key in table:
                 raise table.error(key, "belongs to an `arrangement`, which is missing")
         ribs = table.table("ribs")
-        given = {name: ribs.table(name) for name in RIB_NAMES}
-        return Ribs(**{name: _rib(given[name]) for name in RIB_NAMES if name in ribs})
+        given = {name: ribs.table(name) for name in design.RIB_NAMES}
+        return design.Ribs(
+            **{name: _rib(given[name]) for name in design.RIB_NAMES if name in ribs}
+        )
     if "ribs" in table:
         raise table.error("ribs", "give either `arrangement` or `ribs`, not both")
     if kind not in WITH_LETTERS:
@@ -182,16 +173,16 @@ def _ribs(table: Table, kind: str) -> Ribs:
     if play is not None:
         common.fill("axial_gap", None)  # it follows from the clearance
     with table.building():
-        return Ribs.arrangement(name, rib, play)
+        return design.Ribs.arrangement(name, rib, play)
 
 
-def _rib(table: Table) -> Rib:
+def _rib(table: Table) -> design.Rib:
     if "end_radius" in table and table.word("end_radius") == "flat":
         problem = "flat ends have no point contact; give the radius of the end sphere"
         raise table.error("end_radius", problem)
-    return build(Rib, table)
+    return build(design.Rib, table)
 
 
-def read_profile(table: Table) -> AbstractProfile:
+def read_profile(table: Table) -> design.AbstractProfile:
     """Read the profile of a roller or raceway; straight if the table is empty."""
     return build(PROFILES[table.choice("type", tuple(PROFILES), "straight")], table)

@@ -5,37 +5,25 @@ from typing import ClassVar
 
 import numpy as np
 
+from ... import lubrication
 from ...files.schema import Keys, scene_key
 from ...friction.friction import SUPPLIES
-from ...lubrication import (
-    OILS,
-    AbstractAmbient,
-    AbstractTraction,
-    Barus,
-    Density,
-    DryFriction,
-    Exponential,
-    Eyring,
-    FreeVolume,
-    LimitingStress,
-    Lubricant,
-    Newtonian,
-    Roelands,
-    SlipCurve,
-    Walther,
-)
 from ...numerics.units import CELSIUS, unit_of
 from ...numerics.warning import Warning
 
-VISCOSITY_LAWS = {"free_volume": FreeVolume, "barus": Barus, "roelands": Roelands}
+VISCOSITY_LAWS = {
+    "free_volume": lubrication.FreeVolume,
+    "barus": lubrication.Barus,
+    "roelands": lubrication.Roelands,
+}
 """Laws of viscosity over pressure; the first includes the temperature."""
 
 TRACTIONS = {
-    "newtonian": Newtonian,
-    "eyring": Eyring,
-    "limiting": LimitingStress,
-    "slip_curve": SlipCurve,
-    "dry": DryFriction,
+    "newtonian": lubrication.Newtonian,
+    "eyring": lubrication.Eyring,
+    "limiting": lubrication.LimitingStress,
+    "slip_curve": lubrication.SlipCurve,
+    "dry": lubrication.DryFriction,
 }
 
 DENSITY = 900.0
@@ -52,15 +40,15 @@ class LubricantKeys(Keys):
     )
 
     numbers: ClassVar[Mapping[str, type]] = {
-        "`law` = free_volume": FreeVolume,
-        "`cold_viscosity`": Walther,
-        "`reference_viscosity`": Exponential,
+        "`law` = free_volume": lubrication.FreeVolume,
+        "`cold_viscosity`": lubrication.Walther,
+        "`reference_viscosity`": lubrication.Exponential,
     }
 
     temperature: float = scene_key(
         "temperature of the oil", "temperature", least=-60, most=250
     )
-    name: str | None = scene_key("one of these oils", choices=tuple(OILS))
+    name: str | None = scene_key("one of these oils", choices=tuple(lubrication.OILS))
     law: str | None = scene_key(
         "law of viscosity over pressure, in place of a `name`",
         choices=tuple(VISCOSITY_LAWS),
@@ -102,12 +90,12 @@ class LubricantKeys(Keys):
         "loss of density per kelvin",
         "density slope",
         needs=("law",),
-        otherwise=f"{Density.slope:g} kg/(m³ K)",
+        otherwise=f"{lubrication.Density.slope:g} kg/(m³ K)",
     )
     density_temperature: float | None = scene_key(
         "temperature of the density", "temperature", needs=("law",), otherwise="15 °C"
     )
-    traction: AbstractTraction = scene_key(
+    traction: lubrication.AbstractTraction = scene_key(
         "law of traction, of what skids", of=TRACTIONS, default="newtonian"
     )
     supply: str = scene_key(
@@ -138,7 +126,7 @@ class LubricantKeys(Keys):
 
     def check(self) -> None:
         if self.law is None and self.name is None:
-            names = ", ".join(OILS)
+            names = ", ".join(lubrication.OILS)
             problem = f"is missing; give one of {names}, or a `law` with its numbers"
             raise self.table.error("name", problem)
         graded = self.grade is not None or self.oil_name.startswith("ISO VG")
@@ -150,15 +138,15 @@ class LubricantKeys(Keys):
             problem = "is missing; the other numbers of the density go with it"
             raise self.table.error("density", problem)
 
-    def oil(self) -> Lubricant:
+    def oil(self) -> lubrication.Lubricant:
         """Build the lubricant."""
         if self.name is not None:
             index = self.viscosity_index
             given = {} if index is None else {"viscosity_index": index}
             with self.table.building():
-                return OILS[self.name](**given)
+                return lubrication.OILS[self.name](**given)
         if self.law == "free_volume":
-            ambient = pressure = self.build_law(FreeVolume)
+            ambient = pressure = self.build_law(lubrication.FreeVolume)
         else:
             ambient = self._ambient()
             # Raises if it is missing.
@@ -172,9 +160,11 @@ class LubricantKeys(Keys):
         }
         given = {name: value for name, value in density.items() if value is not None}
         with self.table.building():
-            return Lubricant(ambient, pressure, Density(**given), self.film_coefficient)
+            return lubrication.Lubricant(
+                ambient, pressure, lubrication.Density(**given), self.film_coefficient
+            )
 
-    def _ambient(self) -> AbstractAmbient:
+    def _ambient(self) -> lubrication.AbstractAmbient:
         """Read the law of viscosity at atmospheric pressure, of one of three forms."""
         table = self.table
         given = [key for key in _AMBIENT if key in table]
@@ -187,19 +177,19 @@ class LubricantKeys(Keys):
             index = 95.0 if self.viscosity_index is None else self.viscosity_index
             self.fill(viscosity_index=index)
             with table.building(index="viscosity_index"):
-                return Walther.from_grade(self.grade, index)
+                return lubrication.Walther.from_grade(self.grade, index)
         if given == ["cold_viscosity"]:
-            return self.build_law(Walther)
+            return self.build_law(lubrication.Walther)
         # Without coefficients the viscosity is that at the given temperature.
         values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
         for name in ("reference_viscosity", *values):
             if name in table:
-                values[name] = table.real(name, unit_of(Exponential, name))
+                values[name] = table.real(name, unit_of(lubrication.Exponential, name))
         with table.building():
-            return Exponential(**values)
+            return lubrication.Exponential(**values)
 
 
-def describe_oil(lubricant: Lubricant, temperature: float) -> str:
+def describe_oil(lubricant: lubrication.Lubricant, temperature: float) -> str:
     """Describe viscosity, pressure coefficient and density of an oil.
 
     Args:

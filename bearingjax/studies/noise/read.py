@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import noise
 from ...design import FormErrors, rows_of
 from ...design.bearing_set import bearings_of, with_bearings
 from ...element import FREEDOMS, RINGS, BearingElement
@@ -14,25 +15,14 @@ from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
 from ...files.schema import Keys, direction_json, key_of, read_keys, scene_key
 from ...files.table import Table
-from ...noise import (
-    REFERENCE_ACCELERATION,
-    Hann,
-    LevelOptions,
-    NoiseModel,
-    RecordOptions,
-    Rectangular,
-    Sensor,
-    octave_bands,
-    third_octave_bands,
-)
 from ...noise.level import NORM
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
 from .read_deviations import read_deviations
 from .read_tolerance import ToleranceKeys, read_tolerance
 from .scene import NoiseScene
 
-BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
-WINDOWS = {"hann": Hann, "rectangular": Rectangular}
+BANDS = {"octave": noise.octave_bands, "third_octave": noise.third_octave_bands}
+WINDOWS = {"hann": noise.Hann, "rectangular": noise.Rectangular}
 NORMS = {"85-176211": NORM}
 """Largest allowed levels, by bearing."""
 HELD = "held"
@@ -44,7 +34,7 @@ MOST_SAMPLES = 200_000
 class VibrationKeys(Keys):
     about = "[vibration]: the test rig of a bearing, the record and its evaluation"
 
-    mass: float = key_of(NoiseModel, "mass")
+    mass: float = key_of(noise.NoiseModel, "mass")
     moving_ring: str | None = scene_key(
         "ring that the load acts on",
         choices=RINGS,
@@ -63,10 +53,10 @@ class VibrationKeys(Keys):
         default=False,
     )
     retardation: float | None = key_of(
-        NoiseModel, "retardation", otherwise="10 us", default=None
+        noise.NoiseModel, "retardation", otherwise="10 us", default=None
     )
-    sensor_stiffness: float | None = key_of(Sensor, "stiffness")
-    sensor_damping: float | None = key_of(Sensor, "damping", default=None)
+    sensor_stiffness: float | None = key_of(noise.Sensor, "stiffness")
+    sensor_damping: float | None = key_of(noise.Sensor, "damping", default=None)
     sensor_direction: list[float] = scene_key(
         "line of the sensor: x, y, z, or its three components",
         default=None,
@@ -75,13 +65,13 @@ class VibrationKeys(Keys):
         reader=lambda table, name: _direction(table, name),
         json=direction_json(DIRECTIONS),
     )
-    turns: int = key_of(RecordOptions, "turns")
-    settle: int = key_of(RecordOptions, "settle", least=0)
-    samples: int = key_of(RecordOptions, "samples", least=16)
+    turns: int = key_of(noise.RecordOptions, "turns")
+    settle: int = key_of(noise.RecordOptions, "settle", least=0)
+    samples: int = key_of(noise.RecordOptions, "samples", least=16)
     steps: int | None = key_of(
-        RecordOptions, "steps", otherwise="as many as the stiffest contact needs"
+        noise.RecordOptions, "steps", otherwise="as many as the stiffest contact needs"
     )
-    reference: float = key_of(LevelOptions, "reference", above=0.0)
+    reference: float = key_of(noise.LevelOptions, "reference", above=0.0)
     bands: str = scene_key(
         "bands of the levels", choices=tuple(BANDS), default="octave"
     )
@@ -108,18 +98,18 @@ class VibrationKeys(Keys):
             return
         if self.bands != "octave":
             raise self.table.error("norm", "is of octaves; take `bands` = octave")
-        if self.reference != REFERENCE_ACCELERATION:
-            problem = f"counts from {REFERENCE_ACCELERATION:g} m/s²; leave out"
+        if self.reference != noise.REFERENCE_ACCELERATION:
+            problem = f"counts from {noise.REFERENCE_ACCELERATION:g} m/s²; leave out"
             raise self.table.error("norm", f"{problem} `reference`")
 
     @property
-    def sensor(self) -> Sensor | None:
+    def sensor(self) -> noise.Sensor | None:
         """Sensor on the moving ring, or `None`."""
         stiffness, damping = self.sensor_stiffness, self.sensor_damping
         if stiffness is None and damping is None:
             return None
         with self.table.building():
-            return Sensor(stiffness or 0.0, damping or 0.0, self.sensor_direction)
+            return noise.Sensor(stiffness or 0.0, damping or 0.0, self.sensor_direction)
 
 
 def read_noise(
@@ -162,7 +152,7 @@ def read_noise(
     if vibration.retardation is not None:
         values["retardation"] = vibration.retardation
     with vibration.table.building(deviations, operating):
-        model = NoiseModel(element, **values)
+        model = noise.NoiseModel(element, **values)
         # Through the scene, so that the echo has it.
         model = dataclasses.replace(model, tilting_inertia=model.inertia)
         line = dataclasses.replace(

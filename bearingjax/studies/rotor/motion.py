@@ -16,19 +16,8 @@ from ...rotor import (
     Rotor,
     StaticEquilibrium,
     harmonic_response,
+    nonlinear,
     reduction_warnings,
-)
-from ...rotor.nonlinear import (
-    Branch,
-    BranchEnd,
-    HarmonicBalance,
-    IntegrationOptions,
-    Shooting,
-    Steps,
-    VibratingRotor,
-    follow,
-    simulate,
-    vibrating_rotor,
 )
 from ...rotor.nonlinear.orbit import amplitudes
 from .scene import RotorScene
@@ -41,15 +30,15 @@ _FREQUENCIES = 200
 _SAMPLES = 64
 """Number of phases at which a linear vibration is output."""
 _ENDINGS = {
-    BranchEnd.POINTS: (
+    nonlinear.BranchEnd.POINTS: (
         "the branch did not reach the end of the range within the allowed points;"
         " raise `rotor.response.points`, or `scale` where the vibration is far larger"
     ),
-    BranchEnd.SMALL_STEP: (
+    nonlinear.BranchEnd.SMALL_STEP: (
         "the branch could not be followed further: no step, however small, led on;"
         " take more {finer}"
     ),
-    BranchEnd.NO_START: (
+    nonlinear.BranchEnd.NO_START: (
         "no periodic vibration was found at the first frequency; begin farther from"
         " the resonances, or take more {finer}"
     ),
@@ -83,7 +72,7 @@ class RotorResponse:
     frequency: Float[np.ndarray, " point"]
     amplitude: Float[np.ndarray, "point node station_freedom"]
     displacement: Float[np.ndarray, "point sample node station_freedom"]
-    branch: Branch | None
+    branch: nonlinear.Branch | None
     event_amplitude: Float[np.ndarray, "event node station_freedom"]
     stopped: Stopped | None
     warnings: tuple[Warning, ...] = ()
@@ -148,20 +137,20 @@ def respond(
         scale = _largest_response(task, settled.rotor)
     system = _system(task, rotor, settled, modes, scale, asked.speed, asked.reduction)
     method = (
-        Shooting(asked.steps)
+        nonlinear.Shooting(asked.steps)
         if asked.method == "shooting"
-        else HarmonicBalance(asked.harmonics, asked.samples, asked.steps)
+        else nonlinear.HarmonicBalance(asked.harmonics, asked.samples, asked.steps)
     )
     samples = asked.steps if asked.method == "shooting" else asked.samples
     rest = np.asarray(system.freedoms(settled.motion))
     unit = float(system.reference_frequency)
-    branch = follow(
+    branch = nonlinear.follow(
         system,
         as_array(asked.begin, float),
         as_array(asked.end, float),
         method,
         as_array(np.tile(rest, (samples, 1)), float),
-        steps=Steps(
+        steps=nonlinear.Steps(
             frequency=abs(asked.end - asked.begin) / (_PARTS * unit),
             points=asked.points,
         ),
@@ -235,7 +224,7 @@ def run_in_time(
         rotor = dataclasses.replace(rotor, supports=turning)
     system = _system(task, rotor, settled, modes, None, None, asked.reduction)
     rest = system.freedoms(settled.motion)
-    found = simulate(
+    found = nonlinear.simulate(
         system,
         as_array(asked.duration * np.linspace(0.0, 1.0, asked.n_times), float),
         as_array(task.speed, float),
@@ -243,7 +232,7 @@ def run_in_time(
         end_frequency=(
             None if asked.speed_to is None else as_array(asked.speed_to, float)
         ),
-        options=IntegrationOptions(
+        options=nonlinear.IntegrationOptions(
             as_array(asked.tolerance, float), asked.max_steps, "forward"
         ),
         throw=False,
@@ -269,10 +258,12 @@ def run_in_time(
     )
 
 
-def _system(task, rotor, settled, modes, scale, speed, reduction) -> VibratingRotor:
+def _system(
+    task, rotor, settled, modes, scale, speed, reduction
+) -> nonlinear.VibratingRotor:
     angular = np.imag(np.asarray(modes.eigenvalue))
     slowest = angular[angular > 0].min(initial=np.inf)
-    return vibrating_rotor(
+    return nonlinear.vibrating_rotor(
         rotor,
         task.loads,
         scale=unit_of_length(rotor, settled) if scale is None else scale,

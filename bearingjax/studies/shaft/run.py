@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ... import shafts
 from ...design import rows_of
 from ...element import Speed
 from ...files.scene_errors import scene_errors
@@ -18,18 +19,6 @@ from ...life.life_warning import ALL
 from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
-from ...shafts import (
-    DutyResult,
-    SystemSolution,
-    ThermalState,
-    bearing_hours,
-    bearing_solutions,
-    equilibrium,
-    solve_duty,
-    solve_heat,
-    system_life,
-    warm_up,
-)
 from ...shafts.duty import case_damage
 from ...shafts.equilibrium import searched_system, system_state
 from ...shafts.heat import with_temperatures
@@ -100,11 +89,11 @@ class ShaftRun:
     """
 
     task: ShaftScene
-    solution: SystemSolution
+    solution: shafts.SystemSolution
     bearings: tuple[InPlace, ...]
-    thermal: ThermalState | None
+    thermal: shafts.ThermalState | None
     warming: np.ndarray | None
-    duty: DutyResult | None
+    duty: shafts.DutyResult | None
     rings: np.ndarray | None
     problem: str
     warnings: tuple[Warning, ...]
@@ -143,7 +132,7 @@ class ShaftRun:
     def hours(self) -> np.ndarray:
         """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
         if self.duty is not None:
-            return np.asarray(bearing_hours(*self._spectrum(self.duty)))
+            return np.asarray(shafts.bearing_hours(*self._spectrum(self.duty)))
         found = []
         for bearing in self.bearings:
             life = None if bearing.life is None else bearing.life.life_hours
@@ -159,7 +148,7 @@ class ShaftRun:
         damage = np.nan_to_num(case_damage(*self._spectrum(self.duty)))
         return [int(np.argmax(of)) if of.any() else None for of in damage.T]
 
-    def _spectrum(self, duty: DutyResult) -> tuple[Any, Any, Any]:
+    def _spectrum(self, duty: shafts.DutyResult) -> tuple[Any, Any, Any]:
         """Return damage, speeds of the bearings and hours of the cases."""
         of = [self.task.system.station(seat)[0] for seat in self.task.system.seats]
         given = [case.hours for case in self.task.cases]
@@ -202,7 +191,7 @@ class ShaftRun:
         if self.problem or np.isnan(hours[~sprung]).any() or sprung.all():
             return None
         known = np.where(sprung, np.inf, hours)
-        return float(system_life(self.task.system, known))
+        return float(shafts.system_life(self.task.system, known))
 
 
 def run_shafts(
@@ -228,7 +217,7 @@ def run_shafts(
             say("static equilibrium")
             found, place = searched_system(system)
             if not found.converged:
-                problem = equilibrium.describe_failure(
+                problem = shafts.equilibrium.describe_failure(
                     system, jax.device_get(found), np.asarray(place)
                 )
         else:
@@ -250,14 +239,14 @@ def run_shafts(
         bearings = tuple(_in_place(task, found, np.asarray(speeds)))
     if solved and task.heat is not None and task.times is not None:
         say("warming up")
-        warming = np.asarray(warm_up(system, task.heat, task.times))
+        warming = np.asarray(shafts.warm_up(system, task.heat, task.times))
     state = jax.device_get(states[0]) if states else None
     run = ShaftRun(task, found, bearings, state, warming, duty, rings, problem, ())
     warned = dict.fromkeys((*task.warnings, *_warnings(run)))
     return dataclasses.replace(run, warnings=tuple(warned))
 
 
-def _thermal(task: ShaftScene) -> list[ThermalState]:
+def _thermal(task: ShaftScene) -> list[shafts.ThermalState]:
     """Find the temperatures of all cases, of those at rest as `pauses` has them."""
     cases, states = task.cases or (task,), []
     offsets: dict[Any, Any] = {}
@@ -265,7 +254,7 @@ def _thermal(task: ShaftScene) -> list[ThermalState]:
         assert case.heat is not None
         # The first keeps its preload, for the warnings.
         system = with_preload_offsets(case.system, offsets) if states else case.system
-        states.append(solve_heat(system, case.heat, throw=False))
+        states.append(shafts.solve_heat(system, case.heat, throw=False))
     hot = any(int(state.result) != Result.CONVERGED for state in states)
     if task.pauses == "ambient" or hot:
         return states
@@ -290,8 +279,8 @@ def _thermal(task: ShaftScene) -> list[ThermalState]:
 
 
 def _duty(
-    task: ShaftScene, states: list[ThermalState]
-) -> tuple[DutyResult, np.ndarray | None, str]:
+    task: ShaftScene, states: list[shafts.ThermalState]
+) -> tuple[shafts.DutyResult, np.ndarray | None, str]:
     """Solve the load cases, each warm if there is heat.
 
     Args:
@@ -311,7 +300,7 @@ def _duty(
                 for case, state in zip(cases, states, strict=True)
             ]
         systems, lives = zip(*((c.system, c.lives) for c in cases), strict=True)
-        duty = solve_duty(systems, lives)
+        duty = shafts.solve_duty(systems, lives)
     rings = lost = None
     if states:
         rings = np.array([[s.inner_ring, s.outer_ring] for s in states])
@@ -337,7 +326,7 @@ def _duty(
     return duty, rings, f"{many} (case {failed[0]}: {label})"
 
 
-def _with_temperatures(task: ShaftScene, state: ThermalState) -> ShaftScene:
+def _with_temperatures(task: ShaftScene, state: shafts.ThermalState) -> ShaftScene:
     """Return a scene whose bearings and oil have the temperatures that were found."""
     scenes, lives = [], []
     rings = np.asarray([state.inner_ring, state.outer_ring]).mean(axis=0)
@@ -365,7 +354,7 @@ def _with_temperatures(task: ShaftScene, state: ThermalState) -> ShaftScene:
 
 
 def _in_place(
-    task: ShaftScene, found: SystemSolution, speeds: np.ndarray
+    task: ShaftScene, found: shafts.SystemSolution, speeds: np.ndarray
 ) -> Iterator[InPlace]:
     """Yield each bearing in the equilibrium, with life, friction and films.
 
@@ -375,7 +364,7 @@ def _in_place(
         speeds: Speeds of the shafts in all cases (case, shaft) [rad/s].
     """
     system = task.system
-    solutions = bearing_solutions(system, found)
+    solutions = shafts.bearing_solutions(system, found)
     for k, (seat, scene) in enumerate(zip(system.seats, task.bearings, strict=True)):
         solution, conditions = jax.device_get(solutions[k]), task.lives[k]
         if scene is None or solution is None or conditions is None:
