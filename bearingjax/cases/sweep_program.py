@@ -179,7 +179,7 @@ class Program:
         known = jax.tree.map(lambda a: _spread_over_devices(a, shard), known)
         found: dict[str, np.ndarray] = {}
         pending, last = None, 0
-        with _bar(n if progress else None) as advance:
+        with _progress_bar(n if progress else None) as bar:
             for begin in [*range(0, n, block), None]:
                 if pending is not None and stop is not None and stop():
                     begin = None
@@ -215,7 +215,7 @@ class Program:
                         _wait_for(values)
                     for name, value in values.items():
                         found[name][first:last] = _copy_to_host(value)[: last - first]
-                    advance(last - first)
+                    bar.update(last - first)
                 pending = submitted
                 if begin is None:
                     break
@@ -312,19 +312,8 @@ def _check_size(out, n):
         )
 
 
-class _bar:
-    """Progress in cases; nothing if `total` is `None`."""
+def _progress_bar(total):
+    """Return a bar of progress in cases; it is not shown if `total` is `None`."""
+    from tqdm import tqdm
 
-    def __init__(self, total):
-        self.bar = None
-        if total is not None:
-            from tqdm import tqdm
-
-            self.bar = tqdm(total=total, unit="case", unit_scale=True)
-
-    def __enter__(self):
-        return self.bar.update if self.bar is not None else lambda n: None
-
-    def __exit__(self, *_):
-        if self.bar is not None:
-            self.bar.close()
+    return tqdm(total=total, unit="case", unit_scale=True, disable=total is None)

@@ -15,6 +15,7 @@ else:  # names alone: it is imported at the first plot
     Ax = "matplotlib.axes.Axes | None"
 
 Size = tuple[float, float]
+"""Width and height of axes or of a figure [inch]."""
 Points = np.ndarray | Sequence
 """One point or several: arrays, or the numbers themselves."""
 

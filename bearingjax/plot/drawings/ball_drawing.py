@@ -26,13 +26,7 @@ _GAP = 0.07
 
 
 def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size: Size) -> None:
-    """Draw the axial section of a row, to scale, with all its dimensions.
-
-    Args:
-        ax: Axes.
-        bearing: The row.
-        size: Width and height of the axes [inch].
-    """
+    """Draw the axial section of a row, to scale, with all its dimensions."""
     diameter = 1e3 * float(bearing.ball_diameter)
     rings = ball_row(ax, bearing, np.asarray)
     lines = {name: contour(bearing, name) for name in RACEWAYS}

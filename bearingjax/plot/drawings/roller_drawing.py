@@ -40,14 +40,7 @@ PROFILES = "roller_profile", "outer_raceway_profile", "inner_raceway_profile"
 def dimensioned_rollers(
     ax: Axes, bearing: AbstractRollerBearing, parts: Section, size: Size
 ) -> None:
-    """Draw the axial section of a row, to scale, with all its dimensions.
-
-    Args:
-        ax: Axes.
-        bearing: The row.
-        parts: Its outlines.
-        size: Width and height of the axes [inch].
-    """
+    """Draw the axial section of a row, to scale, with all its dimensions."""
     seen = [roller_row(ax, parts)]
     labels = [*_sizes(ax, bearing, parts), *_straight(bearing, parts)]
     more, beyond, column = nearest_entry(_SHAPES, bearing)
@@ -139,14 +132,7 @@ def _angles(ax, bearing, parts):
 def roller_clearance_view(
     ax: Axes, bearing: AbstractRollerBearing, parts: Section, size: Size
 ) -> None:
-    """Draw the clearance of a row of rollers, magnified.
-
-    Args:
-        ax: Axes.
-        bearing: The row.
-        parts: Its outlines.
-        size: Width and height of the axes [inch].
-    """
+    """Draw the clearance of a row of rollers, magnified."""
     gap = 1e3 * float(bearing.gap)
     times = magnification(gap, _GAP * parts.diameter)
     apart = (times - 1.0) * gap

@@ -307,9 +307,6 @@ class OrbitSolution(NamedTuple):
 def search(orbit: AbstractOrbit) -> OrbitSolution:
     """Find the periodic motion; without derivatives, see `with_derivatives`.
 
-    Args:
-        orbit: Its equations.
-
     Fails: `STEP_LIMIT`, `NON_FINITE`.
     """
     loop = batched_loop.Loop(_init, _step, _terminate, _finish, _trivial_result)

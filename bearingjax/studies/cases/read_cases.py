@@ -199,10 +199,6 @@ def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
 def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     """Read a scene with `[cases]` that is parsed.
 
-    Args:
-        data: The scene.
-        path: Its path.
-
     Raises: as `read_cases`.
     """
     if "cases" not in data:

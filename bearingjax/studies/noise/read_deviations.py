@@ -63,11 +63,7 @@ class DeviationKeys(Keys):
         return MOST_ORDER["element" if self.part == ELEMENTS else "raceway"]
 
     def shape(self, context: ErrorContext) -> AbstractShape:
-        """Build the form error.
-
-        Args:
-            context: Its context.
-        """
+        """Build the form error."""
         raise NotImplementedError
 
     def _of_elements(self, values: Any, context: ErrorContext) -> Any:

@@ -246,12 +246,7 @@ def read_bearing_optimisation(
 
 
 def check_present(data: dict[str, Any], path: Path) -> None:
-    """Raise SceneError unless a scene has [optimise].
-
-    Args:
-        data: The scene.
-        path: Its path.
-    """
+    """Raise SceneError unless a scene has [optimise]."""
     if "optimise" not in data:
         raise SceneError(
             f"{path.name}: `optimise` is missing; it must be a table that names"

@@ -90,9 +90,6 @@ def solved_life_as_dict(found: SolvedScene) -> dict[str, Any]:
 def fits_json(scene: Scene) -> dict[str, Any]:
     """Return under `fit` the output of `fit_as_dict`, and `preload` of a set, from
     `preload_as_dict`, if it was computed; empty for a scene without fits.
-
-    Args:
-        scene: Solved scene.
     """
     if scene.fits is None:
         return {}
