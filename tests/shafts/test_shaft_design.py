@@ -7,19 +7,24 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from systems import ball, springs, stage
+from systems import ELEMENT, ball, springs, stage
 from tolerances import DIFFERENCE, SOLVER
 
 import bearingjax as bj
 from bearingjax.life.life import LifeConditions
 from bearingjax.lubrication import iso_vg
 from bearingjax.optimise import Constraint, PeakPressure, Variable, optimise
-from bearingjax.optimise.design_problem import Problem
+from bearingjax.optimise.design_problem import Problem, _program
 from bearingjax.shafts import (
     BearingOil,
+    Drive,
     PowerLoss,
+    Seat,
     ShaftDesign,
+    ShaftLine,
+    ShaftLoad,
     ShaftMass,
+    ShaftSystem,
     SystemLife,
     Worst,
     load_cases,
@@ -76,18 +81,75 @@ def test_gradients(problem):
     equal differences of fourth order."""
     start = problem.to_unit_box([v.start_in(problem.element) for v in FREE])
 
-    def values(unit):
-        found = problem.run(jnp.asarray(unit), True)
+    def values(unit, slopes=False):
+        found = problem.run(jnp.asarray(unit), slopes)
         assert not np.any(found.solution.result)
         return np.asarray(found.measures), np.asarray(found.jacobian)
 
-    own = values(start)[1]
+    own = values(start, True)[1]
     for k in range(len(FREE)):
         step = 2e-3 * np.eye(len(FREE))[k]
         ends = [values(start + s * step)[0] for s in (-2, -1, 1, 2)]
         wanted = (ends[0] - 8 * ends[1] + 8 * ends[2] - ends[3]) / (12 * 2e-3)
         size = np.abs(own).max(axis=1)
         np.testing.assert_array_less(np.abs(own[:, k] - wanted), DIFFERENCE * size)
+
+
+SEAT = bj.Mounting(0.04, 0.09, 0.13, 5e-6, 0.0)
+"""Light interference, which grows with speed and temperature."""
+
+
+def spindle(load=-3000.0):
+    """Two bearings against each other, on warm seats, of which one is preloaded."""
+    warm = bj.FitConditions(shaft=15.0, housing=7.0, inner_ring=13.0)
+    inside = bj.Installed(ELEMENT, None, SEAT, warm)
+    placed = [
+        Seat("A", "s", 0.05, inside, preload=300.0),
+        Seat("B", "s", 0.25, inside, preload=200.0, axial_offset=1e-6, turned=True),
+    ]
+    line = ShaftLine("s", [0.3], [0.04])
+    force = ShaftLoad("p", "s", 0.12, (500.0, load, 400.0))
+    system = ShaftSystem(line, placed, Drive("s", 400.0, torque=0.0), loads=force)
+    return ShaftDesign(system, (LifeConditions(),) * 2, (OIL,) * 2)
+
+
+WARM = (
+    Variable("system.seats.0.preload", 100.0, 600.0),
+    Variable("system.seats.1.axial_offset", 0.0, 5e-6),
+    Variable(CLEARANCE.replace("1", "0"), 0.0, 30e-6),
+    Variable("system.seats.1.installed.conditions.shaft", 0.0, 25.0),
+    Variable("system.seats.1.installed.mounting.shaft_interference", 0.0, 2e-5),
+    Variable("system.drive.speed", 100.0, 900.0),
+)
+ASKED = [Worst("rating_life"), Worst("peak_pressure"), Worst("tilt"), PowerLoss()]
+
+
+@pytest.mark.slow
+def test_gradients_of_preloaded_warm_turning_bearings():
+    """Derivatives worked out bearing by bearing equal those of one traced program, and
+    differences of fourth order."""
+    design, cases = load_cases([spindle(), spindle(-2000.0)])
+    bounds = [Constraint(m, lower=0.0) for m in ASKED]
+    life = SystemLife().as_objective
+    problem = Problem(design, cases, WARM, life, bounds, SolveOptions())
+    start = problem.to_unit_box([v.start_in(design) for v in WARM])
+    own = problem.run(start, True)
+    size = np.abs(own.jacobian).max(axis=1)
+    for k in range(len(WARM)):
+        step = 2e-3 * np.eye(len(WARM))[k]
+        ends = [problem.run(start + s * step, False).measures for s in (-2, -1, 1, 2)]
+        wanted = (ends[0] - 8 * ends[1] + 8 * ends[2] - ends[3]) / (12 * 2e-3)
+        np.testing.assert_array_less(
+            np.abs(own.jacobian[:, k] - wanted), DIFFERENCE * size
+        )
+    whole = _program(
+        design, problem.cases, problem.measures, (problem.paths, problem.lower,
+        problem.width), problem.solves, None, jnp.asarray(start), True,
+    )  # fmt: skip
+    np.testing.assert_allclose(own.measures, whole.measures, rtol=SOLVER)
+    np.testing.assert_array_less(
+        np.abs(own.jacobian - whole.jacobian), SOLVER * size[:, None]
+    )
 
 
 def test_lives_of_a_duty_by_hand():
