@@ -46,6 +46,36 @@ def test_the_campbell_diagram_of_ross():
     np.testing.assert_allclose(sizes.max(axis=(2, 3)), 1.0, rtol=SOLVER)
 
 
+@pytest.mark.parametrize("across", [0.0, -1e3], ids=["coincident", "equal_frequency"])
+def test_order_of_equal_frequencies_does_not_hang_on_round_off(across):
+    """At rest forward and backward whirl have one frequency, and with stiffness from
+    one direction to the other opposite growth. The slower, or more damped, is first."""
+
+    def turned(sign):
+        stiffness = np.diag([1e6, 1e6, 0.0, 0.0, 0.0])
+        stiffness[0, 1], stiffness[1, 0] = across, -across
+        noise = np.random.default_rng(2).normal(size=(5, 5))
+        stiffness += sign * 1e-14 * 1e6 * noise
+        rotor = eqx.tree_at(
+            lambda r: [s.stiffness for s in r.supports],
+            friswell(),
+            [jnp.asarray(stiffness)] * 2,
+        )
+        return bj.rotor.campbell(rotor, [0.0, 150.0, 300.0], count=6)
+
+    exact, *others = map(turned, (0.0, -1.0, 1.0, -2.0, 2.0, 5.0))
+    whirl = np.tile([-1, 1], 3) if not across else np.tile([1, -1], 3)
+    np.testing.assert_array_equal(exact.whirl[1:], [whirl] * 2)
+    for found in others:
+        np.testing.assert_allclose(
+            found.eigenvalue,
+            exact.eigenvalue,
+            rtol=SOLVER,
+            atol=SOLVER * float(abs(exact.eigenvalue).max()),
+        )
+        np.testing.assert_array_equal(found.whirl[1:], exact.whirl[1:])
+
+
 def test_the_tables_of_friswell():
     speed = 4000 * TURN / 60
     turning = bj.rotor.modes(friswell(), speed, count=6)

@@ -80,8 +80,8 @@ def major_axis(x: Any, y: Any) -> Any:
 class Modes(eqx.Module):
     """Modes of a rotor: oscillating ones first, in order of frequency.
 
-    Rigid-body and overdamped motions follow. Over speeds every field has `speed` as
-    first axis.
+    Of equal frequencies the most damped one comes first. Rigid-body and overdamped
+    motions follow. Over speeds every field has `speed` as first axis.
 
     Attributes:
         eigenvalue: λ; the motion goes as exp(λ t) (mode,) [rad/s].
@@ -220,11 +220,12 @@ def _instability_warning(found) -> Iterator[Warning]:
 def campbell(rotor: Rotor, speeds: Any, *, count: Any = 8) -> Modes:
     """Return modes over speeds, each followed from one speed to the next.
 
-    Modes are numbered by their frequencies at the first speed. A mode is followed by
-    its shape: its overlap with each mode of the next speed is the product of two
-    scalar products, of left and of right vectors, and sums up to one. Where that
-    with itself is below 0.7, and where frequencies cross, speeds between are looked at
-    too, so that the lines hang little on how many speeds are given.
+    Modes are numbered by their frequencies at the first speed, and those that coincide
+    by theirs at the next one. A mode is followed by its shape: its overlap with each
+    mode of the next speed is the product of two scalar products, of left and of right
+    vectors, and sums up to one. Where that with itself is below 0.7, and where
+    frequencies cross, speeds between are looked at too, so that the lines hang little
+    on how many speeds are given.
 
     Args:
         rotor: As in `modes`.
@@ -360,10 +361,13 @@ def _biorthogonal(pairs, matrices):
 
 
 def _match(before, now, matrices):
-    """Match each mode to one of the next speed; return their numbers and overlaps, of
-    coincident modes those of their subspaces [1]."""
+    """Match each mode to one of the next speed, where they are in order; return their
+    numbers and overlaps, of coincident modes those of their subspaces [1]."""
     shares = _products(before, now, matrices) * _products(now, before, matrices).T
     order = _pairing(jnp.where(jnp.isfinite(shares), jnp.abs(shares), 0.0))
+    # Coincident modes have no shape of their own, and go on in order of frequency.
+    group = jnp.argmax(_coincide(before), axis=1)
+    order = order.at[jnp.argsort(group)].set(order[jnp.lexsort((order, group))])
     one, other = _coincide(before), _coincide(now)
     one, other = (same.astype(before.value.real.dtype) for same in (one, other))
     together = jnp.abs(to_complex(one) @ shares @ to_complex(other).T)
@@ -422,11 +426,7 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     values = jnp.where(jnp.abs(values) <= floor, 0.0, values)
     real = to_complex(values.real)
     values = jnp.where(jnp.abs(values.imag) <= floor, real, values)
-    # Oscillating modes first, then the others, then conjugates of the first.
-    last = 1.0 + jnp.max(jnp.abs(values))
-    behind = jnp.where(values.imag < 0, 2.0 * last, last + jnp.abs(values))
-    chosen = jnp.argsort(jnp.where(values.imag > 0, values.imag, behind))
-    chosen = chosen[: n if count is None else min(n, count)]
+    chosen = _by_frequency(values)[: n if count is None else min(n, count)]
     value = values[chosen]
     distance = jnp.abs(value[:, None] - values[None, :])
     coincident = jnp.sum(distance <= _COINCIDENT * jnp.abs(value)[:, None], axis=1) > 1
@@ -439,6 +439,19 @@ def eigenpairs(matrices: RotorMatrices, count: int | None) -> Pairs:
     right, left = vectors(right[:n, chosen]), vectors(left[n:, chosen])
     value = jax.vmap(lambda *pair: _refine(matrices, *pair))(value, right, left)
     return Pairs(value, coincident, right, left)
+
+
+def _by_frequency(values):
+    """Order eigenvalues: oscillating modes, of equal frequencies the most damped first;
+    then the others, then conjugates of the first."""
+    last = 1.0 + jnp.max(jnp.abs(values))
+    behind = jnp.where(values.imag < 0, 2.0 * last, last + jnp.abs(values))
+    key = jnp.where(values.imag > 0, values.imag, behind)
+    order = jnp.argsort(key)
+    key = key[order]
+    new = (jnp.diff(key) > _COINCIDENT * key[1:]) | (key[1:] >= last)
+    group = jnp.cumsum(jnp.append(False, new))
+    return order[jnp.lexsort((values.real[order], group))]
 
 
 def _state(matrices):
