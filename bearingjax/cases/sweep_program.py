@@ -21,6 +21,7 @@ from ..life.life import LifeConditions, life_outputs, rating_life
 from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
+from ..numerics.types import as_array
 from ..statics import Solution, SolveOptions, Support
 from ..statics.warning import sizes
 from .cases import Cases, solve_case
@@ -190,7 +191,7 @@ class Program:
                         self.element,
                         jax.tree.map(lambda a: _spread_over_devices(a, shard), part),
                         known,
-                        jnp.asarray(near),
+                        as_array(near, bool),
                         self.task,
                         lanes,
                         alike,

@@ -16,7 +16,15 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
+from ..numerics.types import (
+    Real,
+    RealOrNone,
+    Scalar,
+    array_namespace,
+    as_count,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import meaning, real, unit
 from .abstract import AbstractBearing
 from .checks import check, check_fields, floats, in_range, is_traced, number
@@ -184,10 +192,9 @@ class AbstractBallBearing(AbstractBearing):
 
         Its derivative is infinite where it leaves zero; `free_cosine` is smooth.
         """
-        inside = self.free_cosine < 1.0
-        return jnp.where(
-            inside, jnp.arccos(jnp.where(inside, self.free_cosine, 0.0)), 0.0
-        )
+        cosine = self.free_cosine
+        xp, inside = array_namespace(cosine), cosine < 1.0
+        return xp.where(inside, xp.arccos(xp.where(inside, cosine, 0.0)), 0.0)
 
     @property
     @abc.abstractmethod
@@ -257,10 +264,11 @@ class AbstractBallBearing(AbstractBearing):
     def __check_init__(self):
         self._check_common()
         check_fields(self)
+        own = in_numpy(self)
         for ring in ("outer", "inner"):
-            self._check_groove(ring)
-        self._check_row()
-        self._check_deviation()
+            own._check_groove(ring)
+        own._check_row()
+        own._check_deviation()
 
     def _check_groove(self, ring):
         name = f"{ring}_osculation"

@@ -8,7 +8,14 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..numerics.types import Real, RealOrNone, Scalar, as_real
+from ..numerics.types import (
+    Real,
+    RealOrNone,
+    Scalar,
+    array_namespace,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import real
 from .abstract import AbstractBearing
 from .ball import AbstractBallBearing, Groove
@@ -58,7 +65,8 @@ class DeepGrooveBallBearing(AbstractBallBearing):
 
     @property
     def free_cosine(self) -> Scalar:
-        return jnp.minimum(1.0, 1.0 - 0.5 * self.clearance / self.centre_distance)
+        cosine = 1.0 - 0.5 * self.clearance / self.centre_distance
+        return array_namespace(cosine).minimum(1.0, cosine)
 
     @property
     def nominal_contact_angle(self) -> Scalar:
@@ -101,7 +109,7 @@ class DeepGrooveBallBearing(AbstractBallBearing):
         if clearance is None:
             return
         number(self, "radial_internal_clearance")
-        numbers = floats(clearance, self.centre_distance)
+        numbers = floats(clearance, in_numpy(self).centre_distance)
         if numbers is not None:
             most = 2.0 * numbers[1]
             allowed = (
@@ -149,7 +157,7 @@ class AngularContactBallBearing(AbstractBallBearing):
 
     @property
     def free_cosine(self) -> Scalar:
-        return jnp.cos(self.contact_angle)
+        return array_namespace(self.contact_angle).cos(self.contact_angle)
 
     @property
     def nominal_contact_angle(self) -> Scalar:
@@ -294,7 +302,8 @@ class FourPointBallBearing(AbstractBallBearing):
     @property
     def free_cosine(self) -> Scalar:
         play = 0.5 * self.clearance / self.centre_distance
-        return jnp.minimum(1.0, jnp.cos(self.shim_angle) - play)
+        cosine = array_namespace(self.shim_angle).cos(self.shim_angle) - play
+        return array_namespace(cosine).minimum(1.0, cosine)
 
     @property
     def grooves(self) -> tuple[Groove, ...]:
@@ -324,7 +333,8 @@ class FourPointBallBearing(AbstractBallBearing):
         _check_rated(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
-        numbers = floats(clearance, self.centre_distance, self.shim_angle)
+        distance = in_numpy(self).centre_distance
+        numbers = floats(clearance, distance, self.shim_angle)
         if numbers is not None:
             most = 2.0 * numbers[1] * math.cos(numbers[2])
             allowed = (
@@ -365,11 +375,13 @@ class SelfAligningBallRow(AbstractBallBearing):
 
     @property
     def free_contact_angle(self) -> Scalar:
-        return jnp.arctan2(self.row_offset, 0.5 * self.pitch_diameter)
+        across = 0.5 * self.pitch_diameter
+        return array_namespace(across, self.row_offset).arctan2(self.row_offset, across)
 
     @property
     def free_cosine(self) -> Scalar:
-        return jnp.cos(self.free_contact_angle)
+        angle = self.free_contact_angle
+        return array_namespace(angle).cos(angle)
 
     @property
     def groove_axis(self) -> Scalar | float:
@@ -382,7 +394,8 @@ class SelfAligningBallRow(AbstractBallBearing):
     @property
     def centre_distances(self) -> tuple[Scalar, Scalar]:
         gap = 0.25 * self.clearance * self.free_cosine
-        outer = jnp.sqrt(0.25 * self.pitch_diameter**2 + self.row_offset**2)
+        square = 0.25 * self.pitch_diameter**2 + self.row_offset**2
+        outer = array_namespace(square).sqrt(square)
         return outer + gap, (self.inner_osculation - 0.5) * self.ball_diameter
 
     @property
@@ -413,7 +426,8 @@ class SelfAligningBallRow(AbstractBallBearing):
         check_fields(self)
         clearance = self.radial_internal_clearance
         number(self, "radial_internal_clearance")
-        numbers = floats(clearance, self.centre_distances[1], self.free_cosine)
+        own = in_numpy(self)
+        numbers = floats(clearance, own.centre_distances[1], own.free_cosine)
         if numbers is not None:
             most = 4.0 * numbers[1] / numbers[2]
             allowed = (
@@ -444,7 +458,8 @@ def clearance_of(contact_angle: Scalar, centre_distance: Scalar) -> Scalar:
 
     Source: Harris, Rolling Bearing Analysis, geometry of ball bearings.
     """
-    return 4.0 * centre_distance * jnp.sin(0.5 * contact_angle) ** 2
+    xp = array_namespace(contact_angle)
+    return 4.0 * centre_distance * xp.sin(0.5 * contact_angle) ** 2
 
 
 def _nominal(bearing):

@@ -8,7 +8,14 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..numerics.types import Real, Scalar, as_count, as_real
+from ..numerics.types import (
+    Real,
+    Scalar,
+    array_namespace,
+    as_count,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import meaning, real, unit
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
@@ -129,12 +136,14 @@ class AbstractRollerBearing(AbstractBearing):
     @property
     def axis_angle(self) -> Scalar:
         """Angle of the roller axis to the bearing axis [rad]."""
-        return jnp.zeros_like(self.pitch_diameter)
+        pitch = in_numpy(self.pitch_diameter)
+        return array_namespace(pitch).zeros_like(pitch)
 
     @property
     def half_angle(self) -> Scalar:
         """Half cone angle of the roller [rad]."""
-        return jnp.zeros_like(self.pitch_diameter)
+        pitch = in_numpy(self.pitch_diameter)
+        return array_namespace(pitch).zeros_like(pitch)
 
     @property
     def arc_radii(self) -> tuple[Scalar, Scalar, Scalar] | None:
@@ -167,7 +176,8 @@ class AbstractRollerBearing(AbstractBearing):
 
     @property
     def clearance(self) -> Scalar:
-        return 4.0 * self.gap / jnp.cos(self.touching_angle)
+        angle = self.touching_angle
+        return 4.0 * self.gap / array_namespace(angle).cos(angle)
 
     def with_clearance(self, clearance: Scalar) -> Any:
         # The clearance of a taper is along the normal.

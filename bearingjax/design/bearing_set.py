@@ -6,7 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..numerics.types import Number, Real, Scalar, as_real, with_fields
+from ..numerics.types import Number, Real, Scalar, array_namespace, as_real, with_fields
 from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
@@ -342,7 +342,8 @@ def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:
     """Largest pitch radius of the rows [m]."""
     radii = [0.5 * row.pitch_diameter for row in bearings_of(bearing)]
-    return jnp.max(jnp.stack(radii))
+    xp: Any = array_namespace(*radii)
+    return xp.max(xp.stack(radii))
 
 
 def _checked_spacing(spacing) -> Scalar:

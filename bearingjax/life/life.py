@@ -34,7 +34,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
-from ..numerics.types import Real, RealOrNone, Scalar
+from ..numerics.types import Real, RealOrNone, Scalar, in_numpy
 from ..numerics.units import meaning, real, unit
 from ..statics.empty_places import solution_with_empty_places, spread_elements
 from ..statics.service_warning import turns_against_load
@@ -203,7 +203,7 @@ class LifeConditions(eqx.Module):
         if self.viscosity is not None:
             positive(self, "viscosity")
             # A viscosity in mm²/s would be a million times too large.
-            thin = self.viscosity < 1.0
+            thin = in_numpy(self.viscosity) < 1.0
             check(self, "viscosity", thin, "below 1 m²/s (1 mm²/s is 1e-6 m²/s)")
         if self.contamination is not None:
             check_contamination(self, self.contamination)

@@ -33,7 +33,7 @@ from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, one_of, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program
-from ..numerics.types import Flag, Number, Real, Scalar, as_real
+from ..numerics.types import Flag, Number, Real, Scalar, as_array, as_real, in_numpy
 from ..numerics.units import real, unit
 from . import row_rating as by_row
 from .row_rating import THRUST_ANGLE, BallRow, RollerRow, Rows
@@ -94,7 +94,7 @@ class Ratings(eqx.Module):
             return GIVEN
         if is_traced(self.published):
             return f"{PUBLISHED}, else {standard}"
-        return PUBLISHED if np.all(self.published[..., place]) else standard
+        return PUBLISHED if np.all(np.asarray(self.published)[..., place]) else standard
 
 
 def ratings(
@@ -135,7 +135,7 @@ def ratings(
             positive("ratings", name, as_real(value), "N")
     given = tuple(None if value is None else as_real(value) for value in given)
     printed = published_factors(bearing)
-    factors = jnp.asarray(False if printed is None else printed[1])
+    factors = as_array(False if printed is None else printed[1], bool)
     found = _rate(parts, given, factors)
     return Ratings(*found, tuple(value is not None for value in given))
 
@@ -288,11 +288,12 @@ def rated_axially(bearing: AbstractBearing | BearingSet) -> Flag:
 
     Source: ISO 281:2007, definition of thrust bearings.
     """
-    first = _parts(bearing)[0]
-    return is_axial(first.is_thrust, first.rows.row.contact_angle)
+    first = _parts(in_numpy(bearing))[0]
+    angle = in_numpy(first.rows.row.contact_angle)
+    return as_array(is_axial(first.is_thrust, angle), bool)
 
 
-def is_axial(is_thrust: bool, angle: Scalar) -> Flag:
+def is_axial(is_thrust: bool, angle: Scalar) -> Any:
     """Whether a row is rated by an axial load: thrust bearings and steep ones.
 
     Args:
@@ -547,7 +548,7 @@ def _part(rows) -> _Part:
     one_way = count if arcs == 2 else one_way
     counts = as_real(arcs * count), as_real(one_way)
     numbers = Rows(_row(first), jax.tree.map(as_real, kind), *counts)
-    part = _Part(numbers, first.is_thrust, jnp.asarray(alike), None, None, None)
+    part = _Part(numbers, first.is_thrust, as_array(alike, bool), None, None, None)
     if any(row.bearing.published is None for row in rows):
         return part
     printed, holds = first.published.ratings, True
@@ -559,7 +560,7 @@ def _part(rows) -> _Part:
     own = _kind(first, pair)
     less = 1.0 if kind is None or own is None else own.reduction / kind.reduction
     alone = as_real([2 if pair else arcs, less])
-    return part._replace(alone=alone, published=printed, holds=jnp.asarray(holds))
+    return part._replace(alone=alone, published=printed, holds=as_array(holds, bool))
 
 
 def _rated_alike(one, other) -> Any:

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..design.checks import instance, is_traced, non_negative, positive
+from ..numerics.compiled.programs import program
 from ..numerics.types import Real, Scalar, as_real
 from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
@@ -101,8 +102,7 @@ class Lubricant(eqx.Module):
 
     def kinematic_viscosity(self, temperature: Scalar | float) -> Scalar:
         """Kinematic viscosity at atmospheric pressure [m²/s], temperature in K."""
-        kelvin = _kelvin(temperature)
-        return self._ambient_viscosity(kelvin) / self.density.at(kelvin)
+        return _kinematic_viscosity(self, _kelvin(temperature))
 
     def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
         """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
@@ -170,6 +170,11 @@ class Lubricant(eqx.Module):
             lambda p: self._log_viscosity(p, temperature), (zero,), (one,)
         )
         return slope
+
+
+@program(quick=True)
+def _kinematic_viscosity(lubricant, kelvin):
+    return lubricant._ambient_viscosity(kelvin) / lubricant.density.at(kelvin)
 
 
 def _kelvin(temperature):

@@ -3,9 +3,7 @@
 import math
 from functools import partial
 
-import jax.numpy as jnp
-
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, array_namespace, as_real, in_numpy
 from .coefficient import DynamicCoefficient, KinematicCoefficient
 from .lubricant import Density, Lubricant
 from .viscosity import Exponential, FreeVolume, Roelands, Walther
@@ -64,12 +62,12 @@ def iso_vg(grade: Scalar | float, viscosity_index: Scalar | float = 95.0) -> Lub
         coefficient of mineral oils of Gold et al. (2001); density
         872 + 12 ln(grade/32) kg/m³ at 15 °C, usual data-sheet values to 10 kg/m³.
     """
-    grade = as_real(grade)
+    grade = in_numpy(as_real(grade))
     coefficient = KinematicCoefficient(9.904e-9, 0.139)
     return Lubricant(
         ambient=Walther.from_grade(grade, viscosity_index),
         pressure=Roelands(coefficient),
-        density=Density(872.0 + 12.0 * jnp.log(grade / 32.0)),
+        density=Density(872.0 + 12.0 * array_namespace(grade).log(grade / 32.0)),
         coefficient=coefficient,
     )
 

@@ -11,8 +11,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from ..design.checks import check, check_fields, is_traced, number, positive
-from ..numerics.types import Real, Scalar, as_real
+from ..design.checks import check, check_fields, floats, number, positive
+from ..numerics.types import Real, Scalar, as_real, in_numpy
 from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity_index import viscosity_at_100
@@ -86,13 +86,13 @@ class Walther(AbstractAmbient):
         for name in ("cold", "hot"):
             positive(self, name)
         check_fields(self)
-        if not any(is_traced(v) for v in (self.cold, self.hot)):
-            low = float(self.cold)
-            check(self, "hot", self.hot > low, f"above `cold`, {low:.6g} K")
-        if not any(is_traced(v) for v in (self.cold_viscosity, self.hot_viscosity)):
-            most = float(self.cold_viscosity)
+        if known := floats(self.cold, self.hot):
+            low, high = known
+            check(self, "hot", high > low, f"above `cold`, {low:.6g} K")
+        if known := floats(self.cold_viscosity, self.hot_viscosity):
+            most, least = known
             words = f"below `cold_viscosity`, {most:.6g} m²/s"
-            check(self, "hot_viscosity", self.hot_viscosity < most, words)
+            check(self, "hot_viscosity", least < most, words)
 
     @classmethod
     def from_grade(
@@ -107,7 +107,7 @@ class Walther(AbstractAmbient):
         Source: ISO 3448; viscosity at 100 °C by ASTM D2270.
         """
         positive(cls, "grade", grade, "mm²/s")
-        cold = 1e-6 * as_real(grade)
+        cold = 1e-6 * in_numpy(as_real(grade))
         hot = viscosity_at_100(cold, viscosity_index)
         return cls(313.15, cold, 373.15, hot)
 

@@ -4,12 +4,12 @@ Source: ASTM D2270; L and H by the quadratics of its appendix X2, which meet the
 to 1e-3.
 """
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
 
 from ..design.checks import check, floats, in_range, positive
+from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
 from ..numerics.types import Scalar, array_namespace, as_real
 
@@ -97,7 +97,7 @@ def _at_40(hot, index):
     return np_.where(index <= 100.0, low - 0.01 * index * (low - high), above)
 
 
-@jax.jit
+@program(quick=True)
 def _solve(viscosity, index):
     def residual(hot, args):
         viscosity, index = args

@@ -7,12 +7,14 @@ waits for ever: on two cores two batches are enough. One matrix is never divided
 calls of LAPACK in the package are therefore here, through `one_by_one`.
 """
 
+import functools
 import math
 from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
 import jax.scipy.linalg as dense
+import numpy as np
 from jax import lax
 from jax.custom_batching import custom_vmap
 from jaxtyping import Array, Complex, Float, Inexact
@@ -312,9 +314,10 @@ def _balance(matrices):
     return units
 
 
+@functools.cache
 def prepare() -> None:
     """Have JAX find the addresses of LAPACK, as it does when it lowers a call of it.
 
     A program that was compiled in another process crashes without.
     """
-    jax.jit(jnp.linalg.cholesky).lower(jnp.eye(1))
+    jax.jit(jnp.linalg.cholesky).lower(np.eye(1))

@@ -5,10 +5,11 @@ from collections.abc import Callable, Sequence
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jax.core import Tracer
 from jaxtyping import Array, Int
 
-from .types import T
+from .types import T, in_numpy
 
 
 class Result(enum.IntEnum):
@@ -91,10 +92,11 @@ def raise_unless_converged(
     Raises:
         SolveError: If a code is not `CONVERGED` (outside `jit`).
     """
+    result = in_numpy(result)
     failed = result != Result.CONVERGED
     if not isinstance(result, Tracer):
-        if bool(jnp.any(failed)):
-            raise SolveError(message(), Result(int(jnp.max(result))))
+        if np.any(failed):
+            raise SolveError(message(), Result(int(np.max(result))))
         return tree
     which, texts = details if details is not None else (jnp.full_like(result, -1), [])
     # In the order of the codes, so that of many cases the worst is named.

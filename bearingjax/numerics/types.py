@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.core import Tracer
 from jaxtyping import Array, Bool, Float, Int
 
 Count = Int[Array, ""]
@@ -45,13 +46,28 @@ Square = Float[Array, "n n"]
 """Row of n numbers, and matrix of n rows; in one function all have the same n."""
 
 
-def array_namespace(array: Any) -> Any:
+def array_namespace(*arrays: Any) -> Any:
     """Return NumPy for its own arrays, to avoid compilation; `jax.numpy` for others.
 
     Args:
-        array: Any array or scalar of one of them.
+        arrays: Any arrays or scalars of one of them; NumPy's only if all are.
     """
-    return np if isinstance(array, np.ndarray | np.generic) else jnp
+    known = all(isinstance(array, np.ndarray | np.generic) for array in arrays)
+    return np if known else jnp
+
+
+def in_numpy(tree: T) -> T:
+    """Return the same with its known numbers in NumPy, to avoid compilation.
+
+    Args:
+        tree: Modules, tuples, dicts; what is traced stays as it is.
+    """
+
+    def known(leaf):
+        is_known = isinstance(leaf, jax.Array) and not isinstance(leaf, Tracer)
+        return np.asarray(leaf) if is_known else leaf
+
+    return jax.tree.map(known, tree)
 
 
 def as_real(value: Any) -> Any:
@@ -93,7 +109,7 @@ def as_array(value: Any, dtype: Any) -> Array:
         return value
     if not any(isinstance(leaf, jax.Array) for leaf in jax.tree.leaves(value)):
         value = np.asarray(value)
-        if value.dtype.kind in "iuf":
+        if value.dtype.kind in "biuf":
             value = value.astype(dtype)
     return jnp.asarray(value, dtype=dtype)
 

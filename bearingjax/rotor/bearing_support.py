@@ -11,7 +11,7 @@ from ..design.checks import finite, instance, must_be, of_shape
 from ..element import FREEDOMS, BearingElement, Speed
 from ..element.bearing_element import check_element
 from ..numerics.result import Result
-from ..numerics.types import Number, Scalar, as_count, as_real
+from ..numerics.types import Number, Scalar, as_array, as_count, as_real
 from ..numerics.units import meaning, unit
 from ..statics.load_result import solution_at
 from ..statics.options import SolveOptions
@@ -40,7 +40,7 @@ TURNED = np.array([1.0, -1.0, -1.0, 1.0, -1.0])
 
 def _flag(value):
     """Converter: traced flag, so that both orientations share one program."""
-    return jnp.asarray(value) if isinstance(value, bool) else value
+    return as_array(value, bool) if isinstance(value, bool) else value
 
 
 class BearingSupport(AbstractSupport):

@@ -21,7 +21,15 @@ from ..design.checks import (
 )
 from ..design.material import Material
 from ..numerics.compiled.programs import program
-from ..numerics.types import Number, Real, Scalar, as_count, as_real
+from ..numerics.types import (
+    Number,
+    Real,
+    Scalar,
+    array_namespace,
+    as_count,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import real, unit
 from ..numerics.warning import Warning
 
@@ -128,14 +136,15 @@ class Disc(AbstractPart):
             outer_diameter, width, bore: Sizes [m].
             material: Material of the disc; steel unless given.
         """
-        outer, wide, hole = (as_real(v) for v in (outer_diameter, width, bore))
+        sizes = [as_real(size) for size in (outer_diameter, width, bore)]
+        material = Material() if material is None else material
+        (outer, wide, hole), density = in_numpy((sizes, material.density))
         positive(cls, "outer_diameter", outer, "m")
         positive(cls, "width", wide, "m")
         non_negative(cls, "bore", hole, "m")
         if not is_traced(outer) and not is_traced(hole):
             check(cls, "bore", hole < outer, "below the outer diameter", hole, "m")
-        material = Material() if material is None else material
-        mass = material.density * 0.25 * jnp.pi * (outer**2 - hole**2) * wide
+        mass = density * 0.25 * jnp.pi * (outer**2 - hole**2) * wide
         squares = outer**2 + hole**2
         diametral = mass * (squares / 16.0 + wide**2 / 12.0)
         return cls(station, mass, mass * squares / 8.0, diametral)
@@ -178,7 +187,10 @@ class PointMass(AbstractPart):
 def square_matrix(value: Any) -> Any:
     """Converter: a number, or one per freedom, becomes a diagonal matrix."""
     value = as_real(value)
-    return jnp.diag(value) if getattr(value, "ndim", 0) == 1 else value
+    if getattr(value, "ndim", 0) != 1:
+        return value
+    known = in_numpy(value)
+    return as_real(array_namespace(known).diag(known))
 
 
 def check_matrix(owner: Any, name: str, size: int) -> None:

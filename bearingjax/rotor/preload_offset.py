@@ -66,7 +66,7 @@ def _search(element, pushing, inertia) -> Scalar | None:
     rows[0, 2] = 1.0
     parts = CondensedRotor(
         stiffness=as_real(np.zeros((1, 1))),
-        force=as_real(np.reshape(pushing, 1)),
+        force=as_real(np.asarray(pushing).reshape(1)),
         rows=as_real(rows),
         back=as_real(np.eye(1)),
         there=as_real(np.zeros(1)),

@@ -27,7 +27,7 @@ from ..design.material import Material
 from ..element.frame import FREEDOMS, LOADS, MOTION_UNITS
 from ..fits import Mounting
 from ..numerics.labels import name_axis
-from ..numerics.types import Scalar, as_count, as_real
+from ..numerics.types import Scalar, array_namespace, as_count, as_real
 from ..numerics.units import unit
 from ..numerics.warning import Warning
 
@@ -159,14 +159,14 @@ class Shaft(eqx.Module):
     @property
     def mass(self) -> Scalar:
         """Mass [kg]."""
-        return jnp.sum(self.element_masses())
+        return self.element_masses().sum()
 
     def element_masses(self) -> Float[Array, " element"]:
         """Return the mass of each beam element [kg]."""
         _, _, density = self._material_numbers()
         area = 0.25 * jnp.pi * (self.outer_diameter**2 - self.bore**2)
-        whole = density * area * jnp.diff(self.stations)
-        return (whole / as_real(self.divisions))[self._segment]
+        whole = density * area * (self.stations[1:] - self.stations[:-1])
+        return (whole / np.array(self.divisions, whole.dtype))[self._segment]
 
     @property
     def _segment(self) -> np.ndarray:
@@ -177,10 +177,9 @@ class Shaft(eqx.Module):
         """Return modulus, Poisson's ratio and density of each segment."""
         given = self.material
         listed = given if isinstance(given, tuple) else (given,) * self.n_segments
-        return tuple(
-            jnp.stack([getattr(material, name) for material in listed])
-            for name in ("elastic_modulus", "poisson_ratio", "density")
-        )
+        names = "elastic_modulus", "poisson_ratio", "density"
+        every = ([getattr(material, name) for material in listed] for name in names)
+        return tuple(array_namespace(*each).stack(each) for each in every)
 
     def matrices(self) -> tuple[Array, Array, Array]:
         """Return mass, gyroscopic and stiffness matrix of the free shaft.

@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, of_shape
 from ..design.material import Material
-from ..numerics.types import as_real
+from ..numerics.types import array_namespace, as_real, in_numpy
 from ..numerics.units import meaning, unit
 from ..rotor import Shaft
 
@@ -98,14 +98,15 @@ class ShaftLine(eqx.Module):
             check(self, "length", np.asarray(self.length) > 0, "above 0 m")
 
     @property
-    def frame(self) -> Float[Array, "3 3"]:
+    def frame(self) -> Float[Array | np.ndarray, "3 3"]:
         """Local x, y and z in global axes (local, global) [1]."""
-        z = self.axis / jnp.sqrt(self.axis @ self.axis)
-        across = jnp.where(jnp.abs(z[0]) > _ALONG, 1, 0)
-        out = jnp.eye(3, dtype=z.dtype)[across]
+        axis = in_numpy(self.axis)
+        xp: Any = array_namespace(axis)
+        z = axis / xp.sqrt(axis @ axis)
+        out = xp.eye(3, dtype=z.dtype)[xp.where(xp.abs(z[0]) > _ALONG, 1, 0)]
         x = out - (out @ z) * z
-        x = x / jnp.sqrt(x @ x)
-        return jnp.stack([x, jnp.cross(z, x), z])
+        x = x / xp.sqrt(x @ x)
+        return xp.stack([x, xp.cross(z, x), z])
 
     def radial_direction(self, angle: Any) -> Float[Array, "3"]:
         """Return the radial direction at an angle around the shaft, in global axes.
@@ -175,18 +176,19 @@ class ShaftLine(eqx.Module):
             plan: From `plan`.
             places: Positions of the parts on it by name [m].
         """
-        ends = jnp.concatenate(
-            [jnp.zeros(1, self.length.dtype), jnp.cumsum(self.length)]
+        length, widths, places = in_numpy(
+            (self.length, (self.outer_diameter, self.bore), places)
         )
-        z = jnp.stack(
-            [places[s] if isinstance(s, str) else ends[s] for s in plan.stations]
-        )
+        xp: Any = array_namespace(length)
+        ends = xp.concatenate([xp.zeros(1, length.dtype), xp.cumsum(length)])
+        z = [places[s] if isinstance(s, str) else ends[s] for s in plan.stations]
+        xp = array_namespace(*z)
+        z = xp.stack(z)
         z = jnp.where(jnp.all(jnp.diff(z) > 0), z, jnp.nan) if is_traced(z) else z
         of = np.array(plan.segments)
         n = self.length.shape[0]
         outer, bore = (
-            jnp.broadcast_to(value, (n,))[of]
-            for value in (self.outer_diameter, self.bore)
+            array_namespace(value).broadcast_to(value, (n,))[of] for value in widths
         )
         material = self.material
         if isinstance(material, tuple):

@@ -7,10 +7,10 @@ one pulley to the other.
 
 from typing import Annotated, Any, NamedTuple
 
-import jax.numpy as jnp
+import jax
 from jaxtyping import Array, Float
 
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, array_namespace, in_numpy
 from ..numerics.units import unit
 from .parts import APEXES, Gear, Pulley
 
@@ -46,11 +46,12 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
         one, other: The wheels.
         shaft, far: Their shafts.
     """
+    one, other, shaft, far = parts = in_numpy((one, other, shaft, far))
+    xp: Any = array_namespace(*jax.tree.leaves(parts))
     z, apart = shaft.frame[2], None
     if shaft.origin is not None and far.origin is not None:
         centres = [
-            as_real(s.origin) + w.position * s.frame[2]
-            for s, w in ((shaft, one), (far, other))
+            s.origin + w.position * s.frame[2] for s, w in ((shaft, one), (far, other))
         ]
         apart = centres[1] - centres[0]
     radii, overlap = (one.radius, other.radius), None
@@ -61,38 +62,38 @@ def mesh_place(one: Any, other: Any, shaft: Any, far: Any) -> MeshPlace | None:
         return None
     elif isinstance(one, Pulley):
         first = unit_vector(apart)
-        none, gap = jnp.zeros_like(apart), (apart @ z) * z
-        size = jnp.sqrt(apart @ apart)
+        none, gap = xp.zeros_like(apart), (apart @ z) * z
+        size = xp.sqrt(apart @ apart)
         return MeshPlace((first, -first), radii, (none, none), gap, size, None)
     else:
         radial = part_across(apart, z)
-        distance, first = jnp.sqrt(radial @ radial), unit_vector(radial)
+        distance, first = xp.sqrt(radial @ radial), unit_vector(radial)
         second, share = -first, distance / (radii[0] + radii[1])
         radii = radii[0] * share, radii[1] * share
     points = [radii[0] * first, radii[1] * second]
     size = radii[0] + radii[1]
-    gap = jnp.zeros_like(first) if apart is None else apart + points[1] - points[0]
+    gap = xp.zeros_like(first) if apart is None else apart + points[1] - points[0]
     shift = 0.5 * gap
     if apart is not None and one.pitch_angle is None:
         if one.face_width is not None and other.face_width is not None:
             along, half = gap @ z, (0.5 * one.face_width, 0.5 * other.face_width)
-            low = jnp.maximum(-half[0], along - half[1])
-            high = jnp.minimum(half[0], along + half[1])
+            low = xp.maximum(-half[0], along - half[1])
+            high = xp.minimum(half[0], along + half[1])
             shift, overlap = 0.5 * (low + high) * z, high - low
     points = points[0] + shift, points[1] + shift - gap
     return MeshPlace((first, second), radii, points, gap, size, overlap)
 
 
-def outward_direction(gear: Gear, shaft: Any) -> Array:
+def outward_direction(gear: Gear, shaft: Any) -> Any:
     """Return the direction along its shaft from the apex of a bevel gear to it."""
     return -APEXES[str(gear.apex)] * shaft.frame[2]
 
 
-def part_across(vector: Array, axis: Array) -> Array:
+def part_across(vector: Any, axis: Any) -> Any:
     """Return the part of a vector across an axis of length 1."""
     return vector - (vector @ axis) * axis
 
 
-def unit_vector(vector: Array) -> Array:
+def unit_vector(vector: Any) -> Any:
     """Return the vector of length 1 along a vector."""
-    return vector / jnp.sqrt(vector @ vector)
+    return vector / array_namespace(vector).sqrt(vector @ vector)

@@ -24,12 +24,20 @@ from jaxtyping import Array, Float
 from ..design.checks import (
     check_fields,
     finite,
+    floats,
     instance,
     is_traced,
     number,
 )
 from ..design.checks import count as whole
-from ..numerics.types import Real, RealOrNone, Scalar, as_count, as_real
+from ..numerics.types import (
+    Real,
+    RealOrNone,
+    Scalar,
+    array_namespace,
+    as_count,
+    as_real,
+)
 from ..numerics.units import meaning, real, unit
 from ..statics.installed import Installed
 
@@ -238,7 +246,8 @@ class Gear(AbstractWheel):
     @property
     def radius(self) -> Scalar:
         """Radius of the pitch circle; of a bevel gear in the middle of the face [m]."""
-        return 0.5 * self.normal_module * self.teeth / jnp.cos(self.helix_angle)
+        cosine = array_namespace(self.helix_angle).cos(self.helix_angle)
+        return 0.5 * self.normal_module * self.teeth / cosine
 
     @property
     def base_radius(self) -> Scalar:
@@ -247,8 +256,8 @@ class Gear(AbstractWheel):
         return self.radius / jnp.sqrt(1.0 + tangent**2)
 
     def push(
-        self, axis: Array, radial: Array, radius: Scalar, sign: Array
-    ) -> tuple[Array, Array]:
+        self, axis: Any, radial: Any, radius: Scalar, sign: Array
+    ) -> tuple[Any, Any]:
         """Return force over T/r on the gear at its mesh, and the line of its tooth.
 
         Args:
@@ -362,7 +371,7 @@ class Drive(eqx.Module):
         number(self, "speed")
         _one_source(self)
         turns = is_traced(self.speed) or float(self.speed) != 0.0
-        idle = not is_traced(self.power) and self.power == 0.0
+        idle = floats(self.power) == [0.0]
         if self.power is not None and not (turns or idle):
             raise ValueError(
                 "Drive: `power` needs a `speed`, from which its torque follows; give"

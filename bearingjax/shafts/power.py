@@ -49,8 +49,10 @@ class Mesh(eqx.Module):
     mate: str | None = eqx.field(static=True)
     torque: Scalar = eqx.field(metadata=unit("N m"))
     force: Float[Array, "direction=3"] = eqx.field(metadata=unit("N"))
-    place: Float[Array, "direction=3"] = eqx.field(metadata=unit("m"))
-    line: Float[Array, "direction=3"] = eqx.field(metadata=unit("1"))
+    place: Float[Array, "direction=3"] = eqx.field(
+        converter=as_real, metadata=unit("m")
+    )
+    line: Float[Array, "direction=3"] = eqx.field(converter=as_real, metadata=unit("1"))
 
 
 class PowerFlow(eqx.Module):

@@ -12,7 +12,7 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.minimise import Minimum
 from ..numerics.result import Result
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit
 from ..rotor import STATION_FREEDOMS
 from ..rotor.bearing_support import TURNED
@@ -101,7 +101,7 @@ class SystemSolution(eqx.Module):
     @property
     def converged(self) -> Any:
         """Whether the result code is `CONVERGED`."""
-        return self.result == Result.CONVERGED
+        return in_numpy(self.result) == Result.CONVERGED
 
 
 def describe_state(
@@ -139,7 +139,8 @@ def describe_state(
             node = beam.node(system.station(system.seats[k])[1])
             acting = acting.at[node].add(-force[k])
         line = system.shafts[index]
-        weight = jnp.outer(beam.element_masses(), line.frame @ system.gravity)
+        weight = line.frame @ system.gravity
+        weight = beam.element_masses()[:, None] * weight[None]
         speed = power.speed[index]
         shafts.append(ShaftState(*_lines(beam.nodes, acting, weight, moved), speed))
         turned = jnp.concatenate([moved[:, 3:], jnp.zeros_like(moved[:, :1])], axis=1)

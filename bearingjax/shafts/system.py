@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from ..design.bearing_set import pitch_radius
 from ..design.checks import check, floats, instance, is_traced
-from ..numerics.types import as_real
+from ..numerics.types import as_real, in_numpy
 from ..numerics.units import unit
 from ..rotor import Shaft
 from ..rotor.rotor import as_parts
@@ -186,7 +186,7 @@ class ShaftSystem(eqx.Module):
             shaft.plan({p.name: p.position for p in self.parts_on(shaft.name)})
             for shaft in self.shafts
         )
-        for pair in self.pairs():
+        for pair in in_numpy(self.pairs()):
             self._check_mesh(*pair)
         for wheel in self.wheels:
             if isinstance(wheel, Gear) and wheel.mesh_angle is not None:
@@ -199,7 +199,7 @@ class ShaftSystem(eqx.Module):
         if self.drive is None or not self.turns:
             return None
         sizes = [
-            (seat.shaft, pitch_radius(seat.installed.drawing.bearing))
+            (seat.shaft, pitch_radius(in_numpy(seat.installed.drawing.bearing)))
             for seat in self.seats
             if seat.installed is not None
         ]
@@ -217,7 +217,7 @@ class ShaftSystem(eqx.Module):
         into = self.drive.into if self.drive is not None else ""
         names = [wheel.name for wheel in self.wheels]
         ratio = {self.wheel(into).shaft if into in names else into: 1.0}
-        pairs = self.pairs()
+        pairs = in_numpy(self.pairs())
         for _ in pairs:
             for near, far in (*pairs, *(pair[::-1] for pair in pairs)):
                 sizes = [

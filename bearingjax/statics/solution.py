@@ -24,7 +24,7 @@ from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics import Result, TrustRegionNewton
 from ..numerics.labels import axes_of, to_xarray
-from ..numerics.types import Number, Ring, Scalar
+from ..numerics.types import Number, Ring, Scalar, in_numpy
 from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results
 from .rollers import RollerResults, roller_results
@@ -131,7 +131,7 @@ class Solution(eqx.Module):
     @property
     def converged(self) -> Bool[Array | np.ndarray, "*case"] | np.bool_:
         """Whether the result code is `CONVERGED`."""
-        return self.result == Result.CONVERGED
+        return in_numpy(self.result) == Result.CONVERGED
 
     @property
     def failure_message(self) -> str:

@@ -1,5 +1,9 @@
 """The commands about compiled programs: `cache` and `warm`."""
 
+import os
+import subprocess
+import sys
+
 import pytest
 
 from bearingjax.numerics.compiled import programs
@@ -52,3 +56,41 @@ def test_warm_compiles_a_kind_once(run, cache):
     assert first.startswith("1 kinds; ") and " 0 programs compiled" not in first
     assert len(list((cache / "programs").iterdir())) >= 4
     assert run("warm", "51101", "--quiet").out.startswith("1 kinds; 0 programs")
+
+
+COUNTING = """
+import sys, traceback
+import jax
+from bearingjax.cli import main
+
+def tell(event, seconds, **_):
+    if event.endswith("backend_compile_duration"):
+        frames = [f for f in traceback.extract_stack() if "bearingjax/" in f.filename]
+        print("compiled:", *frames[-1:], file=sys.stderr)
+
+jax.monitoring.register_event_duration_secs_listener(tell)
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [("solve", "deep_groove"), ("life", "life_spectrum"), ("rotor", "rotor_flexible")],
+    ids=" ".join,
+)
+def test_stored_run_compiles_nothing(tmp_path, words):
+    """Facts of designs, oils and reports are NumPy's: an operation of JAX outside of a
+    program would be compiled anew by every process."""
+    first, second = (
+        subprocess.run(
+            [sys.executable, "-c", COUNTING, *words, "--quiet"],
+            env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        for _ in range(2)
+    )
+    assert "compiled:" in first.stderr and "compiled:" not in second.stderr
+    assert first.stdout == second.stdout

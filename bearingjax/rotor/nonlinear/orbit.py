@@ -232,6 +232,7 @@ def solve_orbit(
     )
 
 
+@program(quick=True)
 def beginning(
     system: AbstractVibratingSystem, start: Float[Array, "sample n"] | None
 ) -> Motion:

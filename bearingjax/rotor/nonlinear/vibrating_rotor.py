@@ -92,7 +92,12 @@ class VibratingRotor(AbstractVibratingSystem):
             motion: Motion of all nodes and housings, such as
                 `StaticEquilibrium.motion` (motion,) [m, rad].
         """
-        return pseudoinverse(self.motions) @ motion
+        return _freedoms(self.motions, motion)
+
+
+@program(quick=True)
+def _freedoms(motions, motion):
+    return pseudoinverse(motions) @ motion
 
 
 def vibrating_rotor(

@@ -46,7 +46,11 @@ _ENDINGS = {
 _FINER = {"shooting": "`steps`", "harmonic_balance": "`harmonics` and `samples`"}
 """Settings that increase the accuracy of a method."""
 Stopped = tuple[Result, str]
-_amplitudes = program(quick=True)(amplitudes)
+
+
+@program(quick=True)
+def _amplitudes(samples):
+    return amplitudes(samples)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...numerics.types import in_numpy
 from ...numerics.units import rpm, shown_count
 from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
 from ...rotor import STATION_FREEDOMS
@@ -53,7 +54,9 @@ def _length(run):
 def _head(run):
     task = run.task
     z = np.asarray(task.shaft.stations)
-    mass = float(task.shaft.mass) + sum(float(part.mass) for part in task.discs)
+    mass = float(in_numpy(task.shaft).mass) + sum(
+        float(part.mass) for part in task.discs
+    )
     kind = "rigid shaft" if task.rigid else "shaft"
     gravity = {"none": "no gravity"}.get(task.axis, task.axis)
     return (

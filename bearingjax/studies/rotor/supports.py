@@ -46,7 +46,7 @@ def support_of(mount: Mount) -> AbstractSupport:
     return BearingSupport(
         keys.station,
         element,
-        as_array([0.0, 0.0, 0.0, 0.0, 0.0], float).at[2].set(offset),
+        as_array([0.0, 0.0, float(offset), 0.0, 0.0], float),
         damping,
         housing=housing,
         turned=keys.turned,
@@ -72,10 +72,10 @@ def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
         rotor: Rotor on its nonlinear bearings.
         settled: Its static equilibrium.
     """
-    sizes = [_AT_LEAST, float(np.max(np.abs(settled.displacement[:, :3])))]
+    sizes = [_AT_LEAST, float(np.max(np.abs(np.asarray(settled.displacement)[:, :3])))]
     for support in rotor.supports:
         if isinstance(support, BearingSupport):
-            sizes.append(float(np.max(np.abs(support.offset[:3]))))
+            sizes.append(float(np.max(np.abs(np.asarray(support.offset)[:3]))))
         law = getattr(support, "law", None)
         sizes.append(float(getattr(law, "preload_displacement", 0.0)))
         sizes.append(float(getattr(law, "preload_approach", 0.0)))

@@ -18,6 +18,7 @@ from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
 from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
+from ...numerics.types import in_numpy
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
 from ...shafts.duty import case_damage
 from ...shafts.equilibrium import searched_system, system_state
@@ -66,7 +67,7 @@ class InPlace:
         if (fits := self.scene.fit_states) is not None:
             return float(fits.operating.radial_clearance)
         row = rows_of(self.scene.element.bearing)[0].bearing
-        return None if row.is_thrust else float(radial_clearance(row))
+        return None if row.is_thrust else float(radial_clearance(in_numpy(row)))
 
 
 @dataclasses.dataclass(frozen=True)
