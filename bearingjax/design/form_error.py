@@ -14,7 +14,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..numerics.types import Real, Reals, Scalar, Vector, as_real
+from ..numerics.types import (
+    Real,
+    Reals,
+    Scalar,
+    Vector,
+    array_namespace,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import real, unit
 from .abstract import AbstractBearing
 from .checks import all_of_class, check, finite, instance, is_real, is_traced, must_be
@@ -70,6 +78,12 @@ class AbstractShape(eqx.Module):
         """
 
 
+def _listed(given) -> Array:
+    """Numbers in an array of at least one axis."""
+    given = in_numpy(as_real(given))
+    return as_real(array_namespace(given).atleast_1d(given))
+
+
 def _orders(given) -> tuple:
     """Orders as they were given, in a tuple."""
     given = np.atleast_1d(np.asarray(given))
@@ -111,9 +125,9 @@ class Harmonics(AbstractShape):
             must_be("Harmonics", name, given, fine, "numbers", TypeError)
         whole = all(isinstance(k, int) and k >= 1 for k in self.order)
         check("Harmonics", "order", whole, "whole numbers from 1", list(self.order), "")
-        self.amplitude = jnp.atleast_1d(as_real(amplitude))
-        zeros = jnp.zeros_like(self.amplitude)
-        self.phase = zeros if phase is None else jnp.atleast_1d(as_real(phase))
+        self.amplitude = _listed(amplitude)
+        zeros = np.zeros(self.amplitude.shape, self.amplitude.dtype)
+        self.phase = _listed(zeros if phase is None else phase)
         for name in ("amplitude", "phase"):
             value = getattr(self, name)
             if value.shape[-1] != count:

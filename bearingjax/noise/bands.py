@@ -125,6 +125,7 @@ def band_levels(
     return level(band_root_mean_square(spectrum, bands, highest), reference)
 
 
+@program(quick=True)
 def total_root_mean_square(spectrum: Spectrum) -> Reals:
     """Return the RMS of a record about its mean (...) [unit of the record].
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ..design import FormErrors, Harmonics, RacewayErrors, Spall, rows_of
+from ..numerics.types import in_numpy
 from ..numerics.units import unit
 from .lines import Line
 from .model import NoiseModel
@@ -57,7 +58,7 @@ def line_causes(
     """
     lines = tuple(lines)
     highest = max((line.frequency for line in lines), default=0.0) + tolerance
-    known = sorted(_known_waves(model, highest), key=lambda one: -one.size)
+    known = sorted(_known_waves(in_numpy(model), highest), key=lambda one: -one.size)
     rows = len(rows_of(model.element.bearing))
     return tuple(
         _named_lines(

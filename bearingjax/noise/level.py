@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 
 from ..design.checks import positive
+from ..numerics.compiled.programs import program
 from ..numerics.types import Reals, as_real
 
 REFERENCE_ACCELERATION = 0.31e-4
@@ -46,7 +47,12 @@ def level(acceleration: Any, reference: Any = REFERENCE_ACCELERATION) -> Reals:
     Source: Kurushin et al. (2011); ISO 1683.
     """
     positive("level", "reference", reference, "m/s²")
-    ratio = as_real(acceleration) / reference
+    return _level(as_real(acceleration), as_real(reference))
+
+
+@program(quick=True)
+def _level(acceleration, reference):
+    ratio = acceleration / reference
     ratio = jnp.where(ratio < 0, jnp.nan, ratio)
     lowest = 10.0 ** (LOWEST_LEVEL / 20.0)
     # In two steps: the branch that is not taken must not divide by zero.

@@ -26,7 +26,7 @@ from ..design.checks import (
 from ..design.form_error import FormErrors, Surfaces
 from ..element import FREEDOMS, RINGS, BearingElement, Speed
 from ..numerics.compiled.programs import program
-from ..numerics.types import Real, RealOrNone, Scalar, as_real
+from ..numerics.types import Real, RealOrNone, Scalar, as_real, in_numpy
 from ..numerics.units import real, unit
 from ..statics import Solution, SolveOptions, Support
 from ..statics.load import solve
@@ -167,7 +167,7 @@ class NoiseModel(eqx.Module):
                 f" {count}."
             )
         for row, errors in zip(rows_of(bearing), self.errors_of_rows, strict=True):
-            errors.check(row.bearing)
+            errors.check(in_numpy(row.bearing))
 
     @property
     def errors_of_rows(self) -> tuple[FormErrors, ...]:
@@ -184,12 +184,16 @@ class NoiseModel(eqx.Module):
     @property
     def freedoms(self) -> tuple[str, ...]:
         """Freedoms of the moving ring."""
-        return FREEDOMS[: 3 if self.inertia is None else 5]
+        return FREEDOMS[: 5 if self._can_tilt else 3]
+
+    @property
+    def _can_tilt(self) -> bool:
+        return self.tilts and not is_self_aligning(self.element.bearing)
 
     @property
     def inertia(self) -> Scalar | None:
         """Moment of inertia about a diameter [kg m²]; `None`: the ring is held."""
-        if not self.tilts or is_self_aligning(self.element.bearing):
+        if not self._can_tilt:
             return None
         if self.tilting_inertia is not None:
             return self.tilting_inertia
@@ -258,9 +262,9 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     Source: m (3 (R₁² + R₂²) + b²)/12 of a hollow cylinder, with the radii R ± b/2 and
         b² = m/(2πRρ): m (R²/2 + 5 b²/24); and m z² of one that stands at z.
     """
+    bearing, mass = in_numpy((bearing, as_real(mass)))
     rows = rows_of(bearing)
-    part = as_real(mass) / len(rows)
-    total = jnp.zeros_like(part)
+    part, total = mass / len(rows), 0.0 * mass
     for row in rows:
         radius = getattr(Surfaces.from_bearing(row.bearing), moving_ring).radius
         area = part / (2.0 * jnp.pi * radius * row.bearing.rings.density)

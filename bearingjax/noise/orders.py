@@ -18,7 +18,7 @@ from ..design.checks import count, number, of_class, one_of
 from ..element.azimuth import orbit_ratio
 from ..element.frame import orbit, roll_ratio, rotation
 from ..element.inertia import Speed
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Scalar, array_namespace, as_real
 from ..numerics.units import unit
 
 WAVY_PARTS = ("outer", "inner", "element")
@@ -99,7 +99,7 @@ def kinematic_frequencies(
     z = bearing.n_elements
     passages = z * (speeds.cage - speeds.outer), z * (speeds.inner - speeds.cage)
     found = speeds.inner, speeds.outer, speeds.cage, *passages, speeds.element
-    return KinematicFrequencies(*(jnp.abs(one) / (2.0 * jnp.pi) for one in found))
+    return KinematicFrequencies(*(abs(one) / (2.0 * np.pi) for one in found))
 
 
 def waviness_force(
@@ -154,7 +154,7 @@ def waviness_force(
             radial.append(cage - passed)
     in_hertz = 1.0 / (2.0 * np.pi)
     return WavinessForce(
-        in_hertz * jnp.abs(_stack(axial, cage)), in_hertz * _stack(radial, cage)
+        in_hertz * abs(_stack(axial, cage)), in_hertz * _stack(radial, cage)
     )
 
 
@@ -191,4 +191,5 @@ def _speeds(owner, bearing, speed, contact_angle) -> _Speeds:
 
 
 def _stack(lines, like):
-    return jnp.stack(lines) if lines else jnp.zeros((0,), like.dtype)
+    xp = array_namespace(like)
+    return xp.stack(lines) if lines else xp.zeros((0,), like.dtype)

@@ -24,7 +24,7 @@ from ..design import (
 from ..design.checks import check, floats, instance, non_negative, of_class
 from ..design.form_error import FormErrors, Harmonics, RacewayErrors
 from ..design.tolerance import RunningAccuracy, element_grade
-from ..numerics.types import Real, RealOrNone, as_real
+from ..numerics.types import Real, RealOrNone, array_namespace, as_real, in_numpy
 from ..numerics.units import real, unit
 
 PEAKS_IN_RMS = 6.0
@@ -89,11 +89,13 @@ class RandomWaves(eqx.Module):
             low, high, slope, varies: See the class.
         """
         one = cls(1.0, low, high, slope, varies)
-        shape = jnp.sqrt(0.5 * jnp.sum(one._shares() ** 2))
-        return cls(as_real(height) / shape, low, high, slope, varies)
+        square = 0.5 * (in_numpy(one)._shares() ** 2).sum()
+        shape = array_namespace(square).sqrt(square)
+        return cls(in_numpy(as_real(height)) / shape, low, high, slope, varies)
 
     def _shares(self):
-        return (self.low / jnp.arange(self.low, self.high + 1)) ** self.slope
+        share = self.low / np.arange(self.low, self.high + 1)
+        return share.astype(self.slope.dtype) ** self.slope
 
     def sample(self, key: Array, shape: tuple[int, ...] = ()) -> Harmonics:
         """Draw random waves.

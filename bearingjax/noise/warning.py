@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ..design import rows_of
@@ -13,6 +12,8 @@ from ..design.form_error import FormErrors, Harmonics, Surfaces
 from ..element.balls.ball_inertia import ball_inertia, carried_loads
 from ..element.balls.ball_speed import CentrifugalOnly, OuterControl
 from ..numerics import Result, Warning
+from ..numerics.compiled.programs import program
+from ..numerics.types import as_real
 from .bands import LEAST_SHIFT, Bands, band_shift, covers, total_root_mean_square
 from .contact_width import contact_half_width
 from .dynamics.contact_states import contact_states
@@ -304,10 +305,9 @@ def _gyroscopic(model, load) -> Iterator[Warning]:
             continue
         sine = abs(float(model.load[2])) / (each * own.shape[1])
         cosine = min(float(bearing.free_cosine), math.sqrt(max(0.0, 1.0 - sine**2)))
-        normal = jnp.array([math.sqrt(1.0 - cosine**2), cosine])
-        ball = ball_inertia(bearing, bearing.ball_diameter, model.speed, OuterControl())
-        found = carried_loads(ball, jnp.stack([normal] * 2), jnp.full(2, each))
-        share = float(jnp.max(jnp.abs(found.traction))) / each
+        normal = as_real([[math.sqrt(1.0 - cosine**2), cosine]] * 2)
+        traction = _traction(bearing, model.speed, normal, as_real([each] * 2))
+        share = float(np.max(np.abs(traction))) / each
         if share > _GYROSCOPIC:
             words = (
                 f"the gyroscopic moment of the balls{where} asks for tractions of"
@@ -316,6 +316,12 @@ def _gyroscopic(model, load) -> Iterator[Warning]:
             )
             about = share, _GYROSCOPIC, where.removeprefix(" of ")
             yield Warning("gyroscopic_moment", words, *about)
+
+
+@program(quick=True)
+def _traction(bearing, speed, normal, load):
+    ball = ball_inertia(bearing, bearing.ball_diameter, speed, OuterControl())
+    return carried_loads(ball, normal, load).traction
 
 
 def _halves(record) -> Iterator[Warning]:
