@@ -38,16 +38,6 @@ def are_known(*trees: Any) -> bool:
     return not is_traced(jax.device_put(0.0))
 
 
-def on_host(tree: Any) -> Any:
-    """Return a tree with its arrays in NumPy; as it is if one of them is traced.
-
-    Args:
-        tree: Modules, tuples, dicts of arrays.
-    """
-    traced = any(map(is_traced, jax.tree.leaves(tree)))
-    return tree if traced else jax.device_get(tree)
-
-
 def floats(*values: Any) -> list[float] | None:
     """Numbers as Python floats, or `None` if one is traced (or no number at all)."""
     if any(is_traced(v) or not is_real(v) for v in values):

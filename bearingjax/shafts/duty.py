@@ -13,7 +13,6 @@ from jaxtyping import Array, Float, Int
 
 from ..cases.cases import check_hours
 from ..design import rows_of
-from ..design.checks import on_host
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
 from ..life.life import LifeConditions, rating_life
@@ -22,7 +21,7 @@ from ..life.rating import check_alike
 from ..life.reference_life import BALLS, exponents_of
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit
 from ..statics.solution import Solution
 from ..statics.warning import sizes
@@ -247,7 +246,7 @@ def numbers_of(found: SystemSolution) -> dict[str, Any]:
     Args:
         found: Its solution.
     """
-    found = on_host(found)
+    found = in_numpy(found)
     names = "load displacement misalignment motion result".split()
     kept = {name: getattr(found, name) for name in names}
     left, most = torques_left(found.power)
@@ -274,9 +273,9 @@ def bearing_results(
         speed: Its ring speeds.
         conditions: Life conditions of the bearing.
     """
-    solution = on_host(solution)
+    solution = in_numpy(solution)
     given = solution.element, solution, conditions
-    life = on_host(rating_life(*given, speed=speed))
+    life = in_numpy(rating_life(*given, speed=speed))
     lives = {name: getattr(life, name) for name in LIVES}
     lives = {name: value for name, value in lives.items() if value is not None}
     doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))

@@ -13,12 +13,12 @@ import jax.scipy as jsp
 import numpy as np
 from jaxtyping import Array, Float
 
-from ..design.checks import are_known, is_traced, of_class, on_host
+from ..design.checks import are_known, is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
 from ..numerics.minimise import Minimum
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar, array_namespace, with_fields
+from ..numerics.types import Scalar, array_namespace, in_numpy, with_fields
 from ..numerics.units import unit
 from ..rotor import LinearSupport, Rotor
 from ..rotor.condensation import CondensedRotor, condense
@@ -83,7 +83,7 @@ def searched_system(
         ValueError, SolveError: As `solve_system`, but for a failed search.
     """
     found, place = system_state(with_preload_offsets(system))
-    power = on_host(found.power)
+    power = in_numpy(found.power)
     check_torques(system, power.output_shaft, *torques_left(power))
     return found, place
 

@@ -13,7 +13,7 @@ from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
 from ..numerics.compiled.programs import program
-from ..numerics.types import Scalar, as_real, with_fields
+from ..numerics.types import Scalar, as_array, as_real, in_numpy, with_fields
 from ..rotor import BearingSupport, LinearSupport, preload_offset
 from ..rotor.rotor import N_STATION
 from ..statics.empty_places import (
@@ -61,7 +61,7 @@ def with_preload_offsets(
             seat = eqx.tree_at(
                 lambda s: (s.axial_offset, s.preload),
                 seat,
-                (seat.axial_offset + known[key], None),
+                (as_real(in_numpy(seat.axial_offset) + in_numpy(known[key])), None),
                 is_leaf=lambda leaf: leaf is None,
             )
         seats.append(seat)
@@ -117,7 +117,7 @@ def supports_of(
         bare = with_fields(seat, installed=None, name="", shaft="", turned=False)
         if are_known(seat, speeds, growth):
             inside = installed_of_kind(inside)
-        turned = jnp.asarray(np.array(seat.turned))
+        turned = as_array(seat.turned, bool)
         given = inside, bare, turned, growth[k], speeds[k]
         found.append(_bearing_support(*given, bool(system.inertia)))
     return tuple(found)

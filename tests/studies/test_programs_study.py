@@ -76,7 +76,12 @@ sys.exit(main(sys.argv[1:]))
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
-    [("solve", "deep_groove"), ("life", "life_spectrum"), ("rotor", "rotor_flexible")],
+    [
+        ("solve", "deep_groove"),
+        ("life", "life_spectrum"),
+        ("rotor", "rotor_flexible"),
+        ("shaft", "shaft_gearbox"),
+    ],
     ids=" ".join,
 )
 def test_stored_run_compiles_nothing(tmp_path, words):
