@@ -108,7 +108,7 @@ def test_command_finds_the_clearance_of_a_stiffness(run, written, undrawn, tmp_p
     assert re.search(row, done.out), done.out
     assert "optimised over 1 operating case in" in done.out
     scene = paths["--json"].with_name("mine.toml")
-    undrawn("optimised", paths["--json"], "optimise", scene)
+    undrawn("optimise_overview", paths["--json"], "optimise", scene)
     # Not converged: no numbers that could be taken for results.
     out, hasty = tmp_path / "out.json", ("method=adam", "max_steps=1")
     words = (word for one in hasty for word in ("--set", f"optimise.{one}"))
