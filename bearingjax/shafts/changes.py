@@ -205,8 +205,9 @@ def _state_with_changes(bare, found, changes):
             sense = np.asarray(TURNED if seat.turned else np.ones(N_STATION))
             offset = sense * offset_of(seat, machine.growth[k])
             stiffness = found.memory[1][k]
-            moved = stiffness @ (offset - stop_gradient(offset))
-            supports.append(_NearBearing(at[k], force[k] + moved, stiffness))
+            held = force[k] + stiffness @ (offset - stop_gradient(offset))
+            near = _NearBearing(at=at[k], known=held, stiffness=stiffness)
+            supports.append(near)
         whole = with_fields(whole, supports=tuple(supports))
         y, force, _, _ = at_equilibrium(found, whole)
         stiffness = stop_gradient(found.memory[1])
@@ -238,15 +239,19 @@ def solve_with_changes(
     end, inertia = search_known(mounted), system.inertia
     state = numbers_of(describe_search(mounted, end)[0])
     placed: list[PlacedBearing | None] = []
-    for k, (seat, conditions) in enumerate(zip(system.seats, lives, strict=True)):
-        if seat.installed is None or conditions is None:
+    for k, seat in enumerate(system.seats):
+        if seat.installed is None:
             placed.append(None)
             continue
         speed, _ = speed_of(system, k, state["speed"])
-        own = seat.installed, state["motion"][k], speed, conditions, oils[k]
+        rated = lives[k] or LifeConditions()
+        own = seat.installed, state["motion"][k], speed, rated, oils[k]
         placed.append(PlacedBearing(*own))
     if changes is None or int(state["result"]):
-        each = [p and numbers_with_changes(p, inertia)[0] for p in placed]
+        each = [
+            numbers_with_changes(bearing, inertia)[0] if bearing and rated else None
+            for bearing, rated in zip(placed, lives, strict=True)
+        ]
         return (state, each), None
     moved, conditions, oil = changes
     count = jax.tree.leaves(changes)[0].shape[0]
@@ -282,7 +287,7 @@ def solve_with_changes(
     each, of_each = [], []
     for k, bearing in enumerate(placed):
         numbers = None, None
-        if bearing is not None:
+        if bearing is not None and lives[k] is not None:
             at = of_state["motion"][:, k]
             own = seats[k].installed, at, turning[k], conditions[k], oil[k]
             own = dict(zip(PlacedBearing._fields, own, strict=True))

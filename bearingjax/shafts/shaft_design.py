@@ -212,7 +212,7 @@ class ShaftDesign(AbstractSystem):
             peak_pressure=stack([one.peak for one in parts]),
             lives={n: stack([one.lives.get(n, zero) for one in parts]) for n in LIVES},
             warned=tuple(one.warned for one in parts),
-            friction=self.oils and stack([one.power for one in parts]),
+            friction=None if self.oils is None else stack([one.power for one in parts]),
         )
 
     def failure_message(self, solved: Any) -> str:

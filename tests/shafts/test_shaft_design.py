@@ -121,16 +121,20 @@ WARM = (
     Variable("system.seats.1.installed.mounting.shaft_interference", 0.0, 2e-5),
     Variable("system.drive.speed", 100.0, 900.0),
 )
-ASKED = [Worst("rating_life"), Worst("peak_pressure"), Worst("tilt"), PowerLoss()]
+ASKED = [Worst("rating_life", "A"), Worst("peak_pressure"), Worst("tilt"), PowerLoss()]
 
 
 @pytest.mark.slow
-def test_gradients_of_preloaded_warm_turning_bearings():
-    """Derivatives worked out bearing by bearing equal those of one traced program, and
-    differences of fourth order."""
-    design, cases = load_cases([spindle(), spindle(-2000.0)])
+@pytest.mark.parametrize("rated", [(True, True), (True, False)])
+def test_gradients_of_preloaded_warm_turning_bearings(rated):
+    """Derivatives worked out bearing by bearing equal differences of fourth order, also
+    where the life of a bearing is not asked for, and those of one traced program."""
+    found = [spindle(), spindle(-2000.0)]
+    lives = tuple(LifeConditions() if one else None for one in rated)
+    found = [ShaftDesign(one.system, lives, one.oils) for one in found]
+    design, cases = load_cases(found)
     bounds = [Constraint(m, lower=0.0) for m in ASKED]
-    life = SystemLife().as_objective
+    life = Worst("rating_life", "A").as_objective
     problem = Problem(design, cases, WARM, life, bounds, SolveOptions())
     start = problem.to_unit_box([v.start_in(design) for v in WARM])
     own = problem.run(start, True)
@@ -139,17 +143,16 @@ def test_gradients_of_preloaded_warm_turning_bearings():
         step = 2e-3 * np.eye(len(WARM))[k]
         ends = [problem.run(start + s * step, False).measures for s in (-2, -1, 1, 2)]
         wanted = (ends[0] - 8 * ends[1] + 8 * ends[2] - ends[3]) / (12 * 2e-3)
-        np.testing.assert_array_less(
-            np.abs(own.jacobian[:, k] - wanted), DIFFERENCE * size
-        )
-    whole = _program(
-        design, problem.cases, problem.measures, (problem.paths, problem.lower,
-        problem.width), problem.solves, None, jnp.asarray(start), True,
-    )  # fmt: skip
+        missed = np.abs(own.jacobian[:, k] - wanted)
+        np.testing.assert_array_less(missed, DIFFERENCE * size)
+    if not all(rated):
+        return
+    box = problem.paths, problem.lower, problem.width
+    given = design, problem.cases, problem.measures, box, problem.solves, None
+    whole = _program(*given, jnp.asarray(start), True)
     np.testing.assert_allclose(own.measures, whole.measures, rtol=SOLVER)
-    np.testing.assert_array_less(
-        np.abs(own.jacobian - whole.jacobian), SOLVER * size[:, None]
-    )
+    missed = np.abs(own.jacobian - whole.jacobian)
+    np.testing.assert_array_less(missed, SOLVER * size[:, None])
 
 
 def test_lives_of_a_duty_by_hand():
