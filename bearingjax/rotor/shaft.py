@@ -161,7 +161,7 @@ class Shaft(eqx.Module):
         """Mass [kg]."""
         return self.element_masses().sum()
 
-    def element_masses(self) -> Float[Array, " element"]:
+    def element_masses(self) -> Float[Array | np.ndarray, " element"]:
         """Return the mass of each beam element [kg]."""
         _, _, density = self._material_numbers()
         area = 0.25 * jnp.pi * (self.outer_diameter**2 - self.bore**2)

@@ -1093,7 +1093,7 @@ def test_single_precision_has_the_usual_reliability():
         ({"contamination": 0.5}, "`viscosity` is missing"),
         ({"viscosity": 1e-5, "contamination": 1.5}, "`contamination` is 1.5"),
         ({"viscosity": 1e-5, "contamination": "clean"}, "'clean'.*grease, normal"),
-        ({"load_fixed_to": "shaft"}, "'shaft'.*'space', 'inner', 'outer'"),
+        ({"load_fixed_to": "shaft"}, "'shaft'.*one of space, inner, outer"),
         ({"edge_stress": "no"}, "`edge_stress` is 'no'.*True or False"),
         ({"fatigue_load_limit": np.nan}, "`fatigue_load_limit` is nan N"),
         (

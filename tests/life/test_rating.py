@@ -371,7 +371,7 @@ SIZES += ("ball_diameter", "roller_diameter", "roller_length", "roller_axis_angl
         ),
         (
             lambda: bj.life.fatigue_load_limit(balls(), method="hertz"),
-            "`method` is 'hertz'; it must be 'static' or 'contact'",
+            "`method` is 'hertz'; it must be one of static, contact",
         ),
         (
             lambda: bj.life.fatigue_load_limit(taper(), method="contact"),

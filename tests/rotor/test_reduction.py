@@ -140,5 +140,5 @@ def test_orbit():
     ],
 )
 def test_bad_input(change, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((TypeError, ValueError), match=message):
         change(stepped())

@@ -76,12 +76,12 @@ class _Store:
 
     folder: Path | None = None
     at_hand: dict[str, Callable]
-    names: dict[Any, str | None]
+    structures: dict[Any, str]
     telling: Callable[[str], contextlib.AbstractContextManager] | None = None
     compiled: int = 0
 
     def __init__(self):
-        self.at_hand, self.names = {}, {}
+        self.at_hand, self.structures = {}, {}
 
 
 _STORE = _Store()
@@ -334,33 +334,30 @@ def _compile(lowered, options: dict, keep: bool):
 
 
 def _name(function: Callable, arguments: tuple) -> str | None:
-    """Name of the file of a program, or `None` if no name identifies it reliably.
-
-    Of arguments that were met before it is remembered: to find it takes longer than
-    many a program.
-    """
-    leaves, tree = jax.tree.flatten(arguments)
-    arrays = [isinstance(x, jax.Array) for x in leaves]
-    kinds = [
-        (x.shape, x.dtype, x.weak_type) if array else (type(x), x)
-        for x, array in zip(leaves, arrays, strict=True)
-    ]
-    settings = (*jax.config.values.values(), os.environ.get("XLA_FLAGS"))
+    """Name of the file of a program, or `None` if no name identifies it reliably."""
     try:
-        met = function, tree, tuple(kinds), settings
-        if met not in _STORE.names:
-            _STORE.names[met] = _name_anew(function, arguments)
-        return _STORE.names[met]
-    except TypeError:  # something that has no hash
-        return _name_anew(function, arguments)
-
-
-def _name_anew(function: Callable, arguments: tuple) -> str | None:
-    try:
-        words = [structure((function, arguments)), *_surroundings()]
+        words = [_structure(function, arguments), *_surroundings()]
     except UnknownStructure:
         return None
     return hashlib.sha256("\n".join(words).encode()).hexdigest()
+
+
+def _structure(function: Callable, arguments: tuple) -> str:
+    """Return `structure` of a call, which is remembered: it takes longer than many a
+    program."""
+    leaves, tree = jax.tree.flatten(arguments)
+    kinds = [
+        (x.shape, x.dtype, x.weak_type) if isinstance(x, jax.Array) else (type(x), x)
+        for x in leaves
+    ]
+    met = function, tree, tuple(kinds)
+    try:
+        known = _STORE.structures.get(met)
+    except TypeError:  # something that has no hash
+        return structure((function, arguments))
+    if known is None:
+        known = _STORE.structures[met] = structure((function, arguments))
+    return known
 
 
 def _surroundings() -> Iterator[str]:

@@ -36,7 +36,8 @@ def craig_bampton(rotor: Rotor, modes: Any) -> Basis:
         rotor's derivatives are as near to those of the rotor as its motions are.
 
     Raises:
-        ValueError: If the shaft is rigid, nothing supports it, or `modes` is no count.
+        TypeError: If `modes` is no whole number.
+        ValueError: If the shaft is rigid, nothing supports it, or `modes` is negative.
 
     Source: Craig & Bampton, AIAA J. 6 (1968) 1313-1319.
     """
