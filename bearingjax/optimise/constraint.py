@@ -12,6 +12,11 @@ from .measure import label_of
 _A_MEASURE = "a function (element, cases, solution) -> scalar, such as Stiffness('uy')"
 
 
+def _as_bound(value):
+    """Converter: of no unit that is known here, which `as_real` would promise."""
+    return as_real(value)
+
+
 class Constraint(eqx.Module):
     """Bounds on a measure.
 
@@ -25,8 +30,8 @@ class Constraint(eqx.Module):
     """
 
     measure: Any
-    lower: Scalar | None = eqx.field(converter=as_real, default=None)
-    upper: Scalar | None = eqx.field(converter=as_real, default=None)
+    lower: Scalar | None = eqx.field(converter=_as_bound, default=None)
+    upper: Scalar | None = eqx.field(converter=_as_bound, default=None)
 
     def __check_init__(self):
         of_class(self, "measure", self.measure, Callable, _A_MEASURE)

@@ -20,7 +20,7 @@ from ..element.bearing_element import BearingElement
 from ..life.life import LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
-from ..numerics.types import Scalar, array_namespace, as_real
+from ..numerics.types import Scalar, array_namespace, as_real, with_fields
 from ..numerics.units import unit
 from ..numerics.warning import Warning, warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
@@ -206,14 +206,18 @@ class ShaftDesign(AbstractSystem):
         def stack(values):
             return array_namespace(found["load"]).stack(values, axis=len(axes))
 
-        kept = "load displacement misalignment speed loss result".split()
-        return DutyResult(
+        kept = "load displacement misalignment speed loss".split()
+        code = found["result"]
+        collected = DutyResult(
             **{name: found[name] for name in kept},
+            result=np.zeros(axes, np.int32) if code is None else code,
             peak_pressure=stack([one.peak for one in parts]),
             lives={n: stack([one.lives.get(n, zero) for one in parts]) for n in LIVES},
             warned=tuple(one.warned for one in parts),
             friction=None if self.oils is None else stack([one.power for one in parts]),
         )
+        # A code has no change.
+        return with_fields(collected, result=code)
 
     def failure_message(self, solved: Any) -> str:
         return "the shafts find no equilibrium on their bearings"
