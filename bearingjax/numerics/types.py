@@ -63,11 +63,11 @@ def in_numpy(tree: T) -> T:
         tree: Modules, tuples, dicts; what is traced stays as it is.
     """
 
-    def known(leaf):
+    def to_numpy(leaf):
         is_known = isinstance(leaf, jax.Array) and not isinstance(leaf, Tracer)
         return np.asarray(leaf) if is_known else leaf
 
-    return jax.tree.map(known, tree)
+    return jax.tree.map(to_numpy, tree)
 
 
 def as_real(value: Any) -> Any:

@@ -47,6 +47,7 @@ from .seats import (
 from .system import ShaftSystem
 
 _INNER = slice(len(FREEDOMS), len(FREEDOMS) + N_STATION)
+"""The inner ring, but its rotation, among the freedoms of both rings."""
 _AXIAL = 2
 _CHUNK = 4
 """Changes of a call of a program."""
@@ -74,8 +75,11 @@ class BearingNumbers(NamedTuple):
     """What a design asks of a bearing in its place, or a change of it.
 
     Attributes:
-        force: That holds its inner ring there, in its axes (5,) [N, N m].
-        peak, lives, warned: From `bearing_results`; of warnings there are no changes.
+        force: Force on the inner ring that holds it there, in the axes of the bearing
+            (5,) [N, N m].
+        peak: Largest contact pressure [Pa].
+        lives: Numbers of a `Life` by their names.
+        warned: Sizes of warnings by their kinds; they have no changes.
         power: Power lost [W]; zero without oil.
     """
 
@@ -94,7 +98,7 @@ def numbers_of_bearing(
     Args:
         placed: The bearing there.
         inertia: Whether its rolling elements feel the speed; `None` at rest. Static.
-        points: As in `in_place`. Static.
+        points: Positions along the rollers at which loads are reported. Static.
     """
     installed, motion, speed, conditions, oil = placed
     given = installed, motion, speed, inertia, points
@@ -153,7 +157,7 @@ def numbers_with_changes(
 
     Args:
         placed: The bearing.
-        inertia: As in `numbers_of_bearing`.
+        inertia: Whether its rolling elements feel the speed; `None` at rest. Static.
         count: Number of changes, one at least.
         **changes: Changes of fields (change, …), `None` for what is no real number.
     """

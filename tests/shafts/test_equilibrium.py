@@ -6,10 +6,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from systems import ELEMENT, STIFF, ball, springs, stage, three_bearings
-from tolerances import ROUNDING, SOLVER
+from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.friction import films
+from bearingjax.numerics.implicit import with_zeros
+from bearingjax.numerics.types import with_fields
 from bearingjax.rotor import BearingSupport
 from bearingjax.shafts import (
     Drive,
@@ -22,6 +24,8 @@ from bearingjax.shafts import (
     bearing_solutions,
     solve_system,
 )
+from bearingjax.shafts.changes import _state_with_changes
+from bearingjax.shafts.equilibrium import search_known
 from bearingjax.shafts.seats import axial_growth, offset_of, supports_of
 from bearingjax.statics import BallSolution, load_result, warnings
 
@@ -599,6 +603,30 @@ def test_another_system_compiles_no_bearing(monkeypatch):
     seats = [*seats[:2], Seat("N", "s", 0.3, other)]
     solve_system(ShaftSystem(line, seats, loads=LOAD[:1]))
     assert len(traces) == before + 1
+
+
+def test_change_of_a_state_with_that_of_its_bearings():
+    """Loads by the axial offset of a bearing turned round equal central differences."""
+    line = ShaftLine("s", [0.4], [0.04])
+
+    def system_at(offset):
+        seats = [own("A", 0.02, 8), own("B", 0.36, 8, turned=True, axial_offset=offset)]
+        return ShaftSystem(line, seats, loads=LOAD[:1])
+
+    def load_at(offset):
+        return np.asarray(solve_system(system_at(offset)).load)
+
+    place, step = 3e-5, 1e-8
+    end = search_known(system_at(place))
+    still = jax.tree.map(lambda _: None, end.bare)
+    seats = still.seats[0], with_fields(still.seats[1], axial_offset=np.ones(1))
+    change = with_zeros(end.bare, with_fields(still, seats=seats), 1)
+    _, moved = _state_with_changes(
+        end.bare, end.found, (change, np.zeros((1, 2, 5)))
+    )  # fmt: skip
+    wanted = (load_at(place + step) - load_at(place - step)) / (2 * step)
+    size = np.abs(wanted).max()
+    np.testing.assert_allclose(moved["load"][0], wanted, atol=DIFFERENCE * size)
 
 
 def own(name, position, count, **more):
