@@ -238,7 +238,7 @@ def numbers_of(thing):
     names = {n for k in kinds for n, v in vars(k).items() if isinstance(v, property)}
     names -= {"weakest", "failure_message"}  # They are of one case alone.
     found = vars(thing) | {name: getattr(thing, name) for name in names}
-    return {n: v for n, v in found.items() if isinstance(v, jax.Array | np.ndarray)}
+    return {n: v for n, v in found.items() if hasattr(v, "dtype")}
 
 
 def of_solution(solution):
