@@ -9,13 +9,14 @@ import dataclasses
 import functools
 import math
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from decimal import Decimal
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
+
+import tomli  # as tomllib, but compiled: three times as fast
 
 from ..design import bearing_of, rows_of
 from ..design.published import PublishedRatings, rated_dimensions, with_published
@@ -324,7 +325,7 @@ def _files() -> dict[str, dict[str, Any]]:
     """Read the files of the catalogue, by type."""
     folder = Path(str(files("bearingjax.catalogue") / "data"))
     read = (
-        tomllib.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
+        tomli.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
         for path in sorted(folder.glob("*.toml"))
     )
     return {data["type"]: data for data in read}

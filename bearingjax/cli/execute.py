@@ -38,7 +38,7 @@ def execute(command: Any, options: Any) -> int:
     Raises:
         SceneError: For bad input, or outputs that cannot be written.
     """
-    from ..numerics.compiled.programs import tell_compiling
+    from ..numerics.compiled.programs import load_ahead, tell_compiling
 
     check_table(options)
     check_outputs(options)
@@ -49,6 +49,7 @@ def execute(command: Any, options: Any) -> int:
         stage = Stage(terminal)
         tell_compiling(stage.during)
     with contextlib.ExitStack() as stack:
+        stack.enter_context(load_ahead(f"{options.command} {sources_of(options)}"))
         try:
             found = command.run(options, Tools(shown, stage, stack.enter_context))
         finally:

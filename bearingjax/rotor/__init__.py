@@ -71,7 +71,8 @@ Names
 - Coefficients for other programs: `stiffness_table`, `stiffness_warnings`, `to_ross`.
 """
 
-from . import nonlinear
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+
 from .bearing_support import BearingSupport
 from .damping import AbstractDamping, ModalDamping, ProportionalDamping
 from .linear.coefficients import stiffness_table, stiffness_warnings
@@ -98,6 +99,9 @@ from .speed_support import SpeedSupport
 from .statics import StaticEquilibrium, static_equilibrium
 from .statics_over_speed import StaticEquilibriumOver, static_equilibrium_over
 
+if _TYPE_CHECKING:
+    from . import nonlinear
+
 __all__ = [
     "nonlinear", "Rotor", "Shaft", "Disc", "PointMass", "Housing", "AbstractPart",
     "STATION_FREEDOMS", "seat_size_warnings", "BearingSupport", "LinearSupport",
@@ -110,3 +114,12 @@ __all__ = [
     "reduction_error", "reduction_warnings", "stiffness_table",
     "stiffness_warnings", "to_ross",
 ]  # fmt: skip
+
+
+def __getattr__(name: str):
+    """Import `nonlinear` at its first use: systems of shafts do without."""
+    if name != "nonlinear":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import bearingjax.rotor.nonlinear
+
+    return bearingjax.rotor.nonlinear

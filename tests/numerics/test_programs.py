@@ -193,6 +193,33 @@ def test_a_kept_program_is_not_traced_again(kept):
     assert [file.stat().st_mode & 0o777 for file in files] == [0o600] * 2
 
 
+def test_programs_of_the_last_run_are_loaded_ahead(kept):
+    programs.keep_programs(kept.folder)
+    with programs.load_ahead("a run"):
+        assert not programs._STORE.ahead and kept()
+    with programs.load_ahead("another run"):
+        assert not programs._STORE.ahead
+    with programs.load_ahead("a run"):
+        (ahead,) = programs._STORE.ahead.values()
+        assert callable(ahead.result()) and not kept()
+        assert not programs._STORE.ahead
+    for file in kept.folder.iterdir():
+        spoil(file, "no program")
+    with programs.load_ahead("a run"):
+        assert not programs._STORE.ahead and kept()
+
+
+def test_damaged_program_is_not_taken_ahead(kept):
+    programs.keep_programs(kept.folder)
+    with programs.load_ahead("a run"):
+        kept()
+    spoil(max(kept.folder.iterdir(), key=lambda file: file.stat().st_size), "one bit")
+    with programs.load_ahead("a run"):
+        (ahead,) = programs._STORE.ahead.values()
+        assert ahead.result() is None and kept()
+    assert not kept()
+
+
 def test_program_with_callback_is_not_stored(store, monkeypatch):
     """A file cannot hold a function of Python; it runs all the same."""
     calls = []
@@ -409,7 +436,7 @@ def test_stored_program_failing_to_run_is_recompiled(kept, monkeypatch):
         raise jax.errors.JaxRuntimeError("NOT_FOUND: Function")
 
     with monkeypatch.context() as here:
-        here.setattr(programs, "_load", lambda place, name: broken)
+        here.setattr(programs, "_read_program", lambda place, name: lambda: broken)
         assert kept()
     assert not kept()
 

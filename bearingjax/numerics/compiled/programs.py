@@ -18,7 +18,9 @@ import platform
 import re
 import stat
 import sys
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -76,12 +78,13 @@ class _Store:
 
     folder: Path | None = None
     at_hand: dict[str, Callable]
+    ahead: dict[str, Future]
     structures: dict[Any, str]
     telling: Callable[[str], contextlib.AbstractContextManager] | None = None
     compiled: int = 0
 
     def __init__(self):
-        self.at_hand, self.structures = {}, {}
+        self.at_hand, self.ahead, self.structures = {}, {}, {}
 
 
 _STORE = _Store()
@@ -105,6 +108,35 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
         folder = user_cache() / "programs"
     _STORE.folder = Path(folder) if keep else None
     _STORE.at_hand.clear()
+
+
+@contextlib.contextmanager
+def load_ahead(run: str) -> Iterator[None]:
+    """Context of a run whose programs are loaded while it begins, in a thread.
+
+    They are those that the last run of this name used; those of this one are noted.
+
+    Args:
+        run: Name of the run, such as its command and scene.
+    """
+    name = hashlib.sha256(f"{run}\n{_sources()}".encode()).hexdigest()
+    if _STORE.folder is None:
+        yield
+        return
+    with _open_folder(_STORE.folder) as place, ThreadPoolExecutor(1) as thread:
+        noted = b""
+        with contextlib.suppress(OSError):  # the first of this name
+            noted = b"" if place is None else _read(place, name) or b""
+        for one in noted.decode().split():
+            _STORE.ahead[one] = thread.submit(_read_program(place, one))
+        try:
+            yield
+        finally:
+            thread.shutdown(cancel_futures=True)
+            _STORE.ahead.clear()
+        used = " ".join(_STORE.at_hand).encode()
+        if place is not None and used != noted:
+            _write(place, name, used)
 
 
 def tell_compiling(telling: Callable[[str], Any] | None) -> None:
@@ -169,14 +201,17 @@ def program(
         )
     if what is not None:
         _WHAT[_place_of(function)] = what
-    jitted = eqx.filter_jit(function)
+
+    @functools.cache
+    def jitted():  # takes a millisecond, which most programs of an import never need
+        return eqx.filter_jit(function)
 
     @functools.wraps(function)
     def call(*args, **kwargs):
         given = jax.tree.map(_as_array, (args, kwargs))
         name = _name(call, given) if _can_keep(given) else None
         if name is None:
-            return jitted(*args, **kwargs)
+            return jitted()(*args, **kwargs)
         return _run_kept(name, function, given, OPTIONS[level] if quick else {})
 
     return call  # pyright: ignore
@@ -237,7 +272,8 @@ def _first_run(
     """
     function, arrays, outputs = flat
     with _open_folder(folder) as place:
-        kept = _load(place, name)
+        ahead = _STORE.ahead.pop(name, None)
+        kept = _read_program(place, name)() if ahead is None else ahead.result()
         if kept is not None:
             # A program of another jaxlib may lack a function.
             with contextlib.suppress(jax.errors.JaxRuntimeError):
@@ -430,29 +466,40 @@ def is_private(status: os.stat_result) -> bool:
     return kind and status.st_uid == os.geteuid() and not status.st_mode & shared
 
 
-def _load(place: int | None, name: str):
-    """The kept program as a function of a list of arrays, or `None`."""
-    if place is None:
-        return None
+def _read_program(place: int | None, name: str) -> Callable[[], Callable | None]:
+    """Read a kept program; return what loads it as a function of a list of arrays.
+
+    That returns `None` if there is none, and may be called in a thread.
+    """
     try:
-        content = _read(place, name)
+        content = None if place is None else _read(place, name)
         if content is None:
-            return None
+            return lambda: None
         from jax.experimental.serialize_executable import deserialize_and_load
 
         program: _Program = pickle.loads(content)
         if program.lapack:
             lapack.prepare()
+    except Exception:  # a damaged file may raise anything
+        return lambda: None
+
+    def load():
         inputs = jax.tree.structure((tuple(range(program.inputs)), {}))
         outputs = jax.tree.structure([0] * program.n_outputs)
         devices = jax.devices()[: program.devices]
-        with _silence_xla():
-            run = deserialize_and_load(
-                program.executable, inputs, outputs, execution_devices=devices
-            )
-    except Exception:  # a damaged file may raise anything
-        return None
-    return lambda arrays: _fill(program.outputs, run(*arrays))
+        try:
+            with _silence_xla():
+                run = deserialize_and_load(
+                    program.executable, inputs, outputs, execution_devices=devices
+                )
+        except Exception:
+            return None
+        return lambda arrays: _fill(program.outputs, run(*arrays))
+
+    return load
+
+
+_LOCK = threading.Lock()
 
 
 @contextlib.contextmanager
@@ -461,12 +508,13 @@ def _silence_xla():
 
     The name of a kept program has the CPU in it: its features are the same.
     """
-    level = getattr(jax.config, "jax_logging_level")  # noqa: B009
-    jax.config.update("jax_logging_level", "CRITICAL")
-    try:
-        yield
-    finally:
-        jax.config.update("jax_logging_level", level)
+    with _LOCK:
+        level = getattr(jax.config, "jax_logging_level")  # noqa: B009
+        jax.config.update("jax_logging_level", "CRITICAL")
+        try:
+            yield
+        finally:
+            jax.config.update("jax_logging_level", level)
 
 
 def _read(place: int, name: str) -> bytes | None:
@@ -487,22 +535,24 @@ def _keep(place, name, compiled, inputs, outputs, *more) -> None:
     """Keep a program; without a word if it cannot be, as on a full disk."""
     from jax.experimental.serialize_executable import serialize
 
-    temporary = f"{name}.{os.getpid()}"
-    try:
+    with contextlib.suppress(Exception):
         executable, _, tree = serialize(compiled)
         program = _Program(executable, inputs, outputs, tree.num_leaves, *more)
-        content = pickle.dumps(program)
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        _write(place, name, pickle.dumps(program))
+
+
+def _write(place: int, name: str, content: bytes) -> None:
+    """Keep a file whole, or not at all."""
+    temporary = f"{name}.{os.getpid()}"
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    with contextlib.suppress(OSError):
         file = os.open(temporary, flags, 0o600, dir_fd=place)
-    except Exception:
-        return
-    try:
-        with open(file, "wb") as stream:
-            stream.write(_MARK + hashlib.sha256(content).digest() + content)
-        os.replace(temporary, name, src_dir_fd=place, dst_dir_fd=place)
-        _drop_oldest(place)
-    except OSError:
-        with contextlib.suppress(OSError):
+        try:
+            with open(file, "wb") as stream:
+                stream.write(_MARK + hashlib.sha256(content).digest() + content)
+            os.replace(temporary, name, src_dir_fd=place, dst_dir_fd=place)
+            _drop_oldest(place)
+        except OSError:
             os.unlink(temporary, dir_fd=place)
 
 
