@@ -135,7 +135,8 @@ if sys.argv[1] == "gradient":
             14, 0.065, 0.010, 0.010, radial_internal_clearance=clearance
         )
         return bj.solve_load(bj.BearingElement(changed), load).displacement[6]
-    print(jax.jit(jax.value_and_grad(sag))(25e-6))
+    quick = {"compiler_options": bj.numerics.QUICK_COMPILATION}
+    print(jax.jit(jax.value_and_grad(sag), **quick)(25e-6))
 else:
     print(bj.solve_load(bj.BearingElement(bearing), load).displacement[6])
 """

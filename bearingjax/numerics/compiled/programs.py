@@ -41,6 +41,10 @@ OPTIONS = tuple(
 """XLA's options for programs whose runs are short compared with their compilation, by
 levels."""
 
+QUICK_COMPILATION = OPTIONS[1]
+"""Options of XLA, for `jax.jit(function, compiler_options=QUICK_COMPILATION)`: functions
+of this package compile in two thirds of the time and run as fast, on a CPU."""
+
 LARGEST_STORE = 1024 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
 
