@@ -42,8 +42,8 @@ OPTIONS = tuple(
 levels."""
 
 QUICK_COMPILATION = OPTIONS[1]
-"""Options of XLA, for `jax.jit(function, compiler_options=QUICK_COMPILATION)`: functions
-of this package compile in two thirds of the time and run as fast, on a CPU."""
+"""Options of XLA, for `jax.jit(f, compiler_options=QUICK_COMPILATION)`: functions of
+this package compile in two thirds of the time and run as fast, on a CPU."""
 
 LARGEST_STORE = 1024 * 1024 * 1024
 """Size of all that a folder keeps; what was not used for longest goes first [byte]."""
