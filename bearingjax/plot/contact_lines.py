@@ -1,14 +1,24 @@
 """Pressure and load per length along a roller, compared with slices."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ..contact.halfspace import ContactSolution
 from ..contact.slices import Slices
 from .panel import ALONG, finish
-from .style import GREY, OUTER, SMALL, Ax, Axes, axes_or_new, force_text, towards_white
+from .style import (
+    BOX,
+    GREY,
+    OUTER,
+    SMALL,
+    Ax,
+    Axes,
+    axes_or_new,
+    force_text,
+    towards_white,
+    write,
+)
 
 _NEAR = 0.02
 """Share of the length at each end that is ignored for the scale."""
@@ -17,13 +27,6 @@ _SHARP = 1.5
 """End values so many times above the scale are left out of it."""
 
 _SLICES = "slices"
-
-_ON_THE_LINE: dict[str, Any] = {
-    "ha": "center",
-    "va": "center",
-    "fontsize": SMALL,
-    "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.8},
-}
 
 
 def centre_pressure(
@@ -93,7 +96,8 @@ def _lines(solutions, values, others, ax, labelled):
             ax.plot(y, others[k], "--", color=GREY, linewidth=1.0, label="_slices")
         label = load_text(solution)
         if labelled is None:
-            ax.text(0.0, np.interp(0.0, y, line), label, **_ON_THE_LINE)
+            ground = BOX | {"pad": 1.5, "alpha": 0.8}
+            write(ax, (0.0, np.interp(0.0, y, line)), label, bbox=ground)
         else:
             label += f": {labelled(solution)}"
         ax.plot(y, line, color=colour, linewidth=1.8, label=label)
