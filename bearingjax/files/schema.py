@@ -85,11 +85,7 @@ class Key:
         return self.shown or ("°C" if unit == "K" else unit)
 
     def in_shown_unit(self, value: float) -> float:
-        """Convert a number to the unit of the range.
-
-        Args:
-            value: Number in SI.
-        """
+        """Convert a number in SI to the unit of the range."""
         if self.unit == "°C":
             return value - CELSIUS
         return value / to_si(f"1 {self.shown}", self.kind) if self.shown else value
@@ -281,10 +277,6 @@ K = TypeVar("K", bound=Keys)
 
 def read_keys(kind: type[K], table: Table) -> K:
     """Read the keys of a table.
-
-    Args:
-        kind: Class that describes the table.
-        table: The table.
 
     Raises:
         SceneError: For values that are missing, of the wrong kind, out of range, or

@@ -165,10 +165,6 @@ def friction_torque(
 def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
     """Raise unless the friction torque of a solution can be computed.
 
-    Args:
-        owner: Name of the function that was called.
-        solution, viscosity, supply: Its arguments.
-
     Raises:
         TypeError, ValueError: As `friction_torque`.
     """

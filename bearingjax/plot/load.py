@@ -91,13 +91,7 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
 
 
 def zone_legend(ax: Axes, handles: list[Any], labels: list[str]) -> None:
-    """Draw a legend to the right of a load zone.
-
-    Args:
-        ax: Polar axes.
-        handles: Bars and markers.
-        labels: Text of each.
-    """
+    """Draw a legend to the right of a load zone."""
     ax.legend(
         handles,
         labels,

@@ -31,9 +31,6 @@ def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
 
     Balls and raceways are to scale, unloaded; the ring bodies are schematic.
 
-    Args:
-        bearing: A ball bearing.
-
     Returns:
         The axes: z to the right, radius upwards.
     """

@@ -24,11 +24,6 @@ def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
     """Draw the drop along the roller, magnified by its axis, with all its parameters.
 
     Lengths are drawn where they are measured; the others are next to the curve.
-
-    Args:
-        ax: Axes.
-        bearing: The row.
-        name: Field of the profile.
     """
     ax = axes_or_new(ax)
     profile, length = getattr(bearing, name), float(bearing.roller_length)

@@ -72,12 +72,7 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
 
 
 def why_not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
-    """Explain in a line why the published ratings are not used, if they are not.
-
-    Args:
-        scene: The scene.
-        varied: Keys varied by its cases.
-    """
+    """Explain in a line why the published ratings are not used, if they are not."""
     if scene.catalogue is None:
         return []
     entry, changed = (

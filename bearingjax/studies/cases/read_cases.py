@@ -171,11 +171,7 @@ class CasesKeys(Keys):
             raise self.table.own_error(problem)
 
     def columns(self, path: Path) -> list["VariedKey"]:
-        """Return the values of each key that varies.
-
-        Args:
-            path: Path of the scene.
-        """
+        """Return the values of each key that varies."""
         if self.grid is not None:
             found = _grid(self.table, self.grid)
         elif self.spectrum is not None:
@@ -283,11 +279,7 @@ def speed_warnings(
 
 
 def turns_of(cases: Cases) -> np.ndarray:
-    """Return the relative speed of the rings (case,) [rad/s].
-
-    Args:
-        cases: Cases of a scene.
-    """
+    """Return the relative speed of the rings (case,) [rad/s]."""
     turns = revolutions_per_hour(cases, np)
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 

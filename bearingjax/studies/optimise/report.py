@@ -148,10 +148,6 @@ def optimisation_as_dict(
 def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
     """Return the output of a task whose first design does not solve.
 
-    Args:
-        task: The optimisation task.
-        error: Cause of the failure.
-
     Returns:
         result ("start_not_solved"), message, warnings, inputs and version.
     """
