@@ -63,7 +63,7 @@ def with_passage(support: AbstractSupport) -> AbstractSupport:
 
 
 def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
-    """Return the unit of length: the largest displacement of preload, equilibrium [m]."""
+    """Return the unit of length: the largest motion by preload or equilibrium [m]."""
     sizes = [_AT_LEAST, float(np.max(np.abs(np.asarray(settled.displacement)[:, :3])))]
     for support in rotor.supports:
         if isinstance(support, BearingSupport):
