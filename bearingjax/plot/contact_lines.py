@@ -16,6 +16,7 @@ from .style import (
     Axes,
     axes_or_new,
     force_text,
+    mark_peaks,
     towards_white,
     write,
 )
@@ -102,17 +103,7 @@ def _lines(solutions, values, others, ax, labelled):
             label += f": {labelled(solution)}"
         ax.plot(y, line, color=colour, linewidth=1.8, label=label)
         high = y[[0, -1]][line[[0, -1]] > 1.1 * top]
-        ax.plot(
-            high,
-            np.full(high.size, 1.1 * top),
-            linestyle="none",
-            marker="^",
-            markersize=7,
-            color=colour,
-            label="_off the scale",
-            clip_on=False,
-            in_layout=False,
-        )
+        mark_peaks(ax, high, np.full(high.size, 1.1 * top), colour, "off the scale")
     if others:
         ax.plot([], [], "--", color=GREY, linewidth=1.0, label=_SLICES)
     ax.set_xlim(edges[0], edges[-1])

@@ -206,6 +206,20 @@ def towards_white(colour: Any, share: float) -> tuple[float, ...]:
     return tuple(c + share * (1.0 - c) for c in to_rgb(colour))
 
 
+def mark_peaks(ax: Axes, x: Any, y: Any, colour: Any, name: str, **look: Any) -> None:
+    """Draw triangles, which may reach beyond the axes.
+
+    Args:
+        ax: Axes.
+        x, y: Points (n,).
+        colour: As matplotlib takes it.
+        name: Name of what they mark, not for the legend.
+        look: Further keywords of Matplotlib's `plot`.
+    """
+    outside = {"clip_on": False, "in_layout": False, "label": f"_{name}"}
+    ax.plot(x, y, "^", markersize=7, color=colour, **outside, **look)
+
+
 def write(place: Any, at: Any, text: str, **look: Any) -> None:
     """Write small words in the middle of a point.
 

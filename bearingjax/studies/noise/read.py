@@ -13,7 +13,7 @@ from ...design.bearing_set import bearings_of, with_bearings
 from ...element import FREEDOMS, RINGS, BearingElement
 from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
-from ...files.schema import Keys, direction_json, key_of, read_keys, scene_key
+from ...files.schema import Keys, direction_key, key_of, read_keys, scene_key
 from ...files.table import Table
 from ...noise.level import NORM
 from ...numerics.warning import Warning
@@ -57,13 +57,11 @@ class VibrationKeys(Keys):
     )
     sensor_stiffness: float | None = key_of(noise.Sensor, "stiffness")
     sensor_damping: float | None = key_of(noise.Sensor, "damping", default=None)
-    sensor_direction: list[float] = scene_key(
+    sensor_direction: tuple[float, ...] = direction_key(
         "line of the sensor: x, y, z, or its three components",
-        default=None,
+        dict(zip(DIRECTIONS, map(tuple, np.eye(3).tolist()), strict=True)),
+        "y",
         needs=("sensor_stiffness", "sensor_damping"),
-        otherwise="y",
-        reader=lambda table, name: _direction(table, name),
-        json=direction_json(DIRECTIONS),
     )
     turns: int = key_of(noise.RecordOptions, "turns")
     settle: int = key_of(noise.RecordOptions, "settle", least=0)
@@ -319,15 +317,3 @@ def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
         problem = f"{moving!r} is the `fixed_ring` of [operating]; it must be the other"
         raise vibration.table.error("moving_ring", problem)
     return RINGS[1 - RINGS.index(fixed)]
-
-
-def _direction(table: Table, name: str) -> list[float]:
-    given = table.raw(name, "y")
-    if isinstance(given, list):
-        real = [isinstance(x, int | float) and not isinstance(x, bool) for x in given]
-        if real == [True] * 3:
-            return [float(one) for one in given]
-    elif given in DIRECTIONS:
-        return [float(given == axis) for axis in DIRECTIONS]
-    problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
-    raise table.error(name, problem)
