@@ -10,6 +10,14 @@ Designs: `stack_designs([...])`, or an element made under `jax.vmap`.
 `jax.config.update("jax_num_cpu_devices", 2)` before all else uses two cores.
 `Batches(stop=...)` is asked between blocks.
 
+Derivatives of many cases
+-------------------------
+
+First a sweep, then `solve_case`, mapped over the cases, from the displacements that it
+found (`start=sweep.displacement[k, 6:]`): derivatives then cost one evaluation of each
+case, and none of the search. `benchmarks/life_spectrum.py` takes the gradient of a life
+so, batch by batch.
+
 Many devices in a program of your own
 -------------------------------------
 

@@ -16,11 +16,6 @@ def structural_zeros(
     there, the moment and the stiffness about the axis, and the load of ribs that are
     not there.
 
-    Args:
-        element: Solved element.
-        cases: Its operating cases.
-        support: What holds the rings.
-
     Returns:
         (output, names such as "outer_ux", as the columns of a table have them), each.
     """

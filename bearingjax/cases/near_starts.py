@@ -91,13 +91,7 @@ def nothing_known(lanes: int, devices: int, coordinates: int) -> SolvedCases:
 def common_properties(
     element: BearingElement[Any], cases: Cases, support: Support
 ) -> Likeness:
-    """Return the properties that the cases of a sweep have in common.
-
-    Args:
-        element: The bearing or designs.
-        cases: Cases of the sweep.
-        support: What holds the rings.
-    """
+    """Return the properties that the cases of a sweep have in common."""
     may_move = support.freedoms(element.bearing)
     free = [name for name in may_move if name not in cases.prescribed]
     counts = {row.bearing.n_places for row in rows_of(element.bearing)}

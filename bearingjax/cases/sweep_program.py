@@ -291,12 +291,7 @@ def _wait_for(values):
 
 
 def not_run(name: str, dtype: np.dtype) -> int | float:
-    """Return the value of an output for a case that was not run.
-
-    Args:
-        name: Name of the output.
-        dtype: Its type.
-    """
+    """Return the value of an output for a case that was not run."""
     if name == "result":
         return Result.NOT_RUN
     return np.nan if dtype.kind == "f" else 0

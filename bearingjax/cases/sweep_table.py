@@ -204,9 +204,6 @@ def _sizes(table, kind, count):
 def case_columns(cases: Cases) -> dict[str, np.ndarray]:
     """Columns of the cases (loads, displacements, speeds, hours), in SI, by header,
     without those that are zero in all of them.
-
-    Args:
-        cases: Cases of the sweep.
     """
     found = label_cases(cases)
     names = {"load": "", **{k: k for k in found if k.startswith("prescribed_")}}

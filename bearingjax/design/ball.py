@@ -17,6 +17,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..numerics.types import (
+    Number,
     Real,
     RealOrNone,
     Scalar,
@@ -252,7 +253,7 @@ class AbstractBallBearing(AbstractBearing):
         return jnp.maximum(axial, 0.5 * self.clearance)
 
     @property
-    def groove_axis(self) -> Scalar | float:
+    def groove_axis(self) -> Number:
         """Contact angle in the middle of the raceways [rad]."""
         return 0.0
 

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..numerics.types import (
+    Number,
     Real,
     RealOrNone,
     Scalar,
@@ -232,7 +233,7 @@ class ThrustBallBearing(AbstractBallBearing):
         return 2.0 * self.centre_distance
 
     @property
-    def groove_axis(self) -> Scalar | float:
+    def groove_axis(self) -> Number:
         return 0.5 * np.pi
 
     @property
@@ -384,7 +385,7 @@ class SelfAligningBallRow(AbstractBallBearing):
         return array_namespace(angle).cos(angle)
 
     @property
-    def groove_axis(self) -> Scalar | float:
+    def groove_axis(self) -> Number:
         return self.free_contact_angle
 
     @property

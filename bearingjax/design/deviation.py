@@ -57,9 +57,6 @@ def largest_deviation(bearing: Any) -> float | None:
     """Upper bound of the size of raceway deviations [m]; `None`: not known.
 
     The distance of ball centre and groove centre, or half of a roller's diameter.
-
-    Args:
-        bearing: A single row.
     """
     numbers = floats(*bearing.deviation_bounds)
     return None if numbers is None else min(numbers)

@@ -47,9 +47,6 @@ def rated_dimensions(row: Any) -> Any:
     """Return the numbers of a row on which its load ratings depend, in SI.
 
     The contact angle is the nominal one, whatever the fits have made of it.
-
-    Args:
-        row: A bearing of one row.
     """
     values = []
     for name in row.rated_fields:
@@ -67,9 +64,6 @@ def rated_dimensions(row: Any) -> Any:
 
 def is_as_published(row: Any) -> Any:
     """Whether a row has the dimensions to which its published ratings belong.
-
-    Args:
-        row: A bearing of one row.
 
     Returns:
         A flag, traced if a number is; `False` if nothing is published.

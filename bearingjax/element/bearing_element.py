@@ -32,10 +32,6 @@ State = tuple[ElementStart, ...]
 def check_element(owner: str, element: object) -> None:
     """Raise unless it is a BearingElement.
 
-    Args:
-        owner: Function that was called.
-        element: Object that it was given.
-
     Raises:
         TypeError: For anything else, such as a bearing without its contact laws.
     """

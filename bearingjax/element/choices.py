@@ -121,10 +121,6 @@ def usual_kinematics(
     `Finite` for barrel rollers: to first order a toroidal bearing loses no clearance to
     a shift, and rollers that a spherical inner ring takes along as it tilts see no
     axial load. `Linearised` for others, and where `Finite` is not for the choices.
-
-    Args:
-        rows: The rows.
-        law: Law of the raceway contacts.
     """
     bearings: list[Any] = [row.bearing for row in rows]
     barrels = all(b.arc_radii is not None for b in bearings)

@@ -85,11 +85,7 @@ class Key:
         return self.shown or ("°C" if unit == "K" else unit)
 
     def in_shown_unit(self, value: float) -> float:
-        """Convert a number to the unit of the range.
-
-        Args:
-            value: Number in SI.
-        """
+        """Convert a number in SI to the unit of the range."""
         if self.unit == "°C":
             return value - CELSIUS
         return value / to_si(f"1 {self.shown}", self.kind) if self.shown else value
@@ -177,11 +173,36 @@ def key_of(kind: type, name: str, /, **changes: Any) -> Any:
     return dataclasses.field(default=default, metadata=metadata)
 
 
-def direction_json(names: Iterable[str]) -> dict[str, Any]:
-    """Return the schema of a direction: one of several names, or three numbers."""
+def direction_key(
+    about: str, names: Mapping[str, tuple[float, ...]], usual: str, **rest: Any
+) -> Any:
+    """Return a field of a `Keys` class for a direction: a name, or three bare numbers.
+
+    Args:
+        about, rest: As in `scene_key`.
+        names: Directions by name.
+        usual: Name of the one if absent.
+    """
+
+    def read(table: Table, key: str) -> tuple[float, ...]:
+        value = table.raw(key, usual)
+        if isinstance(value, str):
+            return names[table.choice(key, tuple(names), usual)]
+        real = isinstance(value, list) and [
+            isinstance(x, int | float) and not isinstance(x, bool) for x in value
+        ]
+        if real != [True] * 3:
+            allowed = f"one of {', '.join(names)}, or [x, y, z]"
+            raise table.error(key, f"{value!r} is not a direction; {allowed}")
+        if not any(value):
+            raise table.error(key, "has no direction: all three numbers are 0")
+        return tuple(map(float, value))
+
     three = {"minItems": 3, "maxItems": 3}
     numbers = {"type": "array", "items": {"type": "number"}, **three}
-    return {"anyOf": [{"enum": [*names]}, numbers]}
+    json = {"anyOf": [{"enum": [*names]}, numbers]}
+    known: Any = {"default": None, "otherwise": usual, "reader": read, "json": json}
+    return scene_key(about, **known, **rest)
 
 
 class Field(NamedTuple):
@@ -208,7 +229,9 @@ class Field(NamedTuple):
 
 
 @dataclass_transform(
-    kw_only_default=True, frozen_default=True, field_specifiers=(scene_key, key_of)
+    kw_only_default=True,
+    frozen_default=True,
+    field_specifiers=(scene_key, key_of, direction_key),
 )
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Keys:
@@ -281,10 +304,6 @@ K = TypeVar("K", bound=Keys)
 
 def read_keys(kind: type[K], table: Table) -> K:
     """Read the keys of a table.
-
-    Args:
-        kind: Class that describes the table.
-        table: The table.
 
     Raises:
         SceneError: For values that are missing, of the wrong kind, out of range, or

@@ -42,13 +42,7 @@ def table_schema(kind: Any, word: str = "", **more: Any) -> dict[str, Any]:
 def object_schema(
     properties: Mapping[str, Any], required: list[str], description: str = ""
 ) -> dict[str, Any]:
-    """Return the JSON Schema of a table with these keys and no others.
-
-    Args:
-        properties: JSON Schema of each key.
-        required: Keys that must be given.
-        description: Description of the table.
-    """
+    """Return the JSON Schema of a table with these keys and no others."""
     found: dict[str, Any] = {"type": "object"}
     if description:
         found["description"] = description

@@ -463,11 +463,7 @@ def not_among(value: object, choices: Sequence[str], words: str = "") -> str:
 
 
 def join_names(names: Sequence[str]) -> str:
-    """Join names with commas, in quotes if one of them contains a comma.
-
-    Args:
-        names: Names as written in a scene.
-    """
+    """Join names with commas, in quotes if one of them contains a comma."""
     apart = any("," in name for name in names)
     return ", ".join(f'"{name}"' if apart else name for name in names)
 

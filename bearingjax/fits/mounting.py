@@ -25,9 +25,6 @@ def raceway_diameters(bearing: AbstractBearing) -> tuple[Scalar, Scalar]:
     other balls, where they touch at the free contact angle: near the mean thickness of
     a ring whose shoulders differ. Of tapered rollers, in their middle.
 
-    Args:
-        bearing: One row.
-
     Returns:
         Inner and outer raceway.
 
@@ -236,10 +233,6 @@ def _growth(places, width, rings, seats):
 
 def check_radial(owner: str, bearing: Any) -> None:
     """Raise unless fits change the radial clearance of a row.
-
-    Args:
-        owner: Function that was called.
-        bearing: Object that it was given.
 
     Raises:
         TypeError: If it is a thrust bearing or no single row.

@@ -11,7 +11,7 @@ from ..design.checks import of_class, positive
 from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.labels import to_xarray
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, as_real
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
 
@@ -41,8 +41,8 @@ class Films(eqx.Module):
 def films(
     solution: Solution,
     lubricant: Lubricant,
-    temperature: Scalar | float,
-    roughness: Scalar | float | None = None,
+    temperature: Number,
+    roughness: Number | None = None,
 ) -> Films:
     """Elastohydrodynamic films of a solved bearing whose elements roll without slip.
 

@@ -37,7 +37,7 @@ from ..design.checks import check, of_class, one_of, positive
 from ..life.equivalent_load import equivalent_load
 from ..life.rating import static_capacity as rated
 from ..numerics.labels import to_xarray
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution, check_single
 
@@ -110,9 +110,9 @@ class Friction(eqx.Module):
 
 def friction_torque(
     solution: Solution,
-    viscosity: Scalar | float,
+    viscosity: Number,
     supply: str = "oil_bath",
-    static_capacity: Scalar | float | None = None,
+    static_capacity: Number | None = None,
 ) -> Friction:
     """Friction torque of a solved bearing, by the rows of a set.
 
@@ -164,10 +164,6 @@ def friction_torque(
 
 def check_call(owner: str, solution: Any, viscosity: Any, supply: Any) -> None:
     """Raise unless the friction torque of a solution can be computed.
-
-    Args:
-        owner: Name of the function that was called.
-        solution, viscosity, supply: Its arguments.
 
     Raises:
         TypeError, ValueError: As `friction_torque`.

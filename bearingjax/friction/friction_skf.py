@@ -36,7 +36,7 @@ from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..life.rating import static_capacity as rated
 from ..numerics.labels import to_xarray
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution
 from .friction import check_call, unit_loads, units_of
@@ -256,12 +256,12 @@ def skf_series_of(entry: CatalogueEntry) -> str | None:
 
 def skf_friction_torque(
     solution: Solution,
-    viscosity: Scalar | float,
+    viscosity: Number,
     supply: str = "oil_bath",
-    static_capacity: Scalar | float | None = None,
+    static_capacity: Number | None = None,
     *,
     series: str | None = None,
-    diameters: tuple[Scalar | float, Scalar | float] | None = None,
+    diameters: tuple[Number, Number] | None = None,
     oil: str = "mineral",
 ) -> SkfFriction:
     """Friction torque of a solved bearing by SKF's model, by the rows of a set.

@@ -5,7 +5,7 @@ from typing import Any
 
 from ..catalogue.entry import CatalogueEntry
 from ..design.checks import positive
-from ..numerics.types import Scalar
+from ..numerics.types import Number
 
 _FACTORS = {
     "deep_groove_ball": {"02": (2.0, 0.0002), "03": (2.3, 0.0002)},
@@ -77,10 +77,10 @@ def heat_area(
 
 
 def reference_speed(
-    mean_diameter: Scalar | float,
-    area: Scalar | float,
-    static_capacity: Scalar | float,
-    factors: tuple[Scalar | float, Scalar | float],
+    mean_diameter: Number,
+    area: Number,
+    static_capacity: Number,
+    factors: tuple[Number, Number],
     *,
     thrust: bool = False,
 ) -> Any:

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import check, is_traced, non_negative, number, positive
 from ..numerics.power import smooth_power
-from ..numerics.types import Count, Flag, Scalar, as_real
+from ..numerics.types import Count, Flag, Number, Scalar, as_real
 from ..numerics.units import unit
 
 # U below which the film falls as its square, micrometres per second: the formulas' own
@@ -58,7 +58,7 @@ class Film(eqx.Module):
     central_exponent: float = eqx.field(static=True)
     exponents: tuple[float, ...] = eqx.field(static=True)
 
-    def central(self, speed: Scalar | float) -> Scalar:
+    def central(self, speed: Number) -> Scalar:
         """Film in the middle of the contact [m].
 
         Args:
@@ -67,11 +67,11 @@ class Film(eqx.Module):
         """
         return self.central_factor * self._power(speed, self.central_exponent)
 
-    def minimum(self, speed: Scalar | float) -> Scalar:
+    def minimum(self, speed: Number) -> Scalar:
         """Least film [m]; `speed` as in `central`."""
         return self._of_regimes(speed)[-1]
 
-    def regime(self, speed: Scalar | float) -> Count:
+    def regime(self, speed: Number) -> Count:
         """Code of the `Regime`.
 
         Surfaces are rigid where the film of rigid surfaces and constant viscosity is
@@ -86,7 +86,7 @@ class Film(eqx.Module):
         piezoviscous = jnp.where(elastic, both > soft, thick > plain)
         return 2 * elastic.astype(int) + piezoviscous.astype(int)
 
-    def outside_validity(self, speed: Scalar | float) -> Flag:
+    def outside_validity(self, speed: Number) -> Flag:
         """Whether the contact is not elastohydrodynamic, which the formulas are for."""
         return self.regime(speed) != Regime.PIEZOVISCOUS_ELASTIC
 
@@ -99,12 +99,12 @@ class Film(eqx.Module):
 
 
 def point_film(
-    load: Scalar | float,
-    ratio: Scalar | float,
-    radius: Scalar | float,
-    modulus: Scalar | float,
-    viscosity: Scalar | float,
-    coefficient: Scalar | float,
+    load: Number,
+    ratio: Number,
+    radius: Number,
+    modulus: Number,
+    viscosity: Number,
+    coefficient: Number,
 ) -> Film:
     """Film of an elliptical contact, rolling along the short axis.
 
@@ -154,11 +154,11 @@ def point_film(
 
 
 def line_film(
-    line_load: Scalar | float,
-    radius: Scalar | float,
-    modulus: Scalar | float,
-    viscosity: Scalar | float,
-    coefficient: Scalar | float,
+    line_load: Number,
+    radius: Number,
+    modulus: Number,
+    viscosity: Number,
+    coefficient: Number,
 ) -> Film:
     """Film of a line contact.
 

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 
 from ..design.checks import check, is_traced, non_negative, number, positive
 from ..numerics.power import smooth_power
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from .patch import AbstractPatch
 
@@ -14,10 +14,7 @@ _SLOW = 1e-6
 
 
 def inlet_heating(
-    loading: Scalar | float,
-    peak_pressure: Scalar | float,
-    modulus: Scalar | float,
-    slide_to_roll: Scalar | float,
+    loading: Number, peak_pressure: Number, modulus: Number, slide_to_roll: Number
 ) -> Scalar:
     """Factor of the film, at most 1, for the oil sheared warm in the inlet.
 
@@ -66,11 +63,7 @@ class WarmInlet(eqx.Module):
 
 
 def starvation(
-    inlet: Scalar | float,
-    central: Scalar | float,
-    minimum: Scalar | float,
-    radius: Scalar | float,
-    semi_axis: Scalar | float,
+    inlet: Number, central: Number, minimum: Number, radius: Number, semi_axis: Number
 ) -> tuple[Scalar, Scalar]:
     """Factors of central and least film, at most 1, for a starved inlet.
 
@@ -97,7 +90,7 @@ def starvation(
     return factor(central, 3.06, 0.58, 0.29), factor(minimum, 3.34, 0.56, 0.25)
 
 
-def at_least(film: Scalar, least: Scalar | float) -> Scalar:
+def at_least(film: Scalar, least: Number) -> Scalar:
     """Film with a lower bound that remains at standstill: sqrt(film² + least²) [m].
 
     Args:
@@ -108,9 +101,7 @@ def at_least(film: Scalar, least: Scalar | float) -> Scalar:
     return jnp.sqrt(film * film + as_real(least) ** 2)
 
 
-def lambda_ratio(
-    film: Scalar | float, roughness: Scalar | float, other: Scalar | float
-) -> Scalar:
+def lambda_ratio(film: Number, roughness: Number, other: Number) -> Scalar:
     """Film over composite roughness, film/sqrt(R1² + R2²) [1].
 
     Args:

@@ -4,11 +4,11 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool
 
 from ..design.checks import instance, is_traced, non_negative, positive
 from ..numerics.compiled.programs import program
-from ..numerics.types import Real, Scalar, as_real
+from ..numerics.types import Number, Real, Reals, Scalar, as_real
 from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity import AbstractAmbient, AbstractPressureLaw, level_off
@@ -42,7 +42,7 @@ class Density(eqx.Module):
         non_negative(self, "slope")
         positive(self, "reference_temperature")
 
-    def at(self, temperature: Scalar | float) -> Scalar:
+    def at(self, temperature: Number) -> Scalar:
         """Density [kg/m³] at a temperature [K]."""
         warmer = as_real(temperature) - self.reference_temperature
         return self.value - self.slope * warmer
@@ -81,9 +81,7 @@ class Lubricant(eqx.Module):
         instance(self, "density", Density)
         positive(self, "thermal_conductivity")
 
-    def viscosity(
-        self, pressure: Float[Array, "..."] | float, temperature: Scalar | float
-    ) -> Float[Array, "..."]:
+    def viscosity(self, pressure: Reals | float, temperature: Number) -> Reals:
         """Dynamic viscosity [Pa s].
 
         Args:
@@ -95,16 +93,16 @@ class Lubricant(eqx.Module):
         )
 
     def outside_fluid_range(
-        self, pressure: Float[Array, "..."] | float, temperature: Scalar | float
+        self, pressure: Reals | float, temperature: Number
     ) -> Bool[Array, "..."]:
         """Whether the law gives a glass; arguments as in `viscosity`."""
         return ~(self._log_viscosity(pressure, temperature) <= GLASS)
 
-    def kinematic_viscosity(self, temperature: Scalar | float) -> Scalar:
+    def kinematic_viscosity(self, temperature: Number) -> Scalar:
         """Kinematic viscosity at atmospheric pressure [m²/s], temperature in K."""
         return _kinematic_viscosity(self, _kelvin(temperature))
 
-    def pressure_coefficient(self, temperature: Scalar | float) -> Scalar:
+    def pressure_coefficient(self, temperature: Number) -> Scalar:
         """Pressure-viscosity coefficient of films [1/Pa], temperature in K."""
         if self.coefficient is None:
             return self.isoviscous_coefficient(temperature)
@@ -113,7 +111,7 @@ class Lubricant(eqx.Module):
         ambient = self.ambient.log_viscosity(kelvin, density)
         return self.coefficient.value(ambient, density)
 
-    def isoviscous_coefficient(self, temperature: Scalar | float) -> Scalar:
+    def isoviscous_coefficient(self, temperature: Number) -> Scalar:
         """Reciprocal asymptotic isoviscous pressure α* = 1/∫ μ(0)/μ(p) dp [1/Pa].
 
         It is below the slope d ln μ/dp at p = 0 where that falls with pressure, and α
@@ -137,9 +135,7 @@ class Lubricant(eqx.Module):
         star = scale / jnp.dot(weight, self._ambient_viscosity(kelvin) / thicker)
         return jnp.where(grows, star, slope)
 
-    def thermal_loading(
-        self, temperature: Scalar | float, speed: Scalar | float
-    ) -> Scalar:
+    def thermal_loading(self, temperature: Number, speed: Number) -> Scalar:
         """Thermal loading parameter L = β μ₀ u²/k of the inlet [1].
 
         β is the relative loss of viscosity per kelvin.

@@ -3,7 +3,7 @@
 import math
 from functools import partial
 
-from ..numerics.types import Scalar, array_namespace, as_real, in_numpy
+from ..numerics.types import Number, array_namespace, as_real, in_numpy
 from .coefficient import DynamicCoefficient, KinematicCoefficient
 from .lubricant import Density, Lubricant
 from .viscosity import Exponential, FreeVolume, Roelands, Walther
@@ -51,7 +51,7 @@ def free_volume_23699() -> FreeVolume:
     )
 
 
-def iso_vg(grade: Scalar | float, viscosity_index: Scalar | float = 95.0) -> Lubricant:
+def iso_vg(grade: Number, viscosity_index: Number = 95.0) -> Lubricant:
     """Paraffinic mineral oil of an ISO viscosity grade.
 
     Args:

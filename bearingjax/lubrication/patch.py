@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import count
-from ..numerics.types import Scalar, as_real
+from ..numerics.types import Number, Reals, Scalar, as_real
 from ..numerics.units import unit
 from .lubricant import Lubricant
 
@@ -89,13 +89,13 @@ class AbstractPatch(eqx.Module):
         """Largest pressure [Pa]."""
 
     @abc.abstractmethod
-    def numbers(self) -> tuple[Float[Array, "..."], ...]:
+    def numbers(self) -> tuple[Reals, ...]:
         """Quantities, other than the moments, that depend on the load, for
         interpolation between two loads."""
 
     @abc.abstractmethod
     def with_numbers(
-        self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
+        self, numbers: tuple[Reals, ...], moments: Float[Array, "*n 3"]
     ) -> "AbstractPatch":
         """Return the patch with other `numbers` and moments."""
 
@@ -188,11 +188,11 @@ class EllipsePatch(AbstractPatch):
     def peak(self) -> Float[Array, "*n"]:
         return self.peak_pressure
 
-    def numbers(self) -> tuple[Float[Array, "..."], ...]:
+    def numbers(self) -> tuple[Reals, ...]:
         return self.rolling, self.transverse, self.peak_pressure
 
     def with_numbers(
-        self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
+        self, numbers: tuple[Reals, ...], moments: Float[Array, "*n 3"]
     ) -> "AbstractPatch":
         rolling, transverse, peak = (jnp.maximum(n, 0.0) for n in numbers)
         return eqx.tree_at(
@@ -231,11 +231,11 @@ class LinePatch(AbstractPatch):
     def peak(self) -> Float[Array, "*n"]:
         return jnp.max(self.fixed.pressure, axis=-1)
 
-    def numbers(self) -> tuple[Float[Array, "..."], ...]:
+    def numbers(self) -> tuple[Reals, ...]:
         return (*self.fixed[:4], jnp.log(self.fixed.viscosity))
 
     def with_numbers(
-        self, numbers: tuple[Float[Array, "..."], ...], moments: Float[Array, "*n 3"]
+        self, numbers: tuple[Reals, ...], moments: Float[Array, "*n 3"]
     ) -> "AbstractPatch":
         x, y, area, pressure, log_viscosity = numbers
         area, pressure = jnp.maximum(area, 0.0), jnp.maximum(pressure, 0.0)
@@ -245,7 +245,7 @@ class LinePatch(AbstractPatch):
 
 def ellipse_patch(
     lubricant: Lubricant,
-    temperature: Scalar | float,
+    temperature: Number,
     rolling: Scalar,
     transverse: Scalar,
     peak_pressure: Scalar,
@@ -299,7 +299,7 @@ def ellipse_patch(
 
 def line_patch(
     lubricant: Lubricant,
-    temperature: Scalar | float,
+    temperature: Number,
     position: Float[Array, " slice"],
     width: Float[Array, " slice"],
     line_load: Float[Array, " slice"],

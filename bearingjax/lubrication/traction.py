@@ -14,10 +14,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..design.checks import check_fields
-from ..numerics.types import Real, Scalar, as_real
+from ..numerics.types import Number, Real, Scalar, as_real
 from ..numerics.units import real, unit
 from .patch import AbstractPatch
 
+Points = Float[Array, "*n"]
+"""Numbers at points of a contact."""
 # Slip speed below which the empirical curve is linear [m/s].
 _NO_SLIP = 1e-6
 
@@ -41,14 +43,13 @@ class Resultants(NamedTuple):
 class AbstractTraction(eqx.Module):
     """A law of traction."""
 
+    def __check_init__(self):
+        check_fields(self)
+
     @abc.abstractmethod
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         """Shear stress over slip speed, g in τ = -g u [Pa s/m].
 
         Args:
@@ -59,11 +60,7 @@ class AbstractTraction(eqx.Module):
         """
 
     def stress(
-        self,
-        slip: Float[Array, "2"],
-        film: Scalar | float,
-        pressure: Scalar | float,
-        viscosity: Scalar | float,
+        self, slip: Float[Array, "2"], film: Number, pressure: Number, viscosity: Number
     ) -> Float[Array, "2"]:
         """Shear stress on the body at a point [Pa].
 
@@ -75,11 +72,7 @@ class AbstractTraction(eqx.Module):
         return -self.resistance(jnp.dot(slip, slip), *given) * slip
 
     def resultants(
-        self,
-        patch: AbstractPatch,
-        film: Scalar | float,
-        slip: Float[Array, "2"],
-        spin: Scalar | float,
+        self, patch: AbstractPatch, film: Number, slip: Float[Array, "2"], spin: Number
     ) -> Resultants:
         """Traction of the whole contact.
 
@@ -115,20 +108,12 @@ class Newtonian(AbstractTraction):
     about: ClassVar[str] = "a film that is sheared evenly: τ = -μ(p) u/h"
 
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         return viscosity / film
 
     def resultants(
-        self,
-        patch: AbstractPatch,
-        film: Scalar | float,
-        slip: Float[Array, "2"],
-        spin: Scalar | float,
+        self, patch: AbstractPatch, film: Number, slip: Float[Array, "2"], spin: Number
     ) -> Resultants:
         spin = as_real(spin)
         total, first, polar = patch.moments / as_real(film)
@@ -153,16 +138,9 @@ class Eyring(AbstractTraction):
         default=5e6,
     )
 
-    def __check_init__(self):
-        check_fields(self)
-
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         newtonian = viscosity / film
         strain = newtonian / self.stress_scale
         return newtonian * _arsinh_over(strain * strain * slip_squared)
@@ -201,16 +179,9 @@ class LimitingStress(AbstractTraction):
         default=1e-5,
     )
 
-    def __check_init__(self):
-        check_fields(self)
-
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         newtonian = viscosity / film
         strain = newtonian / (self.ambient + self.slope * pressure)
         least = slip_squared + self.creep * self.creep
@@ -239,16 +210,9 @@ class SlipCurve(AbstractTraction):
     )
     decay: Real = eqx.field(**real("s/m", "C, decay of that rise", above=0))
 
-    def __check_init__(self):
-        check_fields(self)
-
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         speed = jnp.sqrt(slip_squared + _NO_SLIP**2)
         exponent = -self.decay * speed
         begun = -self.far * jnp.expm1(exponent) / speed
@@ -274,16 +238,9 @@ class DryFriction(AbstractTraction):
         default=1e-3,
     )
 
-    def __check_init__(self):
-        check_fields(self)
-
     def resistance(
-        self,
-        slip_squared: Float[Array, "*n"],
-        film: Scalar,
-        pressure: Float[Array, "*n"],
-        viscosity: Float[Array, "*n"],
-    ) -> Float[Array, "*n"]:
+        self, slip_squared: Points, film: Scalar, pressure: Points, viscosity: Points
+    ) -> Points:
         speed = jnp.sqrt(slip_squared + self.creep * self.creep)
         return self.friction * pressure / speed
 

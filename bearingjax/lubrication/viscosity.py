@@ -9,10 +9,10 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array
 
 from ..design.checks import check, check_fields, floats, number, positive
-from ..numerics.types import Real, Scalar, as_real, in_numpy
+from ..numerics.types import Number, Real, Reals, Scalar, as_real, in_numpy
 from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
 from .viscosity_index import viscosity_at_100
@@ -42,12 +42,8 @@ class AbstractPressureLaw(eqx.Module):
 
     @abc.abstractmethod
     def log_ratio(
-        self,
-        pressure: Float[Array, "..."],
-        temperature: Scalar,
-        ambient: Scalar,
-        density: Scalar,
-    ) -> Float[Array, "..."]:
+        self, pressure: Reals, temperature: Scalar, ambient: Scalar, density: Scalar
+    ) -> Reals:
         """ln of the viscosity over that at atmospheric pressure [1].
 
         Args:
@@ -95,9 +91,7 @@ class Walther(AbstractAmbient):
             check(self, "hot_viscosity", least < most, words)
 
     @classmethod
-    def from_grade(
-        cls, grade: Scalar | float, viscosity_index: Scalar | float = 95.0
-    ) -> "Walther":
+    def from_grade(cls, grade: Number, viscosity_index: Number = 95.0) -> "Walther":
         """An oil of an ISO viscosity grade.
 
         Args:
@@ -168,12 +162,8 @@ class Barus(AbstractPressureLaw):
     coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
 
     def log_ratio(
-        self,
-        pressure: Float[Array, "..."],
-        temperature: Scalar,
-        ambient: Scalar,
-        density: Scalar,
-    ) -> Float[Array, "..."]:
+        self, pressure: Reals, temperature: Scalar, ambient: Scalar, density: Scalar
+    ) -> Reals:
         return self.coefficient.value(ambient, density) * pressure
 
 
@@ -190,12 +180,8 @@ class Roelands(AbstractPressureLaw):
     coefficient: AbstractCoefficient = eqx.field(converter=as_coefficient)
 
     def log_ratio(
-        self,
-        pressure: Float[Array, "..."],
-        temperature: Scalar,
-        ambient: Scalar,
-        density: Scalar,
-    ) -> Float[Array, "..."]:
+        self, pressure: Reals, temperature: Scalar, ambient: Scalar, density: Scalar
+    ) -> Reals:
         depth = ambient + 9.67
         z = self.coefficient.value(ambient, density) / (5.1e-9 * depth)
         return depth * jnp.expm1(z * jnp.log1p(5.1e-9 * pressure))
@@ -260,12 +246,8 @@ class FreeVolume(AbstractAmbient, AbstractPressureLaw):
         return jnp.log(self.reference_viscosity) + self._exponent(zero, temperature)
 
     def log_ratio(
-        self,
-        pressure: Float[Array, "..."],
-        temperature: Scalar,
-        ambient: Scalar,
-        density: Scalar,
-    ) -> Float[Array, "..."]:
+        self, pressure: Reals, temperature: Scalar, ambient: Scalar, density: Scalar
+    ) -> Reals:
         zero = jnp.zeros_like(temperature)
         return self._exponent(pressure, temperature) - self._exponent(zero, temperature)
 

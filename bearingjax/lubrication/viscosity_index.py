@@ -11,7 +11,7 @@ from jax import lax
 from ..design.checks import check, floats, in_range, positive
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
-from ..numerics.types import Scalar, array_namespace, as_real
+from ..numerics.types import Number, Scalar, array_namespace, as_real
 
 # Of L and of H = a Y² + b Y + c, mm²/s, from Y on.
 _FROM = np.asarray([2, 3.8, 4.4, 5, 6.4, 7, 7.7, 9, 12, 15, 18, 22, 28, 40, 55, 70.0])
@@ -59,7 +59,7 @@ _MOST = 1000.0
 _HALVINGS = 52
 
 
-def viscosity_at_100(viscosity: Scalar | float, index: Scalar | float) -> Scalar:
+def viscosity_at_100(viscosity: Number, index: Number) -> Scalar:
     """Kinematic viscosity at 100 °C.
 
     Args:

@@ -54,9 +54,6 @@ def stated_axes(annotation: Any) -> tuple[str, ...] | None:
     """Return the axes of an annotation: none of a number; "2" or "raceway=2" of a fixed
     length.
 
-    Args:
-        annotation: Type of a field.
-
     Returns:
         Axes in order; `None` if it is no type of arrays.
     """
@@ -77,11 +74,7 @@ def summaries(kind: type) -> dict[str, str]:
 
 
 def array_fields(result: Any) -> dict[str, np.ndarray]:
-    """Return the fields of a result that are arrays or numbers, in NumPy.
-
-    Args:
-        result: Dataclass or named tuple.
-    """
+    """Return the fields of a result that are arrays or numbers, in NumPy."""
     names = getattr(result, "_fields", None)
     if names is None:
         names = [field.name for field in dataclasses.fields(result)]

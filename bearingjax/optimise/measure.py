@@ -309,11 +309,7 @@ class StiffnessTarget(AbstractMeasure):
 
 
 def label_of(measure: Any) -> str:
-    """Name of a measure, or of a plain function.
-
-    Args:
-        measure: Any measure.
-    """
+    """Name of a measure, or of a plain function."""
     if isinstance(measure, AbstractMeasure):
         return measure.label
     return getattr(measure, "__name__", type(measure).__name__)
@@ -331,20 +327,12 @@ def exact_of(measure: Any, element: Design, cases: Any, solution: Any) -> Scalar
 
 
 def least_size_of(measure: Any) -> float:
-    """`least_size` of a measure; for a plain function 0.
-
-    Args:
-        measure: Any measure.
-    """
+    """`least_size` of a measure; for a plain function 0."""
     return measure.least_size if isinstance(measure, AbstractMeasure) else 0.0
 
 
 def hour_weights(cases: Any) -> Float[Array, " case"]:
-    """Share of each case in all hours; equal shares if the cases have no hours.
-
-    Args:
-        cases: Operating cases.
-    """
+    """Share of each case in all hours; equal shares if the cases have no hours."""
     hours = jnp.ones(cases.count) if cases.hours is None else jnp.asarray(cases.hours)
     return hours / jnp.sum(hours)
 

@@ -37,9 +37,6 @@ class AbstractSystem(eqx.Module):
     def check(self, cases: Cases) -> None:
         """Raise if the cases are not valid for this system.
 
-        Args:
-            cases: Operating cases.
-
         Raises:
             ValueError: If they lack something.
         """
@@ -59,11 +56,7 @@ class AbstractSystem(eqx.Module):
         """
 
     def is_solved_by_parts(self, cases: Any) -> bool:
-        """Whether `solve_by_parts` solves such cases; by default there is none.
-
-        Args:
-            cases: Operating cases.
-        """
+        """Whether `solve_by_parts` solves such cases; by default there is none."""
         return False
 
     def solve_by_parts(self, cases: Any, changes: Any) -> tuple[Any, Any]:
@@ -104,11 +97,6 @@ Design = BearingElement[Any] | Installed | AbstractSystem
 
 def check_design(owner: str, design: Any, cases: Any) -> None:
     """Raise unless the design can be optimised over such cases.
-
-    Args:
-        owner: Function that was called.
-        design: Design that it was given.
-        cases: Operating cases.
 
     Raises:
         TypeError: If it is neither an element, nor installed, nor a system.

@@ -193,10 +193,6 @@ def with_values(element: Design, paths: Sequence[Sequence[str]], values: Any) ->
 def check_variables(element: Design, variables: Sequence[Variable]) -> list[float]:
     """Raise unless the design allows the start and each bound by itself.
 
-    Args:
-        element: The design.
-        variables: Its design variables.
-
     Returns:
         The first values [SI].
 

@@ -14,10 +14,12 @@ from .style import (
     Axes,
     axes_or_new,
     degrees,
+    faded,
     raceway_index,
     row_slice,
     row_slices,
     widen_limits,
+    write,
 )
 
 _MARKERS = ("o", "s", "^", "D")
@@ -187,7 +189,6 @@ def _ellipse_patches(ax, patches, colour, count):
         Degrees of the azimuth per mm of width, true to shape and as drawn: no wider
         than `count` ellipses find room.
     """
-    from matplotlib.colors import to_rgb
     from matplotlib.patches import Ellipse
 
     true = np.ptp(_AZIMUTHS) * _BOX / np.ptp(ax.get_ylim())
@@ -202,7 +203,7 @@ def _ellipse_patches(ax, patches, colour, count):
                     (at, place),
                     2.0 * along * drawn,
                     2.0 * across,
-                    facecolor=(*to_rgb(colour), 0.15 + 0.6 * float(share)),
+                    facecolor=faded(colour, 0.15 + 0.6 * float(share)),
                     edgecolor=colour,
                     linewidth=1.0,
                     zorder=3,
@@ -224,12 +225,6 @@ def _shoulders(ax, bearing, raceway, groove):
         if groove.open_side and side < 0.0 and bearing.groove_axis == 0.0:
             continue  # cut away
         ax.axhline(side, color="black", linewidth=1.6)
-        ax.text(
-            0.995,
-            side,
-            "shoulder ",
-            transform=ax.get_yaxis_transform(),
-            ha="right",
-            va="bottom" if side > 0 else "top",
-            fontsize=SMALL,
-        )
+        level = {"va": "bottom" if side > 0 else "top", "ha": "right"}
+        across = ax.get_yaxis_transform()
+        write(ax, (0.995, side), "shoulder ", transform=across, **level)

@@ -15,7 +15,7 @@ from .contact_lines import (
     load_text,
     scale,
 )
-from .style import Ax, Axes, Figure, axes_or_new, head, pyplot
+from .style import Ax, Axes, Figure, axes_or_new, head, new_page, pyplot, write_foot
 
 if TYPE_CHECKING:
     import mpl_toolkits.mplot3d.axes3d
@@ -38,8 +38,7 @@ def contact_overview(
     Returns:
         The figure, 12 by 9 inches; the map is of the largest load.
     """
-    figure = pyplot().figure(figsize=(12.0, 9.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(12.0, 9.0)
     axes = figure.subplot_mosaic(
         [["map", "map"], ["pressure", "load"], ["text", "text"]],
         height_ratios=[0.8, 1.0, 0.12],
@@ -49,17 +48,8 @@ def contact_overview(
     centre_pressure(solutions, axes["pressure"], slices=slices)
     contact_line_load(solutions, axes["load"], slices=slices)
     axes["text"].set_axis_off()
-    axes["text"].text(
-        0.5,
-        0.5,
-        _results(solutions[most], slices[most]),
-        ha="center",
-        va="center",
-        fontsize=10,
-        linespacing=1.5,
-        transform=axes["text"].transAxes,
-        in_layout=False,
-    )
+    where = {"transform": axes["text"].transAxes, "in_layout": False}
+    write_foot(axes["text"], _results(solutions[most], slices[most]), **where)
     head(figure, title or "Roller on raceway")
     return figure
 

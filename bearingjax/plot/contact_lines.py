@@ -1,14 +1,25 @@
 """Pressure and load per length along a roller, compared with slices."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ..contact.halfspace import ContactSolution
 from ..contact.slices import Slices
 from .panel import ALONG, finish
-from .style import GREY, OUTER, SMALL, Ax, Axes, axes_or_new, force_text, towards_white
+from .style import (
+    BOX,
+    GREY,
+    OUTER,
+    SMALL,
+    Ax,
+    Axes,
+    axes_or_new,
+    force_text,
+    mark_peaks,
+    towards_white,
+    write,
+)
 
 _NEAR = 0.02
 """Share of the length at each end that is ignored for the scale."""
@@ -17,13 +28,6 @@ _SHARP = 1.5
 """End values so many times above the scale are left out of it."""
 
 _SLICES = "slices"
-
-_ON_THE_LINE: dict[str, Any] = {
-    "ha": "center",
-    "va": "center",
-    "fontsize": SMALL,
-    "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.8},
-}
 
 
 def centre_pressure(
@@ -93,22 +97,13 @@ def _lines(solutions, values, others, ax, labelled):
             ax.plot(y, others[k], "--", color=GREY, linewidth=1.0, label="_slices")
         label = load_text(solution)
         if labelled is None:
-            ax.text(0.0, np.interp(0.0, y, line), label, **_ON_THE_LINE)
+            ground = BOX | {"pad": 1.5, "alpha": 0.8}
+            write(ax, (0.0, np.interp(0.0, y, line)), label, bbox=ground)
         else:
             label += f": {labelled(solution)}"
         ax.plot(y, line, color=colour, linewidth=1.8, label=label)
         high = y[[0, -1]][line[[0, -1]] > 1.1 * top]
-        ax.plot(
-            high,
-            np.full(high.size, 1.1 * top),
-            linestyle="none",
-            marker="^",
-            markersize=7,
-            color=colour,
-            label="_off the scale",
-            clip_on=False,
-            in_layout=False,
-        )
+        mark_peaks(ax, high, np.full(high.size, 1.1 * top), colour, "off the scale")
     if others:
         ax.plot([], [], "--", color=GREY, linewidth=1.0, label=_SLICES)
     ax.set_xlim(edges[0], edges[-1])

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from .panel import finish
-from .style import COLOURS, GREY, ROLLER, SMALL, Figure, head, pyplot
+from .style import COLOURS, GREY, ROLLER, SMALL, Figure, head, new_page, write_foot
 
 _MOST = 16
 """Most cases drawn."""
@@ -36,17 +36,14 @@ def life_overview(run: Any, title: str = "") -> Figure:
     Returns:
         The figure, 12 by 6 inches.
     """
-    figure = pyplot().figure(figsize=(12.0, 6.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(12.0, 6.0)
     parts: Any = figure.subfigures(2, 1, height_ratios=[5.4, 0.6])
     upper, foot = parts
     left, right = upper.subplots(1, 2)
     order = np.sort(run.worst_cases(_MOST)[0])
     _lives(run, order, left)
     _shares(run, order, right)
-    foot.text(
-        0.5, 0.5, _results(run), ha="center", va="center", fontsize=10, linespacing=1.5
-    )
+    write_foot(foot, _results(run))
     head(figure, title or "Rating life")
     return figure
 

@@ -9,6 +9,7 @@ from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS
 from ..statics.solution import Solution
 from .panel import Ax, Axis, Curve, Panel, chart
 from .style import (
+    BOX,
     COLOURS,
     GREY,
     RACEWAYS,
@@ -17,6 +18,7 @@ from .style import (
     axes_or_new,
     raceway_index,
     row_slices,
+    write,
 )
 
 _RADIUS, _TICK_LABEL = 1.6, (0.3, 0.15)
@@ -89,13 +91,7 @@ def load_zone(solution: Solution, ax: Ax = None) -> Axes:
 
 
 def zone_legend(ax: Axes, handles: list[Any], labels: list[str]) -> None:
-    """Draw a legend to the right of a load zone.
-
-    Args:
-        ax: Polar axes.
-        handles: Bars and markers.
-        labels: Text of each.
-    """
+    """Draw a legend to the right of a load zone."""
     ax.legend(
         handles,
         labels,
@@ -153,16 +149,8 @@ def _radial_labels(ax, azimuth, loads, limit, bars) -> float:
     if np.any((room < needed) & (labelled < reach)):
         return float(ticks[0])
     for tick in labelled:
-        ax.text(
-            where,
-            tick,
-            f"{tick:g}",
-            fontsize=SMALL,
-            ha="center",
-            va="center",
-            zorder=4,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8},
-        )
+        ground = BOX | {"pad": 0.8, "alpha": 0.8}
+        write(ax, (where, tick), f"{tick:g}", zorder=4, bbox=ground)
     return 0.0
 
 

@@ -10,7 +10,7 @@ from .noise import (
     noise_spectrum,
     source_bars,
 )
-from .style import Figure, head, pyplot
+from .style import Figure, head, new_page
 
 
 def noise_overview(run: Any, title: str = "") -> Figure:
@@ -27,8 +27,7 @@ def noise_overview(run: Any, title: str = "") -> Figure:
     """
     task, analysis = run.task, run.analysis
     rows = 2 if run.many is None else 3
-    figure = pyplot().figure(figsize=(15.0, 4.8 * rows))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(15.0, 4.8 * rows)
     axes = figure.subplots(rows, 2)
     acceleration_over_time(analysis.record, axes[0, 0])
     reference = task.reference

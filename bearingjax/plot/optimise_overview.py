@@ -23,7 +23,7 @@ from .style import (
     Figure,
     degrees,
     head,
-    pyplot,
+    new_page,
     row_slices,
     without_offset,
 )
@@ -58,9 +58,7 @@ def optimise_overview(found: OptimisedDesign, title: str = "") -> Figure:
         first = rows_of(found.element.bearing)[0].bearing
         rollers = first.element_length is not None
     names = "pa;ch" if rollers else "ch"
-    height = 8.4 if rollers else 4.6
-    figure = pyplot().figure(figsize=(12.0, height))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(12.0, 8.4 if rollers else 4.6)
     axes = figure.subplot_mosaic(names)
     panels = {"h": _history(found)}
     panels["c"] = _each_bearing(found) if shafts else _cases(found)

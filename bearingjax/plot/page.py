@@ -14,7 +14,16 @@ from .balls import contact_angles, ellipses
 from .drawings.section import cross_section
 from .load import load_zone
 from .pressure import pressure_map, pressure_profiles
-from .style import RACEWAYS, Figure, degrees, force_text, head, pyplot, row_slices
+from .style import (
+    RACEWAYS,
+    Figure,
+    degrees,
+    force_text,
+    head,
+    new_page,
+    row_slices,
+    write_foot,
+)
 
 
 def overview(
@@ -33,8 +42,7 @@ def overview(
     rows = row_slices(solution)
     n = len(rows)
     noun = solution.element.bearing.noun
-    figure = pyplot().figure(figsize=(13.5, 5.1 + 3.3 * n))
-    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.08)
+    figure = new_page(13.5, 5.1 + 3.3 * n, 0.1, 0.08)
     heights = [4.3, 3.3 * n, 0.5]
     parts: Any = figure.subfigures(3, 1, height_ratios=heights)
     upper, lower, foot = parts
@@ -48,15 +56,7 @@ def overview(
     cross_section(bearing, section)
     load_zone(solution, zone)
     nearest_entry(_CONTACTS, solution)(bearing, solution, axes, rows)
-    foot.text(
-        0.5,
-        0.5,
-        "\n".join(_results(solution)),
-        ha="center",
-        va="center",
-        fontsize=10,
-        linespacing=1.5,
-    )
+    write_foot(foot, "\n".join(_results(solution)))
     head(figure, title or type(bearing).__name__)
     # Equal scales move the ticks, for whose words the layout then makes room.
     figure.draw_without_rendering()

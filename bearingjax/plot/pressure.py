@@ -13,6 +13,7 @@ from .style import (
     axes_or_new,
     degrees,
     force_text,
+    mark_peaks,
     pyplot,
     raceway_index,
     row_slice,
@@ -77,20 +78,9 @@ def pressure_profiles(
                 label=label if len(names) == 1 else f"{name}, {label}",
             )
             ends = np.flatnonzero(edges[roller, ring])
-            ax.plot(
-                position[[0, -1]][ends],
-                pressure[roller, ring][[0, -1]][ends],
-                linestyle="none",
-                marker="^",
-                markersize=7,
-                color=colour,
-                markeredgecolor="black",
-                markeredgewidth=0.6,
-                label="_edge",
-                zorder=4,
-                clip_on=False,
-                in_layout=False,
-            )
+            x, y = position[[0, -1]][ends], pressure[roller, ring][[0, -1]][ends]
+            rim = {"markeredgecolor": "black", "markeredgewidth": 0.6, "zorder": 4}
+            mark_peaks(ax, x, y, colour, "edge", **rim)
     ax.set_xlim(position[0], position[-1])
     shown = pressure[np.ix_(rollers, rings)]
     top = np.nanmax(shown, initial=0.0)

@@ -11,7 +11,7 @@ from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
 from .rotors.rotor import rotor_section
-from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white
+from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white, write
 
 _ACROSS = 4
 """Most load zones side by side."""
@@ -140,16 +140,11 @@ def _drawing(ax, run, index):
         own = frame @ np.asarray(force)[:3] * (-1.0 if reaction else 1.0)
         own = np.where(np.abs(own) > 1e-6 * np.abs(own).max(), own, 0.0) + 0.0
         words = ", ".join(f"{1e-3 * f:.3g}" for f in own)
-        ax.text(
-            1e3 * float(part.position),
-            0.03 if reaction else 0.95,
-            f"{part.name}\n({words})",
-            transform=ax.get_xaxis_transform(),
-            ha="center",
-            va="bottom" if reaction else "top",
-            fontsize="x-small",
-            zorder=9,
-        )
+        at = 1e3 * float(part.position), 0.03 if reaction else 0.95
+        write(
+            ax, at, f"{part.name}\n({words})", transform=ax.get_xaxis_transform(),
+            va="bottom" if reaction else "top", fontsize="x-small", zorder=9,
+        )  # fmt: skip
     middle = 500.0 * float(np.sum(line.length))
     ax.update_datalim([(middle, 1.5 * radius), (middle, -1.5 * radius)])
     ax.autoscale_view()

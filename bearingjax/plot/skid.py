@@ -41,7 +41,7 @@ from .style import (
     Figure,
     degrees,
     head,
-    pyplot,
+    new_page,
 )
 
 
@@ -96,8 +96,7 @@ _ROLLERS = (
 
 def _page(found, drawn, width):
     """Draw plots on a page in two lines."""
-    figure = pyplot().figure(figsize=(width, 9.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(width, 9.0)
     axes = figure.subplots(2, len(drawn) // 2).ravel()
     for draw, ax in zip(drawn, axes, strict=True):
         draw(found, ax)
@@ -114,8 +113,7 @@ def _spectrum(found, ax):
 
 
 def _end(model, found, state):
-    figure = pyplot().figure(figsize=(15.0, 9.0))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(15.0, 9.0)
     alike = len(found.azimuth) == 1
     first = ["slip 0", "heat 0", "text"] if alike else ["load", "sliding", "spin"]
     panels: list[Any] = [first, ["slip", "heat", "power"]]

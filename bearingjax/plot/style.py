@@ -31,6 +31,10 @@ GREY = "#595959"
 """Colour of lines that are not data."""
 SMALL = 9.0
 """Smallest font size [pt]."""
+ELEMENT: dict[str, Any] = {"facecolor": "#DDF1EA", "edgecolor": ROLLER}
+"""Look of a rolling element."""
+BOX: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+"""White ground of words on lines."""
 
 RACEWAYS = ("outer", "inner")
 COLOURS = {"outer": OUTER, "inner": INNER}
@@ -178,6 +182,18 @@ def force_text(force: float) -> str:
     return f"{1e-3 * force:.3g} kN"
 
 
+def faded(colour: Any, share: float) -> tuple[float, ...]:
+    """Return a colour that lets what is behind it show through.
+
+    Args:
+        colour: As matplotlib takes it.
+        share: 0: not seen, 1: as it is.
+    """
+    from matplotlib.colors import to_rgba
+
+    return to_rgba(colour, share)
+
+
 def towards_white(colour: Any, share: float) -> tuple[float, ...]:
     """Return a lighter colour.
 
@@ -188,6 +204,66 @@ def towards_white(colour: Any, share: float) -> tuple[float, ...]:
     from matplotlib.colors import to_rgb
 
     return tuple(c + share * (1.0 - c) for c in to_rgb(colour))
+
+
+def mark_peaks(ax: Axes, x: Any, y: Any, colour: Any, name: str, **look: Any) -> None:
+    """Draw triangles, which may reach beyond the axes.
+
+    Args:
+        ax: Axes.
+        x, y: Points (n,).
+        colour: As matplotlib takes it.
+        name: Name of what they mark, not for the legend.
+        look: Further keywords of Matplotlib's `plot`.
+    """
+    outside = {"clip_on": False, "in_layout": False, "label": f"_{name}"}
+    ax.plot(x, y, "^", markersize=7, color=colour, **outside, **look)
+
+
+def write(place: Any, at: Any, text: str, **look: Any) -> None:
+    """Write small words in the middle of a point.
+
+    Args:
+        place: Axes or figure.
+        at: The point (2,).
+        text: The words.
+        look: Further keywords of Matplotlib's `text`.
+    """
+    usual = {"ha": "center", "va": "center", "fontsize": SMALL}
+    place.text(*at, text, **{**usual, **look})
+
+
+def write_beside(ax: Axes, at: Any, away: Any, text: str, **look: Any) -> None:
+    """Write small words next to a point.
+
+    Args:
+        ax: Axes.
+        at: The point (2,).
+        away: From the point to the words (2,) [pt].
+        text: The words.
+        look: Further keywords of Matplotlib's `annotate`.
+    """
+    usual: Any = {"textcoords": "offset points", "fontsize": SMALL}
+    ax.annotate(text, tuple(at), away, **{**usual, **look})
+
+
+def write_foot(place: Any, text: str, **look: Any) -> None:
+    """Write main results in the middle of a part of a page; arguments as of `write`."""
+    write(place, (0.5, 0.5), text, fontsize=10, linespacing=1.5, **look)
+
+
+def new_page(
+    width: float, height: float, beside: float = 0.12, below: float = 0.1
+) -> Any:
+    """Return a new figure of a size whose parts find their places.
+
+    Args:
+        width, height: Width and height [inch].
+        beside, below: Room beside and below each part [inch].
+    """
+    figure = pyplot().figure(figsize=(width, height))
+    figure.set_layout_engine("constrained", w_pad=beside, h_pad=below)
+    return figure
 
 
 def head(figure: Any, title: str, **place: Any) -> None:

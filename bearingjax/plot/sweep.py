@@ -9,7 +9,7 @@ from ..cases.sweep import Sweep
 from ..cases.sweep_table import columns
 from ..numerics.units import display_unit
 from .panel import finish
-from .style import CURVES, SMALL, Figure, head, power_of_ten, pyplot, without_offset
+from .style import CURVES, SMALL, Figure, head, new_page, power_of_ten, without_offset
 
 _MOST_RESULTS = 9
 _NO_RESULTS = ("design", "iterations", "residual", "hours [h]")
@@ -61,8 +61,7 @@ def sweep_overview(
     shown = list(results.items())[:_MOST_RESULTS]
     across = 2 if len(shown) == 4 else max(1, min(3, len(shown)))
     down = max(1, -(-len(shown) // across))
-    figure = pyplot().figure(figsize=(5.0 * across, 0.8 + 3.4 * down))
-    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.1)
+    figure = new_page(5.0 * across, 0.8 + 3.4 * down, 0.1)
     label, note, curves = _curves(inputs, good)
     for k, (header, values) in enumerate(shown):
         ax = without_offset(figure.add_subplot(down, across, k + 1))

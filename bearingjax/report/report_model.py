@@ -150,11 +150,7 @@ def load_text(load: Iterable[Any]) -> str:
 
 
 def labelled_facts(rows: Iterable[tuple[str, str]]) -> Grid:
-    """Return a table of facts, each preceded by a label.
-
-    Args:
-        rows: Label and fact.
-    """
+    """Return a table of facts, each preceded by a label."""
     labels, facts = zip(*rows, strict=True)
     return Grid([Column("", labels), Column("", facts)])
 

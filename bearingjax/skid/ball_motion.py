@@ -129,12 +129,7 @@ class Tractions(NamedTuple):
 
 
 def pure_rolling(ball: LoadedBall, speed: Speed) -> BallState:
-    """Return the motion without slip, and without spin at the outer raceway.
-
-    Args:
-        ball: The ball.
-        speed: Ring speeds.
-    """
+    """Return the motion without slip, and without spin at the outer raceway."""
     direction = jnp.stack([jnp.sin(ball.angle), jnp.cos(ball.angle)], axis=1)
     half = len(ball.outwards) // 2
     weighted = (ball.load + LEAST_LOAD)[:, None] * direction
@@ -147,13 +142,7 @@ def pure_rolling(ball: LoadedBall, speed: Speed) -> BallState:
 
 
 def sliding(ball: LoadedBall, state: BallState, speed: Speed) -> Sliding:
-    """Return sliding, spin and entrainment of a ball on its raceways.
-
-    Args:
-        ball: The ball.
-        state: Its motion.
-        speed: Ring speeds.
-    """
+    """Return sliding, spin and entrainment of a ball on its raceways."""
     cos, sin, side = jnp.cos(ball.angle), jnp.sin(ball.angle), ball.side
     wx, wy, wz = state.spin
     radius = 0.5 * ball.diameter

@@ -96,13 +96,7 @@ def ring_forces(
 def contact_loads(
     row: RowResults, bearing: AbstractBallBearing, law: AbstractPointLaw
 ) -> tuple[Float[Array, "station contact"], Float[Array, "station contact"]]:
-    """Return loads [N] and contact angles [rad] of balls.
-
-    Args:
-        row: The solved row.
-        bearing: The design.
-        law: Law of its contact constants.
-    """
+    """Return loads [N] and contact angles [rad] of balls."""
     found = ball_results((row,), (bearing,), law)
     return found["contact_load"], found["contact_angle"]
 

@@ -112,12 +112,7 @@ class RollerTractions(NamedTuple):
 
 
 def pure_rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
-    """Return the motion without slip at both raceways.
-
-    Args:
-        roller: The roller.
-        speed: Ring speeds.
-    """
+    """Return the motion without slip at both raceways."""
     # Both raceways pass the contacts at the same speed, in opposite senses.
     outer, inner = roller.lever
     orbit = (outer * speed.outer + inner * speed.inner) / (outer + inner)
@@ -126,13 +121,7 @@ def pure_rolling(roller: LoadedRoller, speed: Speed) -> RollerState:
 
 
 def sliding(roller: LoadedRoller, state: RollerState, speed: Speed) -> RollerSliding:
-    """Return sliding and entrainment of a roller on its raceways.
-
-    Args:
-        roller: The roller.
-        state: Its motion.
-        speed: Ring speeds.
-    """
+    """Return sliding and entrainment of a roller on its raceways."""
     # Speeds along x in the orbiting frame: of the roller's surface, of the raceway's.
     surface = -roller.side * 0.5 * roller.diameter * state.spin
     passing = state.orbit - jnp.stack([speed.outer, speed.inner])

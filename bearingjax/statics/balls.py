@@ -81,13 +81,7 @@ def ball_results(
     bearings: Sequence[AbstractBallBearing],
     law: AbstractPointLaw,
 ) -> dict:
-    """Fields of `BallResults`, `roller_load` and `roller_pressure`, of solved rows.
-
-    Args:
-        rows: Solved balls of all rows.
-        bearings: Designs of the rows.
-        law: Law of the contact constants.
-    """
+    """Fields of `BallResults`, `roller_load` and `roller_pressure`, of solved rows."""
     contacts = max(row.contact_load.shape[1] for row in rows)
     parts = [
         _row_results(row, bearing, law, contacts)

@@ -58,12 +58,7 @@ def of_kind(element: BearingElement) -> BearingElement:
 
 
 def points_of_kind(element: BearingElement, points: int) -> int:
-    """Return positions along its rolling elements, the same for all balls.
-
-    Args:
-        element: The bearing.
-        points: Positions that are asked for.
-    """
+    """Return positions along its rolling elements, the same for all balls."""
     return 2 if isinstance(element.choices, BallChoices) else points
 
 
@@ -113,13 +108,7 @@ def solution_with_empty_places(solution: Solution) -> Any:
 
 
 def blank_empty_places(solution: Solution, name: str, values: Any) -> Any:
-    """Values of a field of a solution, NaN in empty places; traced or not.
-
-    Args:
-        solution: Solution of one case.
-        name: Field.
-        values: Its values.
-    """
+    """Values of a field of a solution, NaN in empty places; traced or not."""
     rows: Any = bearings_of(solution.element.bearing)
     axes = axes_of(solution, name) or ("",)
     if rows[0].filled is None or axes[0] != "element":

@@ -168,10 +168,6 @@ def _solve(
 def raise_if_failed(solution: Solution, owner: str) -> Solution:
     """The solution, or an exception that says why it failed, also under `jit`.
 
-    Args:
-        solution: Solution of one case.
-        owner: Function that was called.
-
     Raises:
         SolveError: If it did not converge.
     """

@@ -45,17 +45,7 @@ def solution_of(
     begin: SearchStart,
     minimum: Minimum,
 ) -> Solution:
-    """Solution at the end of a search.
-
-    Args:
-        element: The bearing.
-        model: The bearing at the speeds.
-        balance: The load and what holds the rings.
-        case: Load case.
-        options: Settings.
-        begin: Start of the search.
-        minimum: End of the search.
-    """
+    """Solution at the end `minimum` of the search that was begun at `begin`."""
     y = differentiable_unknowns(model, balance, minimum)
     q = balance.ring_freedoms(y)
     # gz may be prescribed: the results follow it through the azimuths.

@@ -167,10 +167,6 @@ def check_preload(bearing: AbstractBearing | BearingSet, force: Number) -> None:
 def check_opposed(owner: str, bearing: AbstractBearing | BearingSet) -> None:
     """Raise unless rows of a set can press each other along the axis.
 
-    Args:
-        owner: Function that was called.
-        bearing: The design.
-
     Raises:
         ValueError: If `is_opposed` is false, with the reason.
     """

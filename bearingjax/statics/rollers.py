@@ -182,9 +182,6 @@ def line_loads(
 def approaches(row: RowResults) -> Float[Array, "roller 2 2"]:
     """Approaches of every roller at the outer and the inner raceway.
 
-    Args:
-        row: Solved rollers.
-
     Returns:
         (roller, raceway, 2) [m]: a in the middle, a + b at +L/2.
     """

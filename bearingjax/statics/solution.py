@@ -165,10 +165,6 @@ class BallSolution(Solution, BallResults):
 def check_single(owner: str, solution: Solution) -> None:
     """Raise unless a solution is of one case.
 
-    Args:
-        owner: Function that was called.
-        solution: Object that it was given.
-
     Raises:
         ValueError: For a solution with a leading case axis.
     """
@@ -322,12 +318,6 @@ def contact_results(
     points: Any,
 ) -> dict:
     """Results of the contacts of solved rows; register a new kind of choices here.
-
-    Args:
-        choices: Choices of the element.
-        bearing: Its design.
-        rows: Its solved rows.
-        points: Positions along a rolling element.
 
     Returns:
         Fields of the kind of `Solution` that `solution_kind` names. Of a kind of

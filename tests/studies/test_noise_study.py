@@ -60,7 +60,7 @@ def test_rings_of_spherical_rollers_shift():
 def test_shipped_scenes_read(name):
     task = read_noise(name)
     assert task.name == name and task.warnings == ()
-    assert task.turns >= 6 and task.samples == 2048
+    assert task.vibration.turns >= 6 and task.vibration.samples == 2048
     assert jax.tree.leaves(task.model.errors)
     # The other commands find what they know in them.
     assert bj.read_scene(name).load == tuple(map(float, task.model.load))
@@ -129,7 +129,7 @@ def test_all_keys():
     pairs = zip(jax.tree.leaves(task.model), jax.tree.leaves(wanted), strict=True)
     for a, b in pairs:
         assert np.allclose(a, b, rtol=ROUNDING, atol=1e-15), (a, b)
-    assert (task.turns, task.settle, task.samples, task.steps) == (3, 0, 32, 5)
+    assert [*task.counts.values(), task.vibration.steps] == [3, 0, 32, 5]
     assert task.reference == 1e-6 and isinstance(task.window, Rectangular)
     assert task.norm is None
 
@@ -401,7 +401,7 @@ def test_a_model_by_hand_vibrates_alike(scene):
     assert np.array_equal(labelled["frequency"], lines.frequency)
     assert np.array_equal(labelled["mode_frequency"], found.modes.frequency)
     assert list(found.warnings) == [
-        *model_warnings(task.model, task.samples, found.steps),
+        *model_warnings(task.model, task.vibration.samples, found.steps),
         *record_warnings(task.model, record, lines, task.bands),
     ]
     modes = natural_modes(task.model)

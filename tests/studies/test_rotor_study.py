@@ -55,7 +55,7 @@ def test_shipped_rotors_read(name):
 def test_read_rotor_paper_rotor_matches_table():
     task = read_rotor("rotor_paper_26")
     assert np.allclose(task.shaft.stations, [0.0, 0.125, 0.5], rtol=ROUNDING)
-    assert task.rigid and task.axis == "none"
+    assert task.keys.rigid and task.keys.axis == "none"
     assert task.station_names == ("0 gost_831", "1 disc", "2 gost_831")
     (disc,) = task.discs
     assert isinstance(disc, bj.rotor.Disc)
@@ -72,7 +72,7 @@ def test_read_rotor_paper_rotor_matches_table():
         23.855, abs=5e-4
     )
     assert np.allclose(task.loads.base_acceleration, [0, 3, 0])
-    assert isinstance(task.damping, bj.rotor.ModalDamping)
+    assert isinstance(task.keys.own_damping, bj.rotor.ModalDamping)
     assert task.speed == pytest.approx(6000.0 * RPM)
     assert task.campbell[-1] == pytest.approx(60000.0 * RPM)
     asked = task.response
@@ -127,7 +127,7 @@ def test_all_keys_of_a_mount_a_disc_and_loads():
     assert float(unbalance.moment) == pytest.approx(5e-6)
     assert float(unbalance.phase) == pytest.approx(np.pi / 2)
     assert force.station == 3 and np.allclose(force.force, [2, 0, 0, 0, 3])
-    assert task.damping is None
+    assert task.keys.own_damping is None
     asked = task.transient
     assert (asked.duration, asked.passage, asked.n_times) == (2.0, True, 1001)
     assert asked.speed_to == pytest.approx(6000.0 * RPM)

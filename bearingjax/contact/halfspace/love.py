@@ -65,8 +65,5 @@ def namespace(*values: Any) -> Any:
     """NumPy where no value is traced, so that tables are made in double precision.
 
     The differences lose digits that single precision does not have.
-
-    Args:
-        *values: Values from which the table is made.
     """
     return jnp if any(isinstance(v, Tracer) for v in values) else np

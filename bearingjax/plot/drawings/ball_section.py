@@ -6,7 +6,16 @@ from typing import Any
 import numpy as np
 
 from ...design import AbstractBallBearing, AbstractBearing, BearingSet, SetRow, rows_of
-from ..style import COLOURS, GREY, ROLLER, SMALL, Ax, Axes, axes_or_new
+from ..style import (
+    COLOURS,
+    ELEMENT,
+    GREY,
+    Ax,
+    Axes,
+    axes_or_new,
+    faded,
+    write_beside,
+)
 from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
@@ -21,9 +30,6 @@ def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     """Draw the axial section through one ball of every row.
 
     Balls and raceways are to scale, unloaded; the ring bodies are schematic.
-
-    Args:
-        bearing: A ball bearing.
 
     Returns:
         The axes: z to the right, radius upwards.
@@ -68,16 +74,8 @@ def _dimensions(ax, row, low, high, alone):
     half = np.array([0.0, 0.5 * diameter])
     aside = np.array([low[0] - 0.18 * diameter - centre[0], 0.0])
     at = between(ax, centre - half, centre + half, aside)
-    ax.annotate(
-        f"D = {quantity(part.ball_diameter, 'm')}",
-        tuple(at),
-        (-3, 0),
-        textcoords="offset points",
-        rotation=90,
-        fontsize=SMALL,
-        ha="right",
-        va="center",
-    )
+    text, upright = f"D = {quantity(part.ball_diameter, 'm')}", {"rotation": 90}
+    write_beside(ax, at, (-3, 0), text, ha="right", va="center", **upright)
     beyond = np.array([high[0] + 0.2 * diameter, centre[1]])
     ax.plot([low[0], beyond[0] + 0.1 * diameter], [centre[1]] * 2, **AXIS)
     pitch_arrow(ax, beyond, part.pitch_diameter)
@@ -127,9 +125,7 @@ def _ball(ax, bearing, place):
     radius = 0.5e3 * float(bearing.ball_diameter)
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     circle = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    ax.fill(
-        *place(circle).T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4, zorder=2
-    )
+    ax.fill(*place(circle).T, linewidth=1.4, zorder=2, **ELEMENT)
     # Lines of contact of the unloaded bearing, through the ball's centre.
     for groove in bearing.grooves:
         outwards = 1.0 if groove.on_outer else -1.0
@@ -174,20 +170,10 @@ def _rings(ax, bearing, place, reach, apart):
         back[:, across] = outwards * (np.max(outwards * line[:, across]) + thickness)
         outline = place(np.concatenate([line, back]))
         outlines.append(outline)
-        ax.fill(
-            *outline.T,
-            facecolor=_light(COLOURS[name]),
-            edgecolor=COLOURS[name],
-            linewidth=1.2,
-            zorder=1,
-        )
+        colour = COLOURS[name]
+        fill = faded(colour, 0.12)
+        ax.fill(*outline.T, facecolor=fill, edgecolor=colour, linewidth=1.2, zorder=1)
     return np.concatenate(outlines)
-
-
-def _light(colour):
-    from matplotlib.colors import to_rgb
-
-    return (*to_rgb(colour), 0.12)
 
 
 def _aligning(bearing, name):

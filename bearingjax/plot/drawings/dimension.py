@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...numerics.units import unit_of
-from ..style import GREY, SMALL, Axes, Points, Size
+from ..style import ELEMENT, GREY, SMALL, Axes, Points, Size, write, write_beside
 
 ARROW: dict[str, Any] = {
     "arrowstyle": "<|-|>",
@@ -117,24 +117,35 @@ def put_labels(ax: Axes, labels: list[Label], size: Size, column: float = 0.25) 
         edge = column if side == "right" else 1.0 - column
         part, places = _uncross_labels(part, (low, high), ax.get_xlim(), edge, size[1])
         for one, place in zip(part, places, strict=True):
-            ax.annotate(
-                one.text,
-                tuple(np.asarray(one.at, dtype=float)),
-                (edge, place),
-                textcoords="axes fraction",
-                fontsize=SMALL,
-                ha=side,
-                va="center",
-                zorder=8,
-                arrowprops={
-                    "arrowstyle": "-",
-                    "color": GREY,
-                    "linewidth": 0.6,
-                    "shrinkA": 1,
-                    "shrinkB": 0,
-                    "relpos": (1.0 if side == "right" else 0.0, 0.5),
-                },
-            )
+            look: Any = {"ha": side, "va": "center"}
+            tail = 1.0 if side == "right" else 0.0, 0.5
+            write_aside(ax, one.at, (edge, place), one.text, tail, (1, 0), **look)
+
+
+def write_aside(
+    ax: Axes,
+    at: Points,
+    place: tuple[float, float],
+    text: str,
+    tail: tuple[float, float],
+    shrink: tuple[float, float] = (2, 2),
+    **look: Any,
+) -> None:
+    """Write small words away from a point, with a thin line to it.
+
+    Args:
+        ax: Axes.
+        at: The point (2,).
+        place: Place of the words, share of the axes (2,).
+        text: The words.
+        tail: Where the line begins, share of the words (2,).
+        shrink: Distance of the line from words and point [pt].
+        look: Further keywords of Matplotlib's `annotate`.
+    """
+    line = {"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "relpos": tail}
+    line |= {"shrinkA": shrink[0], "shrinkB": shrink[1]}
+    usual: Any = {"textcoords": "axes fraction", "zorder": 8, "arrowprops": line}
+    write_beside(ax, np.asarray(at, dtype=float), place, text, **{**usual, **look})
 
 
 def _uncross_labels(labels, low_high, left_right, edge, height):
@@ -214,6 +225,12 @@ def spread_labels(wanted: Points, heights: Points) -> np.ndarray:
     return np.clip(pooled, low, max(low, high)) + steps
 
 
+def arrow(ax: Axes, start: Points, stop: Points, style: str = "-|>") -> None:
+    """Draw an arrow between two points (2,); `style` as in Matplotlib."""
+    look = ARROW | {"arrowstyle": style}
+    ax.annotate("", tuple(stop), tuple(start), arrowprops=look, zorder=6)
+
+
 def between(
     ax: Axes, start: Points, stop: Points, shift: Points = (0.0, 0.0)
 ) -> np.ndarray:
@@ -233,7 +250,7 @@ def between(
         if shift.any():
             ax.plot(*np.stack([point, point + 1.06 * shift]).T, **THIN)
     ends = start + shift, stop + shift
-    ax.annotate("", tuple(ends[1]), tuple(ends[0]), arrowprops=ARROW, zorder=6)
+    arrow(ax, *ends, "<|-|>")
     return 0.5 * (ends[0] + ends[1])
 
 
@@ -247,11 +264,8 @@ def squeeze(ax: Axes, start: Points, stop: Points, tail: float) -> None:
     """
     start, stop = np.asarray(start, dtype=float), np.asarray(stop, dtype=float)
     way = (stop - start) / np.linalg.norm(stop - start)
-    arrow = ARROW | {"arrowstyle": "-|>"}
     for end, sign in ((start, -1.0), (stop, 1.0)):
-        ax.annotate(
-            "", tuple(end), tuple(end + sign * tail * way), arrowprops=arrow, zorder=6
-        )
+        arrow(ax, end + sign * tail * way, end)
 
 
 def radius(ax: Axes, centre: Points, point: Points) -> np.ndarray:
@@ -261,8 +275,7 @@ def radius(ax: Axes, centre: Points, point: Points) -> np.ndarray:
         A point on it, for the label.
     """
     centre, point = np.asarray(centre, dtype=float), np.asarray(point, dtype=float)
-    arrow = ARROW | {"arrowstyle": "-|>"}
-    ax.annotate("", tuple(point), tuple(centre), arrowprops=arrow, zorder=6)
+    arrow(ax, centre, point)
     ax.plot(*centre, marker="+", color="black", markersize=5, zorder=6)
     return centre + 0.8 * (point - centre)
 
@@ -296,25 +309,10 @@ def pitch_arrow(ax: Axes, at: Points, diameter: Any) -> None:
         at: Its head (2,).
         diameter: Diameter of the pitch circle [m].
     """
-    ax.annotate(
-        "",
-        tuple(at),
-        (0, -70),
-        textcoords="offset points",
-        arrowprops=ARROW | {"arrowstyle": "-|>"},
-        zorder=6,
-    )
-    ax.annotate(
-        f"pitch Ø {quantity(diameter, 'm')}",
-        tuple(at),
-        (3, -10),
-        textcoords="offset points",
-        rotation=90,
-        fontsize=SMALL,
-        ha="left",
-        va="top",
-        zorder=6,
-    )
+    look = ARROW | {"arrowstyle": "-|>"}
+    write_beside(ax, at, (0, -70), "", arrowprops=look, zorder=6)
+    text, upright = f"pitch Ø {quantity(diameter, 'm')}", {"rotation": 90, "zorder": 6}
+    write_beside(ax, at, (3, -10), text, ha="left", va="top", **upright)
 
 
 def contact_angle(
@@ -346,15 +344,10 @@ def contact_angle(
     ax.plot(*(centre + arc * _way(turn)).T, **THIN)
     # A steep line leans far out: there is more room on the other side of the angle.
     left = alone and contact > _LEANING
-    ax.annotate(
-        f"{name} α = {np.rad2deg(contact):.4g}°",
-        (centre[0] if left else max(tip[0], centre[0]), tip[1]),
-        (-6 if left else 6, 0),
-        textcoords="offset points",
-        fontsize=SMALL,
-        ha="right" if left else "left",
-        va="center",
-    )
+    at = centre[0] if left else max(tip[0], centre[0]), tip[1]
+    away, side = ((-6, 0), "right") if left else ((6, 0), "left")
+    text = f"{name} α = {np.rad2deg(contact):.4g}°"
+    write_beside(ax, at, away, text, ha=side, va="center")
 
 
 def on_line(
@@ -369,18 +362,9 @@ def on_line(
         turn: Turn of the text [rad].
         ha: Horizontal alignment of the text, as in matplotlib.
     """
-    ax.text(
-        at[0],
-        at[1],
-        text,
-        rotation=np.rad2deg(turn),
-        rotation_mode="anchor",
-        fontsize=SMALL,
-        ha=ha,
-        va="center",
-        zorder=7,
-        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 0.6},
-    )
+    turned = {"rotation": np.rad2deg(turn), "rotation_mode": "anchor"}
+    ground = ELEMENT | {"edgecolor": "none", "pad": 0.6}
+    write(ax, at, text, ha=ha, zorder=7, bbox=ground, **turned)
 
 
 def _way(turn):

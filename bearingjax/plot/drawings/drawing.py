@@ -17,7 +17,7 @@ from ...design import (
 )
 from ...design.abstract import nearest_entry
 from ...numerics.units import unit
-from ..style import Figure, head, pyplot
+from ..style import Figure, head, pyplot, write
 from .ball_drawing import ball_clearance_view, dimensioned_balls
 from .dimension import label
 from .face_drawing import DEVIATIONS, deviation_view, face_view
@@ -106,15 +106,8 @@ def _page(strips):
     top = tall - _HEAD
     for strip in strips:
         weight, size = ("bold", 12.0) if strip.bold else ("normal", 10.0)
-        figure.text(
-            0.5,
-            (top - 0.5 * strip.height) / tall,
-            strip.words,
-            ha="center",
-            va="center",
-            fontsize=size,
-            fontweight=weight,
-        )
+        middle, look = (top - 0.5 * strip.height) / tall, {"fontweight": weight}
+        write(figure, (0.5, middle), strip.words, fontsize=size, **look)
         for view in strip.views:
             left, right, above, below = _MARGINS[view.framed]
             wide, high = view.size[0] - left - right, view.size[1] - above - below

@@ -1,10 +1,22 @@
 """View of a row of rolling elements along the axis, and their deviations."""
 
+from typing import Any
+
 import numpy as np
 
 from ...design import AbstractBearing
-from ..style import CURVES, GREY, RACEWAYS, ROLLER, SMALL, Axes, Size, axes_or_new
-from .dimension import AXIS, angle, between, fit_view, label
+from ..style import (
+    CURVES,
+    ELEMENT,
+    GREY,
+    RACEWAYS,
+    SMALL,
+    Axes,
+    Size,
+    axes_or_new,
+    write,
+)
+from .dimension import AXIS, angle, between, fit_view, label, write_aside
 
 DEVIATIONS = {
     "azimuth_deviation": (180.0 / np.pi, "deg"),
@@ -36,7 +48,7 @@ def face_view(ax: Axes, bearing: AbstractBearing, size: Size) -> None:
     for turn in azimuth:
         way = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
         place = way[0] * pitch + shape @ way
-        ax.fill(*place.T, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=3)
+        ax.fill(*place.T, zorder=3, **ELEMENT)
     own = shape[:, 0].max()
     ax.add_patch(Circle((0.0, 0.0), pitch, fill=False, **AXIS))
     reach = pitch + own
@@ -47,16 +59,8 @@ def face_view(ax: Axes, bearing: AbstractBearing, size: Size) -> None:
     across = between(ax, -pitch * way, pitch * way) + 0.75 * pitch * way
     half = "" if count == getattr(bearing, f"n_{word}s") else "\nhere every other one"
     start = angle(ax, (0.0, 0.0), 0.55 * pitch, (0.0, first))
-    ax.text(
-        centres[0, 0],
-        centres[0, 1],
-        "0",
-        ha="center",
-        va="center",
-        fontsize=SMALL,
-        bbox={"facecolor": "#DDF1EA", "edgecolor": "none", "pad": 1.0},
-        zorder=6,
-    )
+    ground = ELEMENT | {"edgecolor": "none", "pad": 1.0}
+    write(ax, centres[0], "0", bbox=ground, zorder=6)
     corners = {
         "lower right": (f"{label(bearing, 'first_azimuth')}, of {word} 0", start),
         "upper left": (label(bearing, "pitch_diameter"), across),
@@ -100,22 +104,9 @@ def _axial_outline(bearing):
 def _in_corner(ax, corner, text, at):
     """Write text in a corner of the axes, with a line to a point."""
     low, left = corner.startswith("lower"), corner.endswith("left")
-    ax.annotate(
-        text,
-        tuple(at),
-        (0.01 if left else 0.99, 0.01 if low else 0.97),
-        textcoords="axes fraction",
-        fontsize=SMALL,
-        ha="left" if left else "right",
-        va="bottom" if low else "top",
-        zorder=8,
-        arrowprops={
-            "arrowstyle": "-",
-            "color": GREY,
-            "linewidth": 0.6,
-            "relpos": (0.5, 1.0 if low else 0.0),
-        },
-    )
+    corner = 0.01 if left else 0.99, 0.01 if low else 0.97
+    side: Any = {"ha": "left" if left else "right", "va": "bottom" if low else "top"}
+    write_aside(ax, at, corner, text, (0.5, 1.0 if low else 0.0), **side)
 
 
 def deviation_view(ax: Axes, bearing: AbstractBearing, name: str) -> None:

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...design import AbstractRollerBearing, CrownedEnds, FujiwaraKawase, Tabulated
 from ...design.profile import drops
-from ..style import COLOURS, GREY, ROLLER, SMALL, Axes, axes_or_new
-from .dimension import ARROW, label
+from ..style import BOX, COLOURS, GREY, ROLLER, Axes, axes_or_new, write
+from .dimension import arrow, label, write_aside
 
 _COLOURS = {
     "roller_profile": ROLLER,
@@ -24,11 +24,6 @@ def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
     """Draw the drop along the roller, magnified by its axis, with all its parameters.
 
     Lengths are drawn where they are measured; the others are next to the curve.
-
-    Args:
-        ax: Axes.
-        bearing: The row.
-        name: Field of the profile.
     """
     ax = axes_or_new(ax)
     profile, length = getattr(bearing, name), float(bearing.roller_length)
@@ -50,14 +45,13 @@ def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
     for k, (field, (start, stop)) in enumerate(spans.items()):
         height = -limit * (0.3 + 0.34 * k)
         text = label(profile, field)
-        ax.annotate(
-            "", (1e3 * stop, height), (1e3 * start, height), arrowprops=ARROW, zorder=6
-        )
+        arrow(ax, (1e3 * start, height), (1e3 * stop, height), "<|-|>")
         for place in (start, stop):
             ax.plot([1e3 * place] * 2, [height, 0.0], color=GREY, linewidth=0.7)
         middle = 0.5e3 * (start + stop)
         where = "center" if abs(middle) < 0.3e3 * length else "right"
-        ax.text(middle, height - 0.04 * limit, text, ha=where, **_BESIDE)
+        at = middle, height - 0.04 * limit
+        write(ax, at, text, ha=where, va="bottom", zorder=7)
     levels = len(spans)
     if drop[-1] <= limit:
         text = f"at the end {drop[-1]:.4g} µm"
@@ -67,16 +61,9 @@ def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
         _end(ax, 1e3 * s[-1], drop[-1], height, text)
         levels += 1
     rest = [name for name in _fields(profile) if name not in (*spans, "end_drop")]
-    ax.text(
-        0.5,
-        0.06,
-        "\n".join(_text(profile, field) for field in rest),
-        transform=ax.transAxes,
-        ha="center",
-        va="bottom",
-        fontsize=SMALL,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},
-    )
+    text = "\n".join(_text(profile, field) for field in rest)
+    look = {"va": "bottom", "bbox": BOX | {"alpha": 0.85, "pad": 1.5}}
+    write(ax, (0.5, 0.06), text, transform=ax.transAxes, **look)
     if isinstance(profile, Tabulated):
         x, y = 1e3 * np.asarray(profile.positions), 1e6 * np.asarray(profile.drops)
         ax.plot(x, y, "o", color="black", markersize=3, zorder=7)
@@ -93,23 +80,10 @@ def _end(ax, x, drop, height, text):
     at = 1.06 * x
     for level in (0.0, drop):
         ax.plot([x, 1.08 * x], [level] * 2, color=GREY, linewidth=0.7)
-    ax.annotate("", (at, drop), (at, 0.0), arrowprops=ARROW, zorder=6)
-    ax.annotate(
-        text,
-        (at, 0.0),
-        (at, height),
-        fontsize=SMALL,
-        ha="right",
-        arrowprops={
-            "arrowstyle": "-",
-            "color": GREY,
-            "linewidth": 0.6,
-            "relpos": (1.0, 0.0),  # straight down, beside the spans
-        },
-    )
-
-
-_BESIDE: dict[str, Any] = {"va": "bottom", "fontsize": SMALL, "zorder": 7}
+    arrow(ax, (at, 0.0), (at, drop), "<|-|>")
+    down = 1.0, 0.0  # straight, beside the spans
+    look: Any = {"ha": "right", "textcoords": "data", "zorder": None}
+    write_aside(ax, (at, 0.0), (at, height), text, down, **look)
 
 
 def _fields(profile):

@@ -11,13 +11,13 @@ from ...design import (
     TaperedRollerBearing,
 )
 from ...design.abstract import nearest_entry
-from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Axes, Size, towards_white
+from ..style import COLOURS, ELEMENT, RACEWAYS, SMALL, Axes, Size, towards_white
 from .ball_drawing import clearance_title
 from .dimension import (
-    ARROW,
     AXIS,
     Label,
     angle,
+    arrow,
     between,
     fit_view,
     label,
@@ -81,12 +81,11 @@ def _straight(bearing, parts):
 
 def _barrel(ax, bearing, parts):
     """Draw the radii of all arcs, and the numbers of a spherical outer raceway."""
-    arrow = ARROW | {"arrowstyle": "-|>"}
     names = "roller_profile_radius", "outer_raceway_radius", "inner_raceway_radius"
     for name, k, share in zip(names, (1, 0, 1), (0.8, 0.8, 0.2), strict=True):
         wall = parts.raceways[k, round(share * (parts.raceways.shape[1] - 1))]
         start = wall - 0.3 * parts.diameter * _normal(parts, k)
-        ax.annotate("", tuple(wall), tuple(start), arrowprops=arrow, zorder=6)
+        arrow(ax, start, wall)
         text = label(bearing, name)
         if getattr(bearing, name) is None:
             text += f"\nsphere of radius {quantity(bearing.arc_radii[1], 'm')}"
@@ -176,7 +175,7 @@ def rib_view(
     reach = max(height, 0.12 * parts.diameter)
     gap = 1e3 * float(rib.axial_gap)
     times = magnification(gap, 0.15 * reach)
-    ax.fill(*parts.roller.T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4)
+    ax.fill(*parts.roller.T, linewidth=1.4, **ELEMENT)
     # Along the face of the rib, from the raceway on.
     rise = np.array([-away[1], away[0]])
     rise *= -np.sign(rise @ _normal(parts, ring))
@@ -186,17 +185,12 @@ def rib_view(
     body = np.stack([foot - 0.4 * reach * rise, top])
     back = body[::-1] + 1.2 * reach * away
     colour = COLOURS[RACEWAYS[ring]]
-    ax.fill(
-        *np.concatenate([body, back]).T,
-        facecolor=towards_white(colour, 0.88),
-        edgecolor=colour,
-        linewidth=1.2,
-    )
+    outline, fill = np.concatenate([body, back]), towards_white(colour, 0.88)
+    ax.fill(*outline.T, facecolor=fill, edgecolor=colour, linewidth=1.2)
     ax.plot(*parts.raceways[ring].T, color=colour, linewidth=2.0)
     ax.plot(*point, "o", color="black", markersize=5, zorder=7)
-    arrow = ARROW | {"arrowstyle": "-|>"}
     inside = point - 1.5 * reach * away
-    ax.annotate("", tuple(point), tuple(inside), arrowprops=arrow, zorder=6)
+    arrow(ax, inside, point)
     at = point
     if height > 0.0:
         at = between(ax, point - height * rise, point, 0.6 * reach * away)

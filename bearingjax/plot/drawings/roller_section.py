@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..style import COLOURS, RACEWAYS, ROLLER, Axes, towards_white
+from ..style import COLOURS, ELEMENT, RACEWAYS, ROLLER, Axes, towards_white
 from .outline import Section
 
 
@@ -40,7 +40,5 @@ def roller_row(
     if behind:
         ax.plot(*place(parts.roller).T, "--", color=ROLLER, linewidth=1.0)
         return np.concatenate(corners)
-    ax.fill(
-        *place(parts.roller).T, facecolor="#DDF1EA", edgecolor=ROLLER, linewidth=1.4
-    )
+    ax.fill(*place(parts.roller).T, linewidth=1.4, **ELEMENT)
     return np.concatenate(corners)

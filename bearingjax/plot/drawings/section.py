@@ -8,7 +8,18 @@ from ...design import (
     BearingSet,
     rows_of,
 )
-from ..style import COLOURS, RACEWAYS, ROLLER, SMALL, Ax, Axes, axes_or_new
+from ..style import (
+    BOX,
+    COLOURS,
+    ELEMENT,
+    RACEWAYS,
+    SMALL,
+    Ax,
+    Axes,
+    axes_or_new,
+    faded,
+    write,
+)
 from .ball_section import STEEP, ball_section, row_position
 from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
@@ -44,30 +55,13 @@ def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     for name, ring in zip(RACEWAYS, parts.rings, strict=True):
         colour = COLOURS[name]
         ax.fill(*ring.T, facecolor="white", edgecolor=colour, zorder=1, linewidth=1.4)
-        ax.fill(
-            *ring.T,
-            facecolor=(*_rgb(colour), 0.10),
-            edgecolor=(*_rgb(colour), 0.45),
-            hatch=hatches[name],
-            linewidth=0.0,
-            zorder=1,
-        )
-    ax.fill(
-        *parts.roller.T,
-        facecolor="#DDF1EA",
-        edgecolor=ROLLER,
-        linewidth=1.4,
-        zorder=2,
-        label="roller",
-    )
+        pale, lines = faded(colour, 0.10), faded(colour, 0.45)
+        look = {"facecolor": pale, "edgecolor": lines, "hatch": hatches[name]}
+        ax.fill(*ring.T, linewidth=0.0, zorder=1, **look)
+    ax.fill(*parts.roller.T, linewidth=1.4, zorder=2, label="roller", **ELEMENT)
     for i, name in enumerate(RACEWAYS):
-        ax.plot(
-            *parts.raceways[i].T,
-            color=COLOURS[name],
-            linewidth=2.2,
-            zorder=3,
-            label=name,
-        )
+        look = {"color": COLOURS[name], "linewidth": 2.2, "zorder": 3, "label": name}
+        ax.plot(*parts.raceways[i].T, **look)
     if len(parts.rib_points):
         ax.plot(
             *parts.rib_points.T,
@@ -106,12 +100,6 @@ def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     return ax
 
 
-def _rgb(colour):
-    from matplotlib.colors import to_rgb
-
-    return to_rgb(colour)
-
-
 def _name_rings(ax, bearing, parts):
     middle = parts.raceways.mean(axis=1)
     for i, name in enumerate(RACEWAYS):
@@ -121,17 +109,8 @@ def _name_rings(ax, bearing, parts):
             end = parts.raceways[i, -i]
             at = 0.5 * (end + back)[0], 0.75 * end[1] + 0.25 * parts.centre[1]
         word = "washer" if bearing.is_thrust else "ring"
-        ax.text(
-            *at,
-            f"{name} {word}",
-            rotation=90 * bearing.is_thrust,
-            fontsize=SMALL,
-            color=COLOURS[name],
-            ha="center",
-            va="center",
-            zorder=6,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-        )
+        look = {"color": COLOURS[name], "rotation": 90 * bearing.is_thrust}
+        write(ax, at, f"{name} {word}", zorder=6, bbox=BOX, **look)
 
 
 def _dimensions(ax, bearing, parts, left, right, high, height):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...design import AbstractBallBearing, BearingSet
 from ...design.bearing_set import is_self_aligning
-from ..style import INNER, SMALL, Axes, Size
+from ..style import BOX, INNER, Axes, Size, write, write_beside
 from .ball_section import ball_row, row_position
 from .dimension import (
     AXIS,
@@ -43,15 +43,8 @@ def arrangement_view(
         names = ["rows.0, dashed rows.1", ""]
     for k, (row, outline) in enumerate(zip(bearing.rows, outlines, strict=True)):
         middle = outline.mean(axis=0)[0]
-        ax.text(
-            middle,
-            high + 0.05 * tall,
-            names[k],
-            ha="center",
-            fontsize=SMALL,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-            zorder=7,
-        )
+        look = {"va": "baseline", "bbox": BOX, "zorder": 7}
+        write(ax, (middle, high + 0.05 * tall), names[k], **look)
         _draw_push(ax, row, (middle, low + 0.08 * tall), 0.1 * tall)
     depth = _positions(ax, bearing, low, 0.13 * tall)
     ax.plot([0.0, 0.0], [depth, high + 0.1 * tall], **AXIS)
@@ -75,16 +68,8 @@ def arrangement_view(
         places = spread_labels(wanted, np.full(len(part), block / size[0]))
         up = (below - deep * (m // across) - 0.5 * LINE) / size[1]
         for k, place in zip(part, places, strict=True):
-            ax.text(
-                place,
-                up,
-                texts[k],
-                transform=ax.transAxes,
-                fontsize=SMALL,
-                ha="center",
-                va="top",
-                multialignment="left",
-            )
+            look = {"va": "top", "multialignment": "left"}
+            write(ax, (place, up), texts[k], transform=ax.transAxes, **look)
     ax.set_title(f"{_arrangement(bearing)}; section to scale, ring bodies schematic")
 
 
@@ -111,17 +96,9 @@ def _positions(ax, bearing, low, step):
 
 def _write_position(ax, bearing, k, at, side):
     """Write the position of a row at the end of its dimension line."""
-    ax.annotate(
-        label(bearing.rows[k], "position", f"rows.{k}."),
-        at,
-        (6.0 * side, 0.0),
-        textcoords="offset points",
-        fontsize=SMALL,
-        ha="left" if side > 0.0 else "right",
-        va="center",
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-        zorder=7,
-    )
+    text = label(bearing.rows[k], "position", f"rows.{k}.")
+    look = {"ha": "left" if side > 0.0 else "right", "va": "center", "zorder": 7}
+    write_beside(ax, at, (6.0 * side, 0.0), text, bbox=BOX, **look)
 
 
 def _draw_push(ax, row, at, half):

@@ -8,7 +8,18 @@ import numpy as np
 from ...rotor import CriticalSpeeds, Modes, Rotor, major_axis
 from ...rotor.linear.modes import is_axial
 from ..panel import Axis, finish
-from ..style import GREY, INNER, OUTER, ROLLER, SMALL, Ax, Axes, axes_or_new
+from ..style import (
+    BOX,
+    GREY,
+    INNER,
+    OUTER,
+    ROLLER,
+    SMALL,
+    Ax,
+    Axes,
+    axes_or_new,
+    write_beside,
+)
 
 WHIRLS = {1: ("forward", INNER), -1: ("backward", OUTER), 0: ("planar, axial", ROLLER)}
 """Names and colours of whirl directions; 0 is planar, axial or mixed."""
@@ -163,8 +174,5 @@ def _critical(ax, critical, rpm, top):
         label = "_critical speed"
         ax.plot([at], [at / 60.0], color=colour, label=label, **look)
         if whirl == 1:
-            ax.annotate(
-                f"{at:.0f} rpm", (at, at / 60.0), (6, -12), fontsize=SMALL,
-                textcoords="offset points", zorder=4,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-            )  # fmt: skip
+            look = {"zorder": 4, "bbox": BOX | {"pad": 0.8}}
+            write_beside(ax, (at, at / 60.0), (6, -12), f"{at:.0f} rpm", **look)

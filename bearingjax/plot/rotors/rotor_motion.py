@@ -6,7 +6,7 @@ import numpy as np
 
 from ...rotor.nonlinear import Spectra
 from ..panel import Ax, Axis, Panel, chart, curves, finish
-from ..style import CURVES, GREY, OUTER, SMALL, Axes, axes_or_new
+from ..style import CURVES, GREY, OUTER, SMALL, Axes, axes_or_new, write_beside
 from .rotor_modes import SPEED
 from .rotor_response import motion_axis
 
@@ -131,11 +131,9 @@ def waterfall(
             times * ends / 60.0, ends, "--", color=GREY, lw=0.8, zorder=len(rpm) + 3,
             label=f"_{times}x",
         )  # fmt: skip
-        ax.annotate(
-            f"{times}x", (times * ends[1] / 60.0, ends[1]), (-4, -3), fontsize=SMALL,
-            color=GREY, textcoords="offset points", zorder=len(rpm) + 4, ha="right",
-            va="top",
-        )  # fmt: skip
+        at, side = (times * ends[1] / 60.0, ends[1]), {"ha": "right", "va": "top"}
+        look: Any = {"color": GREY, "zorder": len(rpm) + 4, **side}
+        write_beside(ax, at, (-4, -3), f"{times}x", **look)
     ax.set_xlim(0.0, highest)
     ax.set_ylim(*ends)
     ax.set_xlabel("frequency [Hz]")

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...rotor import STATION_FREEDOMS
 from ...rotor.nonlinear import envelope, spectra_over_time
-from ..style import Figure, head, pyplot
+from ..style import Figure, head, new_page
 from .rotor import rotor_section
 from .rotor_modes import campbell_diagram, mode_shapes
 from .rotor_motion import orbits, waterfall, waveforms
@@ -31,8 +31,7 @@ def rotor_overview(run: Any, title: str = "") -> Figure:
     """
     drawn = [*_linear(run), *_response(run), *_transient(run)]
     rows = -(-len(drawn) // _ACROSS)
-    figure = pyplot().figure(figsize=(16.0, 5.0 + 4.6 * rows))
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
+    figure = new_page(16.0, 5.0 + 4.6 * rows)
     grid = figure.add_gridspec(
         1 + rows, 6, height_ratios=[1.0] + rows * [1.0] if rows else [1.0]
     )

@@ -9,7 +9,7 @@ from ...numerics.units import unit
 from ...rotor import AbstractSupport, BearingSupport, Disc
 from ..drawings.ball_section import STEEP, ball_row, row_position
 from ..drawings.outline import section
-from ..style import COLOURS, GREY, RACEWAYS, ROLLER, towards_white
+from ..style import COLOURS, ELEMENT, GREY, RACEWAYS, ROLLER, towards_white
 
 _LIGHT = 0.85
 
@@ -110,7 +110,7 @@ def _draw_rollers(ax, bearing, sense, at):
         for name, ring in zip(RACEWAYS, parts.rings, strict=True):
             fill = towards_white(COLOURS[name], _LIGHT)
             ax.fill(*place(ring).T, facecolor=fill, edgecolor=COLOURS[name], zorder=3)
-        ax.fill(*place(parts.roller).T, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=4)
+        ax.fill(*place(parts.roller).T, zorder=4, **ELEMENT)
     angle = float(bearing.axis_angle) + float(bearing.half_angle)
     if 0.0 < angle < STEEP:
         centre = at + parts.centre * np.array([sense, 1.0])
@@ -149,9 +149,7 @@ def draw_law(
     centre = np.array([z, shaft_radius + 0.75 * size])
     for side in (1.0, -1.0):
         spot = (z, side * centre[1])
-        ax.add_patch(
-            Circle(spot, 0.5 * size, facecolor="#DDF1EA", edgecolor=ROLLER, zorder=4)
-        )
+        ax.add_patch(Circle(spot, 0.5 * size, zorder=4, **ELEMENT))
     _line_of_action(ax, float(support.law.contact_angle), sense, centre)
     return shaft_radius + 1.25 * size
 

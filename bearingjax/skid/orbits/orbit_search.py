@@ -334,11 +334,7 @@ def with_derivatives(
 
 
 def derivatives(count: int) -> np.ndarray:
-    """Return the matrix of d/dφ of the trigonometric interpolant on an even grid.
-
-    Args:
-        count: Number of places around the orbit.
-    """
+    """Return the matrix of d/dφ of the trigonometric interpolant on an even grid."""
     if count == 1:
         return np.zeros((1, 1))
     k = np.arange(count)

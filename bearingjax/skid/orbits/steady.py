@@ -135,11 +135,7 @@ def _places(bearing, solution, places):
 
 
 def enough_places(bearing: Any) -> int:
-    """Return the default number of places along an orbit, where loads differ.
-
-    Args:
-        bearing: The design.
-    """
+    """Return the default number of places along an orbit, where loads differ."""
     number = bearing.n_elements
     return number * -(-_PLACES // number)
 

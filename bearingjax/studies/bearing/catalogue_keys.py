@@ -68,11 +68,7 @@ class FromCatalogue:
         return tuple(key for key in self.overridden if key in fields)
 
     def add_published(self, row: Any) -> Any:
-        """Return a row of the scene with the published ratings, unless they are void.
-
-        Args:
-            row: The row as the scene has it.
-        """
+        """Return a row of the scene with the published ratings unless they are void."""
         if self.rerated_keys:
             return row
         return with_published(row, self.entry.ratings_for(row))

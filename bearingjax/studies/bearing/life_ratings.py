@@ -28,12 +28,14 @@ def life_conditions(scene: Scene, turning: bool = True) -> LifeConditions:
     return own
 
 
-_OF_ROWS = {
-    "dynamic_capacity": ("dynamic_source", "by ISO 281"),
-    "static_capacity": ("static_source", "by ISO 76"),
-    "fatigue_load_limit": ("limit_source", "in proportion to C0"),
+RATING_SOURCES = {
+    "dynamic_capacity": "dynamic_source",
+    "static_capacity": "static_source",
+    "fatigue_load_limit": "limit_source",
 }
-"""Source of each rating, and the rule by which that of several rows follows."""
+"""Fields of `Ratings`, and those that tell their sources."""
+_OF_ROWS = ("by ISO 281", "by ISO 76", "in proportion to C0")
+"""Rules by which the ratings of several rows follow."""
 
 
 def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
@@ -47,7 +49,8 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
         The [life] of the scene, or the published bearing, the designation that is
         listed as it, and any scaling; ratings from the geometry are left out.
     """
-    sources = {name: getattr(ratings, source) for name, (source, _) in _OF_ROWS.items()}
+    sources = {name: getattr(ratings, at) for name, at in RATING_SOURCES.items()}
+    rules = dict(zip(sources, _OF_ROWS, strict=True))
     found = {
         name: "given in [life]" for name, source in sources.items() if source == GIVEN
     }
@@ -66,24 +69,17 @@ def rating_origins(scene: Scene, ratings: Any) -> dict[str, str]:
         notes = scene.catalogue.entry.notes
         listed = "".join(f"; {note}" for note in notes if " is listed as " in note)
     for name in published:
-        how = f"{rows} {_OF_ROWS[name][1]}" if rows else ""
+        how = f"{rows} {rules[name]}" if rows else ""
         found[name] = f"{words}{how}{listed}"
     return found
 
 
 def why_not_published(scene: Scene, varied: Iterable[str] = ()) -> list[str]:
-    """Explain in a line why the published ratings are not used, if they are not.
-
-    Args:
-        scene: The scene.
-        varied: Keys varied by its cases.
-    """
+    """Explain in a line why the published ratings are not used, if they are not."""
     if scene.catalogue is None:
         return []
-    entry, changed = (
-        scene.catalogue.entry,
-        scene.catalogue.override(varied).rerated_keys,
-    )
+    taken = scene.catalogue.override(varied)
+    entry, changed = taken.entry, taken.rerated_keys
     if entry.dynamic_capacity is None:
         if scene.life is not None and scene.life.dynamic_capacity is not None:
             return []

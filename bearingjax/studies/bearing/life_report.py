@@ -10,14 +10,9 @@ from ...life.life import LIFE_OUTPUTS, Life
 from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
 from ...statics.solution import RollerSolution, Solution
-from .life_ratings import rating_origins, why_not_published
+from .life_ratings import RATING_SOURCES, rating_origins, why_not_published
 from .read_scene import Scene
 
-_SOURCES = {
-    "dynamic_capacity": "dynamic_source",
-    "static_capacity": "static_source",
-    "fatigue_load_limit": "limit_source",
-}
 _SYMBOLS = ("C", "C0", "C_u")
 
 
@@ -51,7 +46,7 @@ def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
         origins: As in `rating_origins`.
     """
     found: dict[str, Any] = {}
-    for name, source in _SOURCES.items():
+    for name, source in RATING_SOURCES.items():
         found[name] = to_json(getattr(ratings, name))
         found[f"{name}_source"] = getattr(ratings, source)
         found[f"{name}_origin"] = origins.get(name)
@@ -67,7 +62,7 @@ def ratings_in_words(ratings: Any, origins: Mapping[str, str]) -> dict[str, str]
     return {
         shown: f"{shown} {_kilo(getattr(ratings, name))} kN"
         f" ({origins.get(name, getattr(ratings, source))})"
-        for shown, (name, source) in zip(_SYMBOLS, _SOURCES.items(), strict=True)
+        for shown, (name, source) in zip(_SYMBOLS, RATING_SOURCES.items(), strict=True)
     } | {"Y": f"factors of axial load, Y and Y0: {ratings.factors_source}"}
 
 

@@ -107,11 +107,6 @@ def bearing_inputs(inputs: Mapping[str, Any]) -> dict[str, Any]:
 def seat_misfits(scene: Scene, shaft: Shaft, station: int) -> list[Warning]:
     """Return a warning if the shaft of a bearing or of its fit differs from that at its
     station.
-
-    Args:
-        scene: The bearing.
-        shaft: The shaft.
-        station: Its station with the bearing.
     """
     entry = None if scene.catalogue is None else scene.catalogue.entry
     seat = scene.installed.mounting or entry

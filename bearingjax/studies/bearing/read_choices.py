@@ -200,12 +200,7 @@ def read_choices(
     numerics: Table,
     bearing: AbstractBearing | BearingSet,
 ) -> dict[str, Any]:
-    """Return the keyword arguments of `BearingElement` chosen by a scene.
-
-    Args:
-        contact, operating, numerics: Tables of the scene.
-        bearing: Bearing of the scene.
-    """
+    """Return the keyword arguments of `BearingElement` chosen by a scene."""
     if bearing.is_ball:
         choices: dict[str, Any] = {
             "point_law": read_keys(PointContactKeys, contact).law,

@@ -95,11 +95,7 @@ class OperatingKeys(Keys):
                 raise self.table.error("load", problem)
 
     def fill_free(self, bearing: Any) -> None:
-        """Fill in the free freedoms of a bearing in the echo.
-
-        Args:
-            bearing: The design.
-        """
+        """Fill in the free freedoms of a bearing in the echo."""
         if self.free is None:
             moving = [
                 f

@@ -235,11 +235,7 @@ def scene_of(
 
 
 def control_warnings(data: Mapping[str, Any]) -> tuple[Warning, ...]:
-    """Return a warning if a scene at rest has a raceway control, which does nothing.
-
-    Args:
-        data: The scene as parsed.
-    """
+    """Return a warning if a scene at rest has a raceway control, which does nothing."""
     if "raceway_control" not in data.get("operating", {}):
         return ()
     words = "operating.raceway_control: balls at rest have no gyroscopic moment;"

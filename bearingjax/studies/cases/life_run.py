@@ -111,10 +111,7 @@ class LifeRun:
         return f"{life_number(safety[case])} ({which})"
 
     def worst_cases(self, most: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the cases with the largest damage; all must be solved.
-
-        Args:
-            most: Largest number of cases.
+        """Return the up to `most` cases with the largest damage; all must be solved.
 
         Returns:
             Their indices, the worst first, and their shares in the damage.
@@ -228,20 +225,12 @@ def equivalent_load(run: LifeRun) -> float:
 
 
 def spectrum_report(run: LifeRun) -> Report:
-    """Return the readable report of the life under the cases.
-
-    Args:
-        run: Run with all cases solved.
-    """
+    """Return the readable report of the life under cases that are all solved."""
     return Report({"Rating life": _lives(run)}, run.warnings)
 
 
 def spectrum_page(run: LifeRun) -> Report:
-    """Return the report of the life under the cases, with the bearing and its fits.
-
-    Args:
-        run: Run with all cases solved.
-    """
+    """Return the report of the life under solved cases, the bearing and its fits."""
     report = spectrum_report(run)
     sections = {**report.sections, **design_sections(run.table.scene)}
     fits = "Fits and clearance"

@@ -136,7 +136,8 @@ _VARIES: dict[str, Any] = {
 _ENTRIES: dict[str, Any] = {"type": "array", "items": {"type": "object"}}
 
 
-def _read_raw(table: Table, name: str) -> Any:
+def read_raw(table: Table, name: str) -> Any:
+    """Read a value whose kind other keys tell; `None` if it is absent."""
     return table.raw(name, None)
 
 
@@ -147,7 +148,7 @@ class CasesKeys(Keys):
         "values of each key, a list or `{ start, stop, count }`; every combination is a"
         " case, the last key running fastest",
         default=None,
-        reader=_read_raw,
+        reader=read_raw,
         json=_VARIES,
     )
     file: str | None = scene_key(
@@ -157,7 +158,7 @@ class CasesKeys(Keys):
     spectrum: Any = scene_key(
         "a table for each case, with its `hours`",
         default=None,
-        reader=_read_raw,
+        reader=read_raw,
         json=_ENTRIES,
     )
     outputs: tuple[str, ...] | None = scene_key(
@@ -171,11 +172,7 @@ class CasesKeys(Keys):
             raise self.table.own_error(problem)
 
     def columns(self, path: Path) -> list["VariedKey"]:
-        """Return the values of each key that varies.
-
-        Args:
-            path: Path of the scene.
-        """
+        """Return the values of each key that varies."""
         if self.grid is not None:
             found = _grid(self.table, self.grid)
         elif self.spectrum is not None:
@@ -283,11 +280,7 @@ def speed_warnings(
 
 
 def turns_of(cases: Cases) -> np.ndarray:
-    """Return the relative speed of the rings (case,) [rad/s].
-
-    Args:
-        cases: Cases of a scene.
-    """
+    """Return the relative speed of the rings (case,) [rad/s]."""
     turns = revolutions_per_hour(cases, np)
     return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0
 

@@ -18,12 +18,7 @@ PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
 def contact_warnings(
     scene: ContactScene, cases: list[SliceComparison]
 ) -> list[Warning]:
-    """Return the warnings of a solved contact.
-
-    Args:
-        scene: The scene of the contact.
-        cases: Results of its cases.
-    """
+    """Return the warnings of a solved contact."""
     narrowed = None if scene.numerics.half_width is None else "numerics.half_width"
     return [*scene.warnings, *compared_warnings(scene.contact, cases, narrowed)]
 
@@ -32,10 +27,6 @@ def contact_as_dict(
     scene: ContactScene, cases: list[SliceComparison]
 ) -> dict[str, Any]:
     """Return a solved contact as plain numbers and lists, in SI.
-
-    Args:
-        scene: The scene of the contact.
-        cases: Results of its cases.
 
     Returns:
         position and cell_length along the roller, end_cell_length, the results of

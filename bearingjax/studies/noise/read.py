@@ -13,13 +13,13 @@ from ...design.bearing_set import bearings_of, with_bearings
 from ...element import FREEDOMS, RINGS, BearingElement
 from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
-from ...files.schema import Keys, direction_json, key_of, read_keys, scene_key
+from ...files.schema import Keys, direction_key, key_of, read_keys, scene_key
 from ...files.table import Table
 from ...noise.level import NORM
+from ...numerics.warning import Warning
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
 from .read_deviations import read_deviations
-from .read_tolerance import ToleranceKeys, read_tolerance
-from .scene import NoiseScene
+from .read_tolerance import Tighter, ToleranceKeys, read_tolerance
 
 BANDS = {"octave": noise.octave_bands, "third_octave": noise.third_octave_bands}
 WINDOWS = {"hann": noise.Hann, "rectangular": noise.Rectangular}
@@ -57,13 +57,11 @@ class VibrationKeys(Keys):
     )
     sensor_stiffness: float | None = key_of(noise.Sensor, "stiffness")
     sensor_damping: float | None = key_of(noise.Sensor, "damping", default=None)
-    sensor_direction: list[float] = scene_key(
+    sensor_direction: tuple[float, ...] = direction_key(
         "line of the sensor: x, y, z, or its three components",
-        default=None,
+        dict(zip(DIRECTIONS, map(tuple, np.eye(3).tolist()), strict=True)),
+        "y",
         needs=("sensor_stiffness", "sensor_damping"),
-        otherwise="y",
-        reader=lambda table, name: _direction(table, name),
-        json=direction_json(DIRECTIONS),
     )
     turns: int = key_of(noise.RecordOptions, "turns")
     settle: int = key_of(noise.RecordOptions, "settle", least=0)
@@ -110,6 +108,70 @@ class VibrationKeys(Keys):
             return None
         with self.table.building():
             return noise.Sensor(stiffness or 0.0, damping or 0.0, self.sensor_direction)
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseScene:
+    """Scene of the vibration of a bearing, in SI.
+
+    Attributes:
+        scene: The scene without [vibration].
+        vibration: The rig, the record and its evaluation, as the table says them.
+        model: The bearing on its rig, with its form errors.
+        line: Model common to all bearings of the production line: with `waves` and
+            `spalls`, but without spectra, profiles and differences of the rolling
+            elements, which belong to this bearing only.
+        tolerances: Scatter of the bearings, or `None`.
+        tighter: Names of the next tighter grade and class, with their factors on the
+            sources [1].
+        seed: Seed of the random bearings.
+        bearings: Number of random bearings.
+        warnings: Warnings of suspicious but possible values.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
+    """
+
+    scene: Scene
+    vibration: VibrationKeys
+    model: noise.NoiseModel
+    line: noise.NoiseModel
+    tolerances: noise.Tolerances | None
+    tighter: Tighter
+    seed: int
+    bearings: int
+    warnings: tuple[Warning, ...]
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Name of the file without its ending."""
+        return self.scene.name
+
+    @property
+    def reference(self) -> float:
+        """Acceleration of 0 dB [m/s²]."""
+        return self.vibration.reference
+
+    @property
+    def bands(self) -> noise.Bands:
+        """Bands of the levels."""
+        return BANDS[self.vibration.bands]()
+
+    @property
+    def norm(self) -> np.ndarray | None:
+        """Largest allowed level of each band (band,) [dB], or `None`."""
+        name = self.vibration.norm
+        return None if name is None else np.array(NORMS[name])
+
+    @property
+    def window(self) -> noise.AbstractWindow:
+        """Window of the spectrum."""
+        return WINDOWS[self.vibration.window]()
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Sizes of a record, by the names of the arguments of `vibration`."""
+        asked = self.vibration
+        return {name: getattr(asked, name) for name in ("turns", "settle", "samples")}
 
 
 def read_noise(
@@ -166,20 +228,11 @@ def read_noise(
     tolerances, tighter = (
         (None, ()) if random is None else read_tolerance(random, bearing)
     )
-    norm = None if vibration.norm is None else np.array(NORMS[vibration.norm])
     found = NoiseScene(
         scene=scene,
+        vibration=vibration,
         model=model,
         line=line,
-        bridging=vibration.bridging,
-        turns=vibration.turns,
-        settle=vibration.settle,
-        samples=vibration.samples,
-        steps=vibration.steps,
-        reference=vibration.reference,
-        bands=BANDS[vibration.bands](),
-        norm=norm,
-        window=WINDOWS[vibration.window](),
         tolerances=tolerances,
         tighter=tighter,
         seed=0 if random is None else random.seed,
@@ -264,15 +317,3 @@ def _moving_ring(vibration: VibrationKeys, operating: Table) -> str:
         problem = f"{moving!r} is the `fixed_ring` of [operating]; it must be the other"
         raise vibration.table.error("moving_ring", problem)
     return RINGS[1 - RINGS.index(fixed)]
-
-
-def _direction(table: Table, name: str) -> list[float]:
-    given = table.raw(name, "y")
-    if isinstance(given, list):
-        real = [isinstance(x, int | float) and not isinstance(x, bool) for x in given]
-        if real == [True] * 3:
-            return [float(one) for one in given]
-    elif given in DIRECTIONS:
-        return [float(given == axis) for axis in DIRECTIONS]
-    problem = f"{given!r} is not known; it must be x, y, z or three bare numbers"
-    raise table.error(name, problem)

@@ -38,6 +38,7 @@ def _bearing(run):
     bearing = model.element.bearing
     inner, outer = rpm(model.speed.inner), rpm(model.speed.outer)
     task, record = run.task, run.analysis.record
+    turns, settle = task.vibration.turns, task.vibration.settle
     inertia = model.inertia
     tilts = "does not tilt"
     if inertia is not None:
@@ -55,8 +56,8 @@ def _bearing(run):
             f" {tilts}",
             f"loaded by {load_text(model.load) or 'nothing'}; inner ring {inner}, outer"
             f" ring {outer}",
-            f"record of {shown_count(task.turns, 'turn')}, {float(record.duration):.4g}"
-            f" s, after {task.settle} to settle; {len(record.time)} samples,"
+            f"record of {shown_count(turns, 'turn')}, {float(record.duration):.4g}"
+            f" s, after {settle} to settle; {len(record.time)} samples,"
             f" {shown_count(run.steps, 'step')} each{bridging}",
         ]
     )

@@ -45,7 +45,7 @@ from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
 from ...numerics import Result, Warning
 from ...numerics.labels import labelled_fields, make_dataset
-from .scene import NoiseScene
+from .read import NoiseScene
 
 LARGEST_LINES = 12
 """Number of largest spectral lines reported regardless of their neighbours."""
@@ -161,7 +161,7 @@ def run_noise(
     if result is not Result.CONVERGED:
         words = f"standing under the load: {describe_failure(model)}"
         return NoiseRun(task, result, words, warnings=task.warnings)
-    if task.bridging:
+    if task.vibration.bridging:
         width = with_bridged_waves(model).half_width
         models = (
             dataclasses.replace(one, half_width=width) for one in (model, task.line)
@@ -170,9 +170,9 @@ def run_noise(
         task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
     _announce(on_stage, "vibration")
-    record = vibration(model, **task.counts, steps=task.steps, throw=False)
+    record = vibration(model, **task.counts, steps=task.vibration.steps, throw=False)
     result, steps = Result(int(record.result)), record.steps
-    asked = model_warnings(model, task.samples, steps, tolerances)
+    asked = model_warnings(model, task.vibration.samples, steps, tolerances)
     warned = (*task.warnings, *asked)
     if result is not Result.CONVERGED:
         grew = result is Result.NON_FINITE

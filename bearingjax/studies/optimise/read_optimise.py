@@ -32,7 +32,7 @@ from ..bearing.life_ratings import life_conditions
 from ..bearing.read_design import PITCH_FOLLOWS, pitch_follows
 from ..bearing.read_fit import no_expansion, read_temperature
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
-from ..cases.read_cases import DESIGN, case_table, turns_of
+from ..cases.read_cases import DESIGN, case_table, read_raw, turns_of
 
 OBJECTIVES = (
     "peak_pressure",
@@ -62,21 +62,17 @@ class SearchTask:
     """Search that [optimise] asks for, of a bearing or of shafts, as in `optimise`.
 
     Attributes:
+        keys: The table, with method, step limit and tolerance of the search.
         variables: The variables, named as in the scene.
         objective: Measure to be minimised.
         constraints: Bounds on measures.
-        method: Search method, or `None` for the default.
-        max_steps: Step limit.
-        tolerance: Gradient at which the search ends.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
+    keys: "SearchKeys"
     variables: tuple[Variable, ...]
     objective: Any
     constraints: tuple[Constraint, ...]
-    method: str | None
-    max_steps: int
-    tolerance: float
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
 
@@ -98,11 +94,6 @@ OF_FREEDOM = ("displacement", "stiffness")
 _QUANTITY: dict[str, Any] = {"type": "string"}
 
 
-def _read_raw(table: Table, name: str) -> Any:
-    """Return the raw value of a key whose unit depends on the measure."""
-    return table.raw(name, None)
-
-
 def _freedom(of: str) -> Any:
     return scene_key(
         "freedom of the displacement or stiffness",
@@ -120,10 +111,10 @@ def bound_key(end: str, bare: str = "") -> Any:
     """
     about = f"{end} bound, in the unit of the measure"
     if not bare:
-        return scene_key(about, default=None, reader=_read_raw, json=_QUANTITY)
+        return scene_key(about, default=None, reader=read_raw, json=_QUANTITY)
     both = {"anyOf": [_QUANTITY, {"type": "number"}]}
     about = f"{about}; of `{bare}` a bare number"
-    return scene_key(about, default=None, reader=_read_raw, json=both)
+    return scene_key(about, default=None, reader=read_raw, json=both)
 
 
 class BoundKeys(Keys):
@@ -203,7 +194,7 @@ class OptimiseKeys(SearchKeys):
         "stiffness that is wanted, with its unit",
         default=None,
         only={"objective": ("stiffness",)},
-        reader=_read_raw,
+        reader=read_raw,
         json=_QUANTITY,
     )
     constraints: tuple[ConstraintKeys, ...] = scene_key(
@@ -290,14 +281,12 @@ def _optimisation(
     objective = measured.objective(keys)
     table.table("variables", required=True)
     return Optimisation(
+        keys=keys,
         scene=scene,
         cases=cases,
         variables=_variables(keys.variables, top, scene, begun),
         objective=objective,
         constraints=tuple(measured.constraint(one) for one in keys.constraints),
-        method=keys.method,
-        max_steps=keys.max_steps,
-        tolerance=keys.tolerance,
     )
 
 

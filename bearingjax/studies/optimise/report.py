@@ -41,7 +41,7 @@ def optimisation_report(task: Task, found: OptimisedDesign, best: Any = None) ->
     warned = [Warning("rejected_step", f"rejected: {why}") for why in every]
     warned += [*best.warnings, *found.after.warnings]
     warned += warnings_of("before", _warned_before(task, found))
-    left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
+    left = f"gradient left {found.optimality:.1e}, tolerance {task.keys.tolerance:.1e}"
     sections = {
         "Search": [head],
         "Variables": [_variables(found)],
@@ -147,10 +147,6 @@ def optimisation_as_dict(
 
 def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
     """Return the output of a task whose first design does not solve.
-
-    Args:
-        task: The optimisation task.
-        error: Cause of the failure.
 
     Returns:
         result ("start_not_solved"), message, warnings, inputs and version.

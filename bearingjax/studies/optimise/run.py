@@ -39,7 +39,7 @@ def run_optimisation(
         scene, design = task.scene, task.scene.installed
         support = Support(scene.free, fixed_ring=scene.fixed_ring)
         solve = scene.solve_options
-    limits = task.max_steps, task.tolerance
+    keys = task.keys
     with scene_errors(name):
         found = optimise(
             design,
@@ -47,14 +47,14 @@ def run_optimisation(
             task.variables,
             task.objective,
             task.constraints,
-            search=SearchOptions(task.method, *limits, solve, told=told),
+            search=SearchOptions(
+                keys.method, keys.max_steps, keys.tolerance, solve, told=told
+            ),
             support=support,
         )
-    return (
-        found
-        if isinstance(task, ShaftOptimisation)
-        else _with_life_warnings(task, found)
-    )
+    if isinstance(task, ShaftOptimisation):
+        return found
+    return _with_life_warnings(task, found)
 
 
 def _with_life_warnings(task: Optimisation, found: OptimisedDesign) -> OptimisedDesign:

@@ -20,7 +20,7 @@ from ...rotor import (
     reduction_warnings,
 )
 from ...rotor.nonlinear.orbit import amplitudes
-from .scene import RotorScene
+from .read import RotorScene
 from .supports import unit_of_length, with_passage
 
 _PARTS = 40

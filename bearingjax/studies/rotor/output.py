@@ -11,8 +11,8 @@ from ...rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict
 from .motion import RotorResponse, RotorTransient
+from .read import RotorScene
 from .run import RotorRun
-from .scene import RotorScene
 
 STATION_UNITS: dict[str, str] = dict(
     zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)

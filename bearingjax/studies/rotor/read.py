@@ -30,8 +30,7 @@ from ...rotor import (
 )
 from ..bearing.read_design import read_material
 from ..bearing.read_operating import LoadKeys
-from .mounts import MountKeys, read_mounts
-from .scene import RotorScene
+from .mounts import Mount, MountKeys, read_mounts
 from .tasks import CampbellKeys, ResponseKeys, TransientKeys
 
 GRAVITY_BY_AXIS = {
@@ -249,6 +248,63 @@ class RotorKeys(Keys):
         return len(self.shaft) // 2
 
 
+@dataclasses.dataclass(frozen=True)
+class RotorScene:
+    """Scene of a rotor, in SI.
+
+    Attributes:
+        name: Name of the file without its ending.
+        keys: Its [rotor].
+        shaft: The shaft.
+        discs: Discs and point masses.
+        mounts: Supports of the shaft.
+        loads: `RotorLoads` on it.
+        campbell: Speeds of the Campbell diagram (speed,) [rad/s], or `None`.
+        response, transient: Settings of these analyses, or `None`.
+        warnings: Warnings of suspicious but possible values.
+        inputs: The scene as it was read, all quantities in SI (`Scene.inputs`);
+            bearings of other scenes are included.
+    """
+
+    name: str
+    keys: RotorKeys
+    shaft: Shaft
+    discs: tuple[AbstractPart, ...]
+    mounts: tuple[Mount, ...]
+    loads: RotorLoads
+    campbell: np.ndarray | None
+    response: ResponseKeys | None
+    transient: TransientKeys | None
+    warnings: tuple[Warning, ...] = ()
+    inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+    @property
+    def speed(self) -> float:
+        """Rotor speed [rad/s]."""
+        return self.keys.speed
+
+    @property
+    def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:
+        """Each bearing with fits, by its first mount, and its stations."""
+        found: dict[int, tuple[Mount, tuple[int, ...]]] = {}
+        for mount in self.mounts:
+            if mount.scene is not None and mount.scene.fits is not None:
+                first, stations = found.get(id(mount.element), (mount, ()))
+                found[id(mount.element)] = first, (*stations, mount.station)
+        return tuple(found.values())
+
+    @property
+    def station_names(self) -> tuple[str, ...]:
+        """Number and parts of each station, such as "1 disc"."""
+        here: list[list[str]] = [[] for _ in range(self.shaft.n_segments + 1)]
+        for disc in self.discs:
+            kind = type(disc).__name__
+            here[disc.station].append("disc" if kind == "Disc" else "mass")
+        for mount in self.mounts:
+            here[mount.station].append(mount.name)
+        return tuple(" ".join([str(k), *what]) for k, what in enumerate(here))
+
+
 def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
     """Read the scene of a rotor.
 
@@ -280,15 +336,11 @@ def _scene(top: Table, path: Path) -> RotorScene:
         transient = transient.with_defaults(station=keys.shown_station)
     return RotorScene(
         name=path.stem,
+        keys=keys,
         shaft=shaft,
         discs=discs,
         mounts=mounts,
-        damping=keys.own_damping,
-        rigid=keys.rigid,
-        speed=keys.speed,
-        axis=keys.axis,
         loads=loads,
-        n_modes=keys.modes,
         campbell=None if keys.campbell is None else keys.campbell.speeds,
         response=response,
         transient=transient,

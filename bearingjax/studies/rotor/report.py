@@ -57,8 +57,8 @@ def _head(run):
     mass = float(in_numpy(task.shaft).mass) + sum(
         float(part.mass) for part in task.discs
     )
-    kind = "rigid shaft" if task.rigid else "shaft"
-    gravity = {"none": "no gravity"}.get(task.axis, task.axis)
+    kind = "rigid shaft" if task.keys.rigid else "shaft"
+    gravity = {"none": "no gravity"}.get(task.keys.axis, task.keys.axis)
     return (
         f"{task.name}: {kind} of {1e3 * (z[-1] - z[0]):.5g} mm, {task.shaft.n_segments}"
         f" segments, {task.shaft.n_nodes - 1} elements; {mass:.4g} kg; {gravity};"

@@ -34,7 +34,7 @@ from ...statics.load_result import solution_at
 from ..bearing.life_ratings import life_conditions
 from .motion import RotorResponse, RotorTransient, respond, run_in_time
 from .mounts import Mount
-from .scene import RotorScene
+from .read import RotorScene
 from .supports import support_of
 
 
@@ -174,7 +174,8 @@ def run_rotor(
 def _rotor(task: RotorScene, parts: _Parts) -> Rotor | None:
     with parts.part("preload"):
         supports = [support_of(mount) for mount in task.mounts]
-        return Rotor(task.shaft, task.discs, supports, task.damping, task.rigid)
+        damping, rigid = task.keys.own_damping, task.keys.rigid
+        return Rotor(task.shaft, task.discs, supports, damping, rigid)
     return None
 
 
@@ -216,7 +217,7 @@ def _lives(task: RotorScene, rotor: Rotor, parts: _Parts) -> None:
 
 def _linear(task: RotorScene, rotor: Rotor, parts: _Parts) -> Rotor | None:
     """Compute modes, critical speeds, Campbell diagram; return the linear rotor."""
-    found, count = parts.found, task.n_modes
+    found, count = parts.found, task.keys.modes
     settled = found["settled"]
     with parts.part("modes"):
         found["modes"] = jax.device_get(modes(settled.rotor, task.speed, count=count))

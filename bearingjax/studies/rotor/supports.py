@@ -23,9 +23,6 @@ _AT_LEAST = 1e-5
 def support_of(mount: Mount) -> AbstractSupport:
     """Build the support of a mount, with stationary rolling elements.
 
-    Args:
-        mount: Mount of the scene.
-
     Raises:
         SolveError: If a bearing cannot carry its preload.
     """
@@ -66,12 +63,7 @@ def with_passage(support: AbstractSupport) -> AbstractSupport:
 
 
 def unit_of_length(rotor: Rotor, settled: StaticEquilibrium) -> float:
-    """Return the unit of length: the largest displacement of preload, equilibrium [m].
-
-    Args:
-        rotor: Rotor on its nonlinear bearings.
-        settled: Its static equilibrium.
-    """
+    """Return the unit of length: the largest motion by preload or equilibrium [m]."""
     sizes = [_AT_LEAST, float(np.max(np.abs(np.asarray(settled.displacement)[:, :3])))]
     for support in rotor.supports:
         if isinstance(support, BearingSupport):

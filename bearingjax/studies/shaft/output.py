@@ -196,11 +196,7 @@ def _ring_temperatures(run: ShaftRun) -> dict[str, np.ndarray]:
 
 
 def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
-    """Return a row for each bearing, of several cases one for each bearing and case.
-
-    Args:
-        run: Solved run.
-    """
+    """Return a row for each bearing, of several cases one for each bearing and case."""
     names = [seat.name for seat in run.task.system.seats]
     if run.duty is None:
         found: dict[str, Any] = {"bearing": names}

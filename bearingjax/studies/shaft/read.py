@@ -17,7 +17,7 @@ from ...files.scene_file import assign, find_scene, is_shafts, parse_scene
 from ...files.schema import (
     Keys,
     build,
-    direction_json,
+    direction_key,
     fields_of,
     key_of,
     read_keys,
@@ -61,26 +61,6 @@ _NAMES = {"bearing": "bearings"} | {
 """Names of tables as they may be mistaken, and the right ones."""
 
 
-def _vector(table: Table, key: str) -> tuple[float, ...]:
-    """Read a direction: a name of `VECTORS`, or three bare numbers."""
-    value = table.raw(key, "z")
-    if isinstance(value, str):
-        return VECTORS[table.choice(key, tuple(VECTORS), "z")]
-    numbers = isinstance(value, list) and len(value) == 3
-    if not numbers or not all(isinstance(x, int | float) for x in value):
-        names = ", ".join(VECTORS)
-        problem = f"{value!r} is not a direction; one of {names}, or [x, y, z]"
-        raise table.error(key, problem)
-    if not any(value):
-        raise table.error(key, "has no direction: all three numbers are 0")
-    return tuple(map(float, value))
-
-
-def _axis(about: str) -> Any:
-    json = direction_json(VECTORS)
-    return scene_key(about, reader=_vector, json=json, default=None, otherwise="z")
-
-
 class SegmentKeys(RotorSegmentKeys):
     about = "[[shaft.NAME.segments]]: segments of the shaft, one after the other"
 
@@ -89,7 +69,9 @@ class ShaftKeys(Keys):
     about = "[shaft.NAME]: a shaft; positions on it count from its first segment"
 
     segments: tuple[SegmentKeys, ...] = scene_key("segments of the shaft")
-    axis: tuple[float, ...] = _axis("direction of the shaft in global axes")
+    axis: tuple[float, ...] = direction_key(
+        "direction of the shaft in global axes", VECTORS, "z"
+    )
     position: tuple[float, ...] | None = scene_key(
         "start of the first segment in global axes, [x, y, z]",
         "length",

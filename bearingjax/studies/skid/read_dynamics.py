@@ -174,12 +174,7 @@ class DynamicsKeys(Keys):
         return None if self.ramp is None else ramp(self.ramp, speed)
 
     def check_places(self, steady: bool, count: int) -> None:
-        """Raise SceneError for a number of positions invalid for the bearing.
-
-        Args:
-            steady: Whether the steady state is requested.
-            count: Number of balls or rollers.
-        """
+        """Raise SceneError for a number of positions invalid for the bearing."""
         places = self.places or 1
         problem = f"{places} is not allowed; 1 or"
         if steady and places != 1 and places % count:
