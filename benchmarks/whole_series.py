@@ -1,6 +1,6 @@
 """Which deep groove ball bearings last? All of the catalogue under one load, in a call.
 
-Every deep groove ball bearing of the catalogue, with 6 to 16 and more balls, as one
+Every deep groove ball bearing of the catalogue, with 6 to 29 balls, as one
 stack of designs (`stack_designs`: rows of fewer balls have empty places). One compiled
 call solves each under a load and gives its reference rating life by ISO/TS 16281 and
 its basic rating life by ISO 281; a second call has another load. Beside it each bearing
@@ -8,11 +8,17 @@ alone, all by the kept program of their kind, as a loop of `solve_load` and
 `rating_life` has it, a part of them; their lives are compared. Shoulders of grooves,
 which some entries have and others do not, are left out: they change no life.
 
-README: FIGURE |  |
+README: 164 deep groove ball bearings of the catalogue in a call: 3.9 ms each, in a loop 19 |  |
 
 Last run:
 
-TABLE
+164 bearings of 6 to 29 balls
+entries and stack                   3.51 s    2.44 s CPU    21.39 ms a bearing
+first call, with compilation       22.68 s   22.01 s CPU   138.31 ms a bearing
+another load                        0.63 s    0.63 s CPU     3.85 ms a bearing
+a loop, extrapolated                3.11 s    3.11 s CPU    18.97 ms a bearing
+164 converged; lives within 1.6e-14 of those alone
+AMD EPYC, 2 cores, load average 3.8; devices: 1 cpu; jax 0.10.1
 """
 
 import time
