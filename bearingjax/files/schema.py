@@ -186,14 +186,14 @@ def direction_key(
 
     def read(table: Table, key: str) -> tuple[float, ...]:
         value = table.raw(key, usual)
-        if isinstance(value, str):
-            return names[table.choice(key, tuple(names), usual)]
+        if isinstance(value, str) and value in names:
+            return names[value]
         real = isinstance(value, list) and [
             isinstance(x, int | float) and not isinstance(x, bool) for x in value
         ]
         if real != [True] * 3:
-            allowed = f"one of {', '.join(names)}, or [x, y, z]"
-            raise table.error(key, f"{value!r} is not a direction; {allowed}")
+            allowed = f"it must be {', '.join(names)} or three bare numbers"
+            raise table.error(key, f"{value!r} is not known; {allowed}")
         if not any(value):
             raise table.error(key, "has no direction: all three numbers are 0")
         return tuple(map(float, value))

@@ -228,6 +228,13 @@ def read_noise(
     tolerances, tighter = (
         (None, ()) if random is None else read_tolerance(random, bearing)
     )
+    vibration.table.finish()
+    inertia = model.inertia
+    vibration = vibration.with_defaults(
+        moving_ring=model.moving_ring,
+        retardation=float(model.retardation),
+        tilting_inertia=HELD if inertia is None else float(inertia),
+    )
     found = NoiseScene(
         scene=scene,
         vibration=vibration,
@@ -238,13 +245,6 @@ def read_noise(
         seed=0 if random is None else random.seed,
         bearings=bearings,
         warnings=scene.warnings,
-    )
-    vibration.table.finish()
-    inertia = model.inertia
-    vibration.fill(
-        moving_ring=model.moving_ring,
-        retardation=float(model.retardation),
-        tilting_inertia=HELD if inertia is None else float(inertia),
     )
     own = {"deviations": deviations.echo(), "vibration": vibration.table.echo()}
     inputs = {

@@ -62,17 +62,21 @@ class SearchTask:
     """Search that [optimise] asks for, of a bearing or of shafts, as in `optimise`.
 
     Attributes:
-        keys: The table, with method, step limit and tolerance of the search.
         variables: The variables, named as in the scene.
         objective: Measure to be minimised.
         constraints: Bounds on measures.
+        method: Search method, or `None` for the default.
+        max_steps: Step limit.
+        tolerance: Gradient at which the search ends.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
 
-    keys: "SearchKeys"
     variables: tuple[Variable, ...]
     objective: Any
     constraints: tuple[Constraint, ...]
+    method: str | None
+    max_steps: int
+    tolerance: float
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
 
@@ -281,12 +285,14 @@ def _optimisation(
     objective = measured.objective(keys)
     table.table("variables", required=True)
     return Optimisation(
-        keys=keys,
         scene=scene,
         cases=cases,
         variables=_variables(keys.variables, top, scene, begun),
         objective=objective,
         constraints=tuple(measured.constraint(one) for one in keys.constraints),
+        method=keys.method,
+        max_steps=keys.max_steps,
+        tolerance=keys.tolerance,
     )
 
 

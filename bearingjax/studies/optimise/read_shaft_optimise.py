@@ -149,13 +149,15 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     )
     top.finish()
     return ShaftOptimisation(
-        keys=keys,
         scene=scene,
         design=design,
         cases=cases,
         variables=variables,
         objective=measures[0],
         constraints=constraints,
+        method=keys.method,
+        max_steps=keys.max_steps,
+        tolerance=keys.tolerance,
         inputs={**scene.inputs, "optimise": table.echo()},
     )
 

@@ -41,7 +41,7 @@ def optimisation_report(task: Task, found: OptimisedDesign, best: Any = None) ->
     warned = [Warning("rejected_step", f"rejected: {why}") for why in every]
     warned += [*best.warnings, *found.after.warnings]
     warned += warnings_of("before", _warned_before(task, found))
-    left = f"gradient left {found.optimality:.1e}, tolerance {task.keys.tolerance:.1e}"
+    left = f"gradient left {found.optimality:.1e}, tolerance {task.tolerance:.1e}"
     sections = {
         "Search": [head],
         "Variables": [_variables(found)],

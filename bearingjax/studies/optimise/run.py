@@ -39,7 +39,7 @@ def run_optimisation(
         scene, design = task.scene, task.scene.installed
         support = Support(scene.free, fixed_ring=scene.fixed_ring)
         solve = scene.solve_options
-    keys = task.keys
+    limits = task.max_steps, task.tolerance
     with scene_errors(name):
         found = optimise(
             design,
@@ -47,9 +47,7 @@ def run_optimisation(
             task.variables,
             task.objective,
             task.constraints,
-            search=SearchOptions(
-                keys.method, keys.max_steps, keys.tolerance, solve, told=told
-            ),
+            search=SearchOptions(task.method, *limits, solve, told=told),
             support=support,
         )
     if isinstance(task, ShaftOptimisation):

@@ -334,6 +334,7 @@ def _scene(top: Table, path: Path) -> RotorScene:
         warned += _speed_warnings(keys.speed, response.speed, bool(loads.unbalances))
     if transient is not None:
         transient = transient.with_defaults(station=keys.shown_station)
+    keys = dataclasses.replace(keys, response=response, transient=transient)
     return RotorScene(
         name=path.stem,
         keys=keys,
