@@ -273,12 +273,9 @@ def trace(
         smooth = near & straight & ((new.side == state.last.side) | short)
         good = solved & (smooth | first)
 
+        # A point that is not good is written over by the next one.
         taken = jax.tree.map(
-            lambda every, one: jnp.where(
-                good, every.at[state.n_points].set(one), every
-            ),
-            state.points,
-            new,
+            lambda every, one: every.at[state.n_points].set(one), state.points, new
         )
         last = jax.tree.map(lambda a, b: jnp.where(good, a, b), new, state.last)
         move = new.x - state.last.x

@@ -24,7 +24,7 @@ from ...numerics.implicit import attach_by, recall, stop_gradient
 from ...numerics.lapack import expm, solve_any
 from ...numerics.types import Scalar, Vector
 from ...numerics.units import unit
-from .system import AbstractVibratingSystem, inertia, out_of_balance
+from .system import AbstractVibratingSystem, balance_slopes, inertia, out_of_balance
 
 _STAGES = 5
 _NEWTON = 20
@@ -105,21 +105,10 @@ def _out_of_balance(at, begin, second):
 
 
 def _slopes(at, begin, second):
-    """`_out_of_balance`, and its slopes in u, u' and ν of the stage
-    (stage, n, 2n + 1)."""
-    n = begin.u.shape[0]
-
-    def slopes_at(phase, u, rate, second):
-        def with_value(x):
-            u, rate = jnp.split(x[:-1], 2)
-            left = out_of_balance(begin.system, phase, x[-1], u, rate, second)
-            return left, left
-
-        here = jnp.concatenate([u, rate, begin.ratio[None]])
-        return jax.jacfwd(with_value, has_aux=True)(here)
-
-    slopes, left = jax.vmap(slopes_at)(*_stage_motion(at, begin, second), second)
-    return left, (slopes[..., :n], slopes[..., n:-1], slopes[..., -1:])
+    """`_out_of_balance`, and its slopes in u, u' (stage, n, n) and ν (stage, n)."""
+    return jax.vmap(
+        lambda phase, *motion: balance_slopes(begin.system, phase, begin.ratio, *motion)
+    )(*_stage_motion(at, begin, second), second)
 
 
 def _solve(at, begin, slopes, change):
@@ -243,7 +232,7 @@ def flow_slopes(
         second, slopes = _solve_stages(at, begin, guess)
         change = slopes[0] @ (du[None] + at.nodes[:, None, None] * drate[None])
         change = change + slopes[1] @ drate
-        change = change.at[..., -1:].add(slopes[2])
+        change = change.at[..., -1].add(slopes[2])
         grown = _end_motion(at, du, drate, _solve(at, begin, slopes, change))
         guess = jnp.broadcast_to(stop_gradient(second[-1]), guess.shape)
         return (*_end_motion(at, u, rate, second), *grown, guess), None

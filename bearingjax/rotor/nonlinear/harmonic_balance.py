@@ -22,7 +22,7 @@ from ...numerics.types import Scalar, Vector, as_count
 from ...numerics.units import meaning, unit
 from .flow import transition, transition_phases
 from .method import AbstractMethod, Jacobian, Motion, Unknowns
-from .system import AbstractVibratingSystem, inertia, out_of_balance
+from .system import AbstractVibratingSystem, balance_slopes, inertia, out_of_balance
 
 
 class Basis(NamedTuple):
@@ -156,15 +156,11 @@ class HarmonicBalance(AbstractMethod):
         """Return the residual of the equations of motion (sample, n), and its Jacobians
         in u, u', u'' (sample, n, n) and ν (sample, n)."""
 
-        def slopes_at(phase, *motion):
-            def with_value(*given):
-                left = out_of_balance(system, phase, given[-1], *given[:-1])
-                return left, left
-
-            return jax.jacfwd(with_value, (0, 1, 2, 3), has_aux=True)(*motion, ratio)
-
-        slopes, left = jax.vmap(slopes_at)(self._basis(z.dtype).phase, *self._motion(z))
-        return left, slopes
+        left, (*slopes, speed) = jax.vmap(
+            lambda phase, *motion: balance_slopes(system, phase, ratio, *motion)
+        )(self._basis(z.dtype).phase, *self._motion(z))
+        constant = jnp.broadcast_to(inertia(system, ratio), slopes[0].shape)
+        return left, (*slopes, constant, speed)
 
     def project(self, slopes: Any, bases: Any) -> Float[Array, "m m"]:
         """Return the Jacobian in the coefficients, from slopes in values of `bases`."""

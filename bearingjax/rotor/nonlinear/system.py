@@ -13,6 +13,7 @@ import abc
 from collections.abc import Callable
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -198,6 +199,27 @@ def inertia(system: AbstractVibratingSystem, ratio: Scalar) -> Square:
     """
     weight = jnp.diagonal(system.mass) * system.scale
     return ratio**2 * system.mass * system.scale[None, :] / weight[:, None]
+
+
+def balance_slopes(
+    system: AbstractVibratingSystem,
+    phase: Scalar,
+    ratio: Scalar,
+    u: Vector,
+    rate: Vector,
+    second: Vector,
+) -> tuple[Vector, tuple[Square, Square, Vector]]:
+    """Return `out_of_balance`, and its slopes in u, u' (n, n) and ν (n,) [1].
+
+    Args: as `out_of_balance`.
+    """
+
+    def with_value(u, rate, ratio):
+        left = out_of_balance(system, phase, ratio, u, rate, second)
+        return left, left
+
+    slopes, left = jax.jacfwd(with_value, (0, 1, 2), has_aux=True)(u, rate, ratio)
+    return left, slopes
 
 
 def rates(
