@@ -8,7 +8,8 @@ alone, all by the kept program of their kind, as a loop of `solve_load` and
 `rating_life` has it, a part of them; their lives are compared. Shoulders of grooves,
 which some entries have and others do not, are left out: they change no life.
 
-README: 164 deep groove ball bearings of the catalogue in a call: 3.9 ms each, in a loop 19 |  |
+README: 164 deep groove ball bearings of the catalogue in a call: 3.9 ms each, in a loop
+19 |  |
 
 Last run:
 
