@@ -60,10 +60,10 @@ class Problem(NamedTuple):
         shape: (x, step, size of the gradient) -> better step, from knowledge of where
             the function bends or stiffens. Only Newton's method uses it.
         memory: Memory of the start.
-        direction: Unit vector (n,), or zero. While the function falls along it and too
-            little curvature is felt to end the fall within the next step, `radius` at
-            first, it is followed in growing steps. Newton's method, the only one to use
-            it, then starts near the stiff side or on it, where it converges best.
+        direction: Unit vector (n,), or zero. If the function falls along it and too
+            little curvature is felt within `radius` to end the fall, it is first
+            followed in growing steps until the function rises: Newton's method, the
+            only one to use it, then starts on the stiff side, where it converges best.
         limit: |x| beyond which the function counts as unbounded below; the search then
             ends with `NO_LOAD_PATH`.
         force: A constant force on x (n,) [J/unit of x]: value - force·x is minimised,
@@ -380,9 +380,12 @@ class TrustRegionNewton(AbstractMinimiser):
         if problem.direction is not None:
             fall = -dot(new.gradient, problem.direction)
             stiff = quadratic(new.hessian, problem.direction)
-            reach = jnp.where(first, state.radius, 4.0 * reach)
-            # Where contacts met on the way end the fall, a longer step goes far beyond.
-            reach = jnp.where((fall > 0) & (stiff * reach < fall), reach, 0.0)
+            begin = (fall > 0) & (stiff * state.radius < fall)
+            reach = jnp.where(
+                first,
+                jnp.where(begin, state.radius, 0.0),
+                jnp.where(searching & (fall > 0), 4.0 * reach, 0.0),
+            )
         # Steps of round-off that no longer help.
         still = (length <= 4 * eps * norm(state.x)) & (new_size > 0.5 * size)
         stayed = state._replace(
@@ -409,8 +412,8 @@ def continuation(
     """Minimise value - force·x, approached from a larger force.
 
     As with a barrier method, what matters to the end is found early, and Newton's
-    method stays on its side. Each time the gradient is down to a tenth of the force,
-    the factor falls to a hundredth.
+    method stays on its side. Each time the gradient is down to a hundredth of the
+    force, the factor falls to a tenth.
 
     Args:
         minimiser: Takes the steps.
@@ -423,7 +426,7 @@ def continuation(
 
     def scale_force(problem, factor):
         goal = minimiser.goal(problem)
-        early = jnp.where(factor > 1.0, jnp.maximum(goal, 0.1), goal)
+        early = jnp.where(factor > 1.0, jnp.maximum(goal, 1e-2), goal)
         return problem._replace(force=factor * problem.force, tolerance=early)
 
     def init(given):
@@ -433,7 +436,7 @@ def continuation(
         (state, factor), problem = carry, problem_of(given)
         near = (factor > 1.0) & minimiser.converged(scale_force(problem, factor), state)
         near = near & (state.steps >= 0)
-        factor = jnp.where(near, jnp.maximum(0.01 * factor, 1.0), factor)
+        factor = jnp.where(near, jnp.maximum(0.1 * factor, 1.0), factor)
         state = state._replace(
             radius=jnp.where(near, problem.radius, state.radius),
             stalled=state.stalled & ~near,

@@ -79,7 +79,7 @@ def search_start(
     """First unknowns and first load of a search, from the sizes of the bearing.
 
     A load that presses the contacts by far less than the play that it takes up is
-    approached from a larger one, by hundreds: with it, as with a barrier method, all
+    approached from a larger one, by tens: with it, as with a barrier method, all
     contacts that matter are found early and Newton's method stays on their side.
 
     Args:
