@@ -9,6 +9,7 @@ describes a table that differs from the thing, with the rules for several keys i
 
 import dataclasses
 import functools
+import math
 import types
 import typing
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -179,9 +180,10 @@ def direction_key(
     """Return a field of a `Keys` class for a direction: a name, or three bare numbers.
 
     Args:
-        about, rest: As in `scene_key`.
+        about: What the direction is of.
         names: Directions by name.
-        usual: Name of the one if absent.
+        usual: Name of the direction if the key is absent.
+        **rest: Further arguments of `scene_key`.
     """
 
     def read(table: Table, key: str) -> tuple[float, ...]:
@@ -189,7 +191,7 @@ def direction_key(
         if isinstance(value, str) and value in names:
             return names[value]
         real = isinstance(value, list) and [
-            isinstance(x, int | float) and not isinstance(x, bool) for x in value
+            type(x) in (int, float) and math.isfinite(x) for x in value
         ]
         if real != [True] * 3:
             allowed = f"it must be {', '.join(names)} or three bare numbers"

@@ -186,8 +186,8 @@ def faded(colour: Any, share: float) -> tuple[float, ...]:
     """Return a colour that lets what is behind it show through.
 
     Args:
-        colour: As matplotlib takes it.
-        share: 0: not seen, 1: as it is.
+        colour: Any colour of Matplotlib.
+        share: Opacity, from 0 (not seen) to 1 [1].
     """
     from matplotlib.colors import to_rgba
 
@@ -198,8 +198,8 @@ def towards_white(colour: Any, share: float) -> tuple[float, ...]:
     """Return a lighter colour.
 
     Args:
-        colour: As matplotlib takes it.
-        share: 0: as it is, 1: white.
+        colour: Any colour of Matplotlib.
+        share: Share of white, from 0 to 1 [1].
     """
     from matplotlib.colors import to_rgb
 
@@ -212,7 +212,7 @@ def mark_peaks(ax: Axes, x: Any, y: Any, colour: Any, name: str, **look: Any) ->
     Args:
         ax: Axes.
         x, y: Points (n,).
-        colour: As matplotlib takes it.
+        colour: Any colour of Matplotlib.
         name: Name of what they mark, not for the legend.
         look: Further keywords of Matplotlib's `plot`.
     """
