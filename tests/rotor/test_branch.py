@@ -155,6 +155,8 @@ def test_flips_and_branch_points_of_mathieu():
         branch.frequency < found[1] - 1e-3
     )
     assert not branch.stable[between].any()
+    sizes = np.abs(branch.multipliers)
+    assert (np.diff(sizes, axis=1) <= 0).all() and sizes.max() > 1.1
 
 
 @pytest.mark.slow

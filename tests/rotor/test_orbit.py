@@ -98,6 +98,7 @@ def test_without_damping_the_flow_keeps_volume():
     ratio = jnp.asarray(0.8)
     orbit = solve_orbit(system, ratio * system.reference_frequency, SHOOTING)
     multipliers = np.asarray(orbit.multipliers)
+    assert (np.diff(np.abs(multipliers)) <= 0).all()
     assert np.isclose(np.prod(multipliers), 1.0, rtol=DIFFERENCE)
     inverse = np.sort_complex(np.round(1.0 / multipliers, 6))
     assert np.allclose(np.sort_complex(np.round(multipliers, 6)), inverse, atol=1e-5)

@@ -63,7 +63,7 @@ class Branch(NamedTuple):
         frequency: (point,) [rad/s].
         amplitude: Half of peak to peak over the period (point, n) [m, rad].
         displacement: At even phases from 0 on (point, sample, n) [m, rad].
-        multipliers: Floquet multipliers (point, 2n) [1].
+        multipliers: Floquet multipliers, the largest first (point, 2n) [1].
         stable: Whether all multipliers lie within the unit circle (point,).
         unknowns: Unknowns of the method (point, m) [1].
         residual: Residual of its equations, largest (point,) [1].
@@ -137,6 +137,9 @@ def follow(
     at = BranchPoint(*(x[:count] for x in every))
     scale, unit = np.asarray(system.scale), float(system.reference_frequency)
     multipliers = np.linalg.eigvals(at.monodromy)
+    # LAPACK's order hangs on round-off.
+    order = np.argsort(-np.abs(multipliers), axis=1, kind="stable")
+    multipliers = np.take_along_axis(multipliers, order, axis=1)
     stable = np.abs(multipliers).max(axis=1, initial=0.0) <= 1.0 + STABLE
     return Branch(
         frequency=np.asarray(at.x[:, -1]) * unit,

@@ -42,7 +42,7 @@ class PeriodicOrbit(eqx.Module):
         displacement: At even phases from 0 on (sample, n) [m, rad].
         velocity: Velocity at the samples (sample, n) [m/s, rad/s].
         amplitude: Half of peak to peak over the period (n,) [m, rad].
-        multipliers: Floquet multipliers (2n,) [1].
+        multipliers: Floquet multipliers, the largest first (2n,) [1].
         stable: Whether all multipliers lie within the unit circle.
         unknowns: Unknowns of the method (m,) [1].
         residual: Residual of its equations, largest [1].
@@ -289,6 +289,7 @@ def describe_orbit(
     frequency = frequency_of(system, ratio)
     _, jacobian, slopes = method.linearise(system, z, ratio)
     multipliers = eigvals(method.monodromy(system, ratio, jacobian, slopes))
+    multipliers = multipliers[jnp.argsort(-jnp.abs(multipliers))]
     u, rate = method.motion(system, z, ratio)
     solved = result == int(Result.CONVERGED)
     return PeriodicOrbit(
