@@ -21,7 +21,12 @@ from bearingjax.rotor.nonlinear import (
     VibratingSystem,
     solve_orbit,
 )
-from bearingjax.rotor.nonlinear.flow import transition, transition_phases
+from bearingjax.rotor.nonlinear.flow import (
+    flow_slopes,
+    integrate,
+    transition,
+    transition_phases,
+)
 from bearingjax.rotor.nonlinear.harmonic_balance import interpolation
 
 BALANCE, SHOOTING = HarmonicBalance(9, 48, steps=32), Shooting(48)
@@ -189,6 +194,22 @@ def test_harmonic_balance_jacobian():
     exact = jax.jacfwd(change)(jnp.zeros(26))
     assert np.abs(jacobian - exact).max() < ROUNDING * np.abs(exact).max()
     assert np.allclose(left, change(jnp.zeros(26)), rtol=ROUNDING)
+
+
+def test_slopes_of_the_flow():
+    """By the start and by the frequency, against derivatives of the integration."""
+    system, start = duffing(), jnp.asarray([0.3, -0.2])
+
+    @jax.jit
+    def both(x):
+        def end(x):
+            return integrate(system, x[:-1], x[-1], 24)[0]
+
+        return flow_slopes(system, x[:-1], x[-1], 24), (end(x), jax.jacfwd(end)(x))
+
+    found, wanted = both(jnp.append(start, 0.9))
+    for one, other in zip(found, wanted, strict=True):
+        np.testing.assert_allclose(one, other, rtol=SOLVER, atol=SOLVER)
 
 
 def test_solve_orbit_reports_failure_and_invalid_arguments():
