@@ -162,9 +162,10 @@ def test_campbell_diagram_tells_directions_and_critical_speeds():
     values = np.stack([100.0 - 0.1 * speeds, 100.0 + 0.1 * speeds], axis=1)
     whirl = np.array([[0, 0], [-1, 1], [-1, 1], [-1, 1]])
     modes = all_modes(1j * values, whirl, np.zeros((4, 2, 1, 5), complex))
-    found = np.array([90.9, 111.1, np.nan, 900.0]), np.array([-1, 1, 0, 1])
-    shape = np.zeros((4, 1, 5), complex)
-    critical = CriticalSpeeds(*map(jnp.asarray, (*found, np.zeros(4), shape, 0)))
+    at = np.array([90.9, 111.1, 120.0, np.nan, 900.0])
+    shape = np.zeros((5, 1, 5), complex)
+    fields = at, np.array([-1, 1, 1, 0, 1]), np.zeros(5), shape, 0
+    critical = CriticalSpeeds(*map(jnp.asarray, fields))
     ax = plot.campbell_diagram(speeds, modes, critical)
     (forward,), (backward,) = named(ax, "forward"), named(ax, "backward")
     assert np.allclose(forward[:, 0], RPM * speeds)
@@ -173,8 +174,8 @@ def test_campbell_diagram_tells_directions_and_critical_speeds():
     (once,) = named(ax, "speed (1x)")
     assert np.allclose(once[:, 1], once[:, 0] / 60.0)
     marked = np.concatenate(named(ax, "critical speed") + named(ax, "_critical speed"))
-    assert np.allclose(marked[:, 0], RPM * np.array([90.9, 111.1]))
-    assert [t.get_text() for t in ax.texts] == ["1061 rpm"]
+    assert np.allclose(marked[:, 0], RPM * at[:3])
+    assert [t.get_text() for t in ax.texts] == ["1061 rpm", "1146 rpm"]
     # Points have the colour of their whirl, and that of the legend has none.
     handles, labels = ax.get_legend_handles_labels()
     mark: Any = handles[labels.index("critical speed")]

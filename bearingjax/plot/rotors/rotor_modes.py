@@ -174,5 +174,6 @@ def _critical(ax, critical, rpm, top):
         label = "_critical speed"
         ax.plot([at], [at / 60.0], color=colour, label=label, **look)
         if whirl == 1:
-            look = {"zorder": 4, "bbox": BOX | {"pad": 0.8}}
-            write_beside(ax, (at, at / 60.0), (6, -12), f"{at:.0f} rpm", **look)
+            ground = BOX | {"pad": 0.8}
+            text = f"{at:.0f} rpm"
+            write_beside(ax, (at, at / 60.0), (6, -12), text, zorder=4, bbox=ground)
