@@ -14,25 +14,22 @@ a NumPy bearing of the same equations (balls in series contact, L10r in NumPy), 
 at a radial displacement. It runs a part of the cases; its cases a second are those of
 that part, and its time for all of them is extrapolated.
 
-README: 6305, 10 000 cases in a call: 3900 a second, as many as load solves alone; 2000
-with the gradient; SciPy's root on NumPy 200 |  |
+README: 6305, 10 000 cases in a call: 4200 a second, as many as load solves alone; 2800
+with the gradient; SciPy's root on NumPy 460 |  |
 
 Last run:
 
                    cases  cases/s  all cases, s  ratio
-load solve         10000     3725          2.68   1.05
-life               10000     3909          2.56      1
-life and gradient  10000     2022          4.95   1.93
-SciPy loop           100      204          48.9   19.1 (extrapolated)
+load solve         10000     4133          2.42   1.02
+life               10000     4200          2.38      1
+life and gradient  10000     2821          3.55   1.49
+SciPy loop           100      460          21.7   9.13 (extrapolated)
 
-life 664.815 million revolutions; trace and compile 112 s, with the gradient 386 s
-SciPy: 0 failed; its damage within 2.4e-11 of ours
+life 664.815 million revolutions; trace and compile 30.2 s, with the gradient 93.6 s
+SciPy: 0 failed; its damage within 3.3e-11 of ours
 slope along the clearance within 1.9e-06 of differences
 
-one core; AMD EPYC, 2 cores, load average 5.6; devices: 1 cpu; jax 0.10.1
-
-The processor was shared with other work, which took its time from all rows. SciPy's
-loop, run again on its own at a load average of 3.9, took 1.8 to 2.8 ms a case.
+one core; AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """
 
 import os

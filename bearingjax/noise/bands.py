@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from ..design.checks import positive
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
-from ..numerics.types import Reals, as_real
+from ..numerics.types import Reals, array_namespace, as_real, in_numpy
 from ..numerics.units import unit
 from .level import REFERENCE_ACCELERATION, level
 from .spectrum import Spectrum
@@ -215,15 +215,14 @@ def shift(power: Any, gained: Any, lost: Any) -> Any:
     Args:
         power, gained, lost: Mean squares (...) [unit of the record, squared].
     """
-    true = jnp.maximum(power - gained + lost, 1e-30 * power)
+    xp = array_namespace(power, gained, lost)
+    true = xp.maximum(power - gained + lost, 1e-30 * power)
     silent = power <= 0.0
-    ratio = jnp.where(silent, 1.0, power) / jnp.where(silent, 1.0, true)
-    return 10.0 * jnp.log10(ratio)
+    ratio = xp.where(silent, 1.0, power) / xp.where(silent, 1.0, true)
+    return 10.0 * xp.log10(ratio)
 
 
-def band_shift(
-    spectrum: Spectrum, bands: Bands
-) -> tuple[Float[Array, "band ..."], Float[Array, "band ..."]]:
+def band_shift(spectrum: Spectrum, bands: Bands) -> tuple[Any, Any]:
     """Return the change of each band level by skirts of strong lines.
 
     Args:
@@ -234,7 +233,7 @@ def band_shift(
         The change (band, ...) [dB], and the distance of the line with the largest share
         from the edge that it leaks over (band, ...) [Hz].
     """
-    *powers, need = band_power(spectrum, bands)
+    *powers, need = in_numpy(band_power(spectrum, bands))
     return shift(*powers), need
 
 
@@ -299,11 +298,15 @@ def _are_valid(spectrum, lower, upper, highest):
 
 def _highest_frequency(spectrum, highest):
     half = spectrum.frequency[-1]
-    return half if highest is None else jnp.minimum(half, as_real(highest))
+    if highest is None:
+        return half
+    highest = in_numpy(as_real(highest))
+    return array_namespace(half, highest).minimum(half, highest)
 
 
 def _edges(spectrum, bands):
-    return [jnp.asarray(edge, spectrum.frequency.dtype) for edge in bands[2:]]
+    dtype = spectrum.frequency.dtype
+    return [array_namespace(edge).asarray(edge, dtype) for edge in bands[2:]]
 
 
 def _root(square):

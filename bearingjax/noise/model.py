@@ -26,7 +26,14 @@ from ..design.checks import (
 from ..design.form_error import FormErrors, Surfaces
 from ..element import FREEDOMS, RINGS, BearingElement, Speed
 from ..numerics.compiled.programs import program
-from ..numerics.types import Real, RealOrNone, Scalar, as_real, in_numpy
+from ..numerics.types import (
+    Real,
+    RealOrNone,
+    Scalar,
+    array_namespace,
+    as_real,
+    in_numpy,
+)
 from ..numerics.units import real, unit
 from ..statics import Solution, SolveOptions, Support
 from ..statics.load import solve
@@ -212,7 +219,8 @@ class NoiseModel(eqx.Module):
     @property
     def shaft_speed(self) -> Scalar:
         """Absolute speed of the ring that turns faster [rad/s]."""
-        return jnp.maximum(jnp.abs(self.speed.outer), jnp.abs(self.speed.inner))
+        outer, inner = in_numpy((self.speed.outer, self.speed.inner))
+        return array_namespace(outer, inner).maximum(abs(outer), abs(inner))
 
     @property
     def support(self) -> Support:
@@ -262,8 +270,7 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
     Source: m (3 (R₁² + R₂²) + b²)/12 of a hollow cylinder, with the radii R ± b/2 and
         b² = m/(2πRρ): m (R²/2 + 5 b²/24); and m z² of one that stands at z.
     """
-    bearing, mass = in_numpy((bearing, as_real(mass)))
-    rows = rows_of(bearing)
+    rows, mass = in_numpy((rows_of(bearing), as_real(mass)))
     part, total = mass / len(rows), 0.0 * mass
     for row in rows:
         radius = getattr(Surfaces.from_bearing(row.bearing), moving_ring).radius

@@ -161,20 +161,20 @@ class Spectrum(eqx.Module):
         return self.window.noise_bandwidth * self.resolution
 
     @property
-    def power(self) -> Float[Array, "line ..."]:
+    def power(self) -> Float[Array | np.ndarray, "line ..."]:
         """Share of every line in the mean square of the record [its unit, squared].
 
         Line 0 is the mean squared. The others sum to the mean square of the record
         about its mean; with a window, to an estimate of it that leans on the middle of
         the record.
         """
-        square = jnp.real(self.amplitude) ** 2 + jnp.imag(self.amplitude) ** 2
+        square = self.amplitude.real**2 + self.amplitude.imag**2
         share = np.full(len(square), 0.5)
         share[-1] = 1.0  # a cosine at its peaks in every sample
         share /= self.window.noise_bandwidth
         share[0] = 1.0
         axes = [1] * (square.ndim - 1)
-        return square * jnp.asarray(share.reshape(-1, *axes), square.dtype)
+        return square * share.reshape(-1, *axes).astype(square.dtype)
 
 
 def spectrum(

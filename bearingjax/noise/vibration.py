@@ -20,7 +20,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
-from ..numerics.types import Scalar
+from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit, units
 from ..statics.options import DEFAULT_TOLERANCE
 from .dynamics.cage import fastest_of_cage
@@ -232,7 +232,7 @@ def needed_steps(model: NoiseModel, samples: int = 2048) -> int:
             "vibration: `steps` is None, but the model is traced; give the number, such"
             " as `needed_steps(model)` found before."
         )
-    angular = 2.0 * np.pi * float(np.max(natural_modes(model).frequency))
+    angular = 2.0 * np.pi * float(np.max(in_numpy(natural_modes(model).frequency)))
     # A mode damped beyond creeping moves with ω² τ.
     fastest = max(angular, angular**2 * float(model.retardation))
     if model.cage is not None:

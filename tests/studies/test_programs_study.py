@@ -80,6 +80,7 @@ sys.exit(main(sys.argv[1:]))
         ("solve", "deep_groove"),
         ("life", "life_spectrum"),
         ("rotor", "rotor_flexible"),
+        ("noise", "noise_deep_groove"),
         ("shaft", "shaft_gearbox"),
     ],
     ids=" ".join,

@@ -174,7 +174,8 @@ def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
             of the scene.
     """
     if turns is None:
-        turns = scene.speed.inner - scene.speed.outer if scene.speed else 0.0
+        rings = scene.speed or Speed()
+        turns = float(rings.inner) - float(rings.outer)
     texts = scene.installed.speed_warnings(turns)
     return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
 

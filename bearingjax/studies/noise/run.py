@@ -45,6 +45,7 @@ from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
 from ...numerics import Result, Warning
 from ...numerics.labels import labelled_fields, make_dataset
+from ...numerics.types import in_numpy
 from .read import NoiseScene
 
 LARGEST_LINES = 12
@@ -154,7 +155,7 @@ def run_noise(
     Returns:
         The run with its result code; a failed solve does not raise.
     """
-    model = task.model
+    model, line = task.model, task.line
     _announce(on_stage, "natural modes")
     modes = jax.device_get(natural_modes(model))
     result = Result(int(modes.result))
@@ -163,14 +164,15 @@ def run_noise(
         return NoiseRun(task, result, words, warnings=task.warnings)
     if task.vibration.bridging:
         width = with_bridged_waves(model).half_width
-        models = (
-            dataclasses.replace(one, half_width=width) for one in (model, task.line)
+        model, line = (
+            dataclasses.replace(one, half_width=width) for one in (model, line)
         )
-        model, line = models
-        task = dataclasses.replace(task, model=model, line=line)
+    model, line = in_numpy((model, line))
+    task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
     _announce(on_stage, "vibration")
-    record = vibration(model, **task.counts, steps=task.vibration.steps, throw=False)
+    given = task.vibration.steps
+    record = in_numpy(vibration(model, **task.counts, steps=given, throw=False))
     result, steps = Result(int(record.result)), record.steps
     asked = model_warnings(model, task.vibration.samples, steps, tolerances)
     warned = (*task.warnings, *asked)
@@ -260,7 +262,8 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     """
     acceleration = np.asarray(record.acceleration)[:, : len(DIRECTIONS)]
     shaft = float(record.shaft_frequency)
-    found = spectrum(acceleration, float(record.duration), shaft, window=task.window)
+    given = acceleration, float(record.duration), shaft
+    found = in_numpy(spectrum(*given, window=task.window))
     bearing = task.model.element.bearing
     speed = task.model.speed
     # Unequal rolling elements excite many harmonics of the cage rotation.
