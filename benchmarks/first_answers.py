@@ -8,9 +8,50 @@ that as a multiple of what a process takes that imports JAX and adds two arrays.
 `--beside TREE` runs another checkout in turn. Answers are compared: a run with kept
 programs prints what the first one did.
 
-README: a second bearing of a kind 3.0 to 3.1 times an import of JAX, the first 11.8;
-gearbox 46 s, stored 10.6 on a processor half as fast as that of the goal | 3 times;
-12 s, 3.5 s | bearings yes; **missed**: gearbox 23 and 5.2 s
+README: an import of JAX takes 1.2 to 1.5 s of this machine's processor, 0.86 on that of
+the goals; a second bearing of a kind 3.1 to 3.4 times that, the first 15; gearbox 37 s,
+stored 7.2; fan 39 and 9.1; wind turbine 36 and 9.0; heated spindle 89 and 15; search
+for a gearbox 135 and 32; flexible rotor 67 and 15 | 3 times; shafts 12 s, 3.5 s; wind
+turbine 20, 6; search 40, 15; rotors 28 and 6 imports | bearings nearly; **missed**:
+gearbox 24 and 4.7 s, turbine 23 and 5.8, spindle 58 and 10, search 88 and 21, rotor 44
+and 9.6 imports
+
+Last run, in two parts:
+
+what                          wall s   CPU s
+solve 6206, first               14.8    18.0
+solve 6206, once more            3.6     3.9
+solve 6205, same kind            4.0     4.1
+solve 6310, same kind            3.8     3.8
+life 6206, first                 5.4     5.6
+life 6310, same kind             3.1     3.2
+gearbox, first                  34.0    36.5
+gearbox, once more               5.3     7.2
+output torque halved             5.4     7.1
+bearing of another size          4.7     6.4
+pair turned round                8.4    11.0
+fan, after the gearbox          36.8    39.3
+fan, once more                   7.4     9.1
+wind turbine, first             33.4    35.6
+wind turbine, once more          7.2     9.0
+
+gearbox, first                  35.3    37.7
+optimise gearbox, first        129.4   135.1
+optimise gearbox, once more     26.2    31.9
+heated spindle, first           85.1    89.0
+heated spindle, once more       11.9    14.7
+flexible rotor, first           57.4    67.0
+flexible rotor, once more       11.1    14.7
+spindle rotor, first            50.1    55.8
+spindle rotor, once more         9.7    12.3
+
+two cores, load average 1.1; jax 0.10.1
+
+Where it goes. A machine: about 6.5 s for each kind of bearing in its place, of which 4
+are tracing and lowering; stored, 3 s are imports and 2.5 loading. The flexible rotor:
+31 s the branch of orbits, of which 23 are XLA's (10 for the two bearings and their
+slopes; at its lowest level 13, but then the branch takes 13 s to run in place of 6), 10
+two bearings in their places, 7 critical speeds.
 """
 
 import pathlib

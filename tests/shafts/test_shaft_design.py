@@ -55,13 +55,17 @@ MEASURES = (
 )
 
 
-def seats(name, shaft, position):
-    """Ball bearings of the pinion, springs of the wheel."""
-    return (ball if shaft == "in" else springs)(name, shaft, position)
+def powered(power, floating="B"):
+    """Ball bearings of the pinion, one of which floats, springs of the wheel, and a
+    housing that gives way."""
 
+    def seat(name, shaft, position):
+        if shaft == "out":
+            return springs(name, shaft, position)
+        return ball(name, shaft, position, floating=name == floating)
 
-def powered(power):
-    system = eqx.tree_at(lambda s: s.drive.power, stage(seats), jnp.asarray(power))
+    elastic = stage(seat, housing=np.full(3, 2e8))
+    system = eqx.tree_at(lambda s: s.drive.power, elastic, jnp.asarray(power))
     bearings, none = (LifeConditions(),) * 2, (None,) * 2
     return ShaftDesign(system, bearings + none, (OIL,) * 2 + none)
 
@@ -257,7 +261,7 @@ def test_wrong_calls(problem):
 
 def test_with_parts_keeps_plans():
     """Other numbers of a system need no new order; its checks run."""
-    system = stage(seats)
+    system = powered(12e3).system
     moved = eqx.tree_at(lambda s: s.position, system.seats[0], jnp.asarray(0.05))
     other = system.with_parts(seats=(moved, *system.seats[1:]))
     assert float(other.beam(0).nodes[other.beam(0).node(1)]) == pytest.approx(0.05)
@@ -266,7 +270,7 @@ def test_with_parts_keeps_plans():
 
 def test_warnings_are_those_of_the_system_too():
     """Idle bearings, lost preloads and shafts located twice, as `shaft` reports."""
-    design = powered(12e3)
+    design = powered(12e3, floating=None)
     system = eqx.tree_at(
         lambda s: s.seats[0].preload,
         design.system,
