@@ -143,7 +143,7 @@ def solve(
     return without_empty_places(found, element)
 
 
-@program(quick=True, level=1, what="solving a bearing under load")
+@program(quick=True, often=True, what="solving a bearing under load")
 def _solve(
     element: BearingElement,
     model: BearingModel | None,

@@ -45,7 +45,8 @@ def configure(options: Namespace) -> None:
     warnings.filterwarnings("ignore", message)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
-    keep_programs(keep=jax.config.values["jax_enable_compilation_cache"])
+    keep = jax.config.values["jax_enable_compilation_cache"]
+    keep_programs(keep=keep, few_calls=True)
 
 
 def devices(options: Namespace) -> int:

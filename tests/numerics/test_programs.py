@@ -127,6 +127,23 @@ def test_surroundings_are_part_of_the_name(name_of, monkeypatch, what):
     assert name_of("tapered") != before
 
 
+def test_commands_compile_load_solves_for_the_shortest_wait(monkeypatch, store):
+    """A script calls a load solve often, a command once; each keeps its own program."""
+    met = []
+
+    def run(name, function, given, options):
+        met.append((name, options))
+        return function(*given[0], **given[1])
+
+    monkeypatch.setattr(programs, "_run_kept", run)
+    element = bj.BearingElement(bj.load_bearing("deep_groove"))
+    for few in (False, True):
+        programs.keep_programs(store, few_calls=few)
+        bj.solve_load(element, [0.0, -1e3, 0.0, 0.0, 0.0, 0.0])
+    (often, level), (once, quickest) = met
+    assert often != once and (level, quickest) == programs.OPTIONS[::-1]
+
+
 class Foreign(eqx.Module):
     """A class from outside the package."""
 

@@ -81,6 +81,7 @@ class _Store:
     """Folder of the kept programs, and those loaded in this process."""
 
     folder: Path | None = None
+    few_calls: bool = False
     at_hand: dict[str, Callable]
     ahead: dict[str, Future]
     structures: dict[Any, str]
@@ -95,7 +96,9 @@ _STORE = _Store()
 F = TypeVar("F", bound=Callable)
 
 
-def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> None:
+def keep_programs(
+    folder: str | Path | None = None, *, keep: bool = True, few_calls: bool = False
+) -> None:
     """Keep the compiled programs of this package from one process to the next.
 
     Holds for solves, rotors, noise and skidding that are called from Python as they
@@ -107,10 +110,14 @@ def keep_programs(folder: str | Path | None = None, *, keep: bool = True) -> Non
             can write there, nothing is read or kept. 1 GB at most, those that were
             not used for longest go first.
         keep: Whether to keep them; `False` ends it.
+        few_calls: Whether each is called a few times only, as by a command: a load
+            solve then compiles in three quarters of the time, and takes up to twice as
+            long. Such programs are kept beside the others.
     """
     if folder is None:
         folder = user_cache() / "programs"
     _STORE.folder = Path(folder) if keep else None
+    _STORE.few_calls = few_calls
     _STORE.at_hand.clear()
 
 
@@ -185,6 +192,7 @@ def program(
     *,
     quick: bool = False,
     level: int = 0,
+    often: bool = False,
     what: str | None = None,
 ) -> F:
     """Compile as `equinox.filter_jit`; programs are kept if `keep_programs` is called.
@@ -197,11 +205,13 @@ def program(
         level: Which of `OPTIONS` then: 0 for a run of less than a second, 1 for one of
             seconds, which is as fast as if compiled with all effort where matrices are
             small.
+        often: Whether scripts call it in loops: level 1 then, but with `few_calls` of
+            `keep_programs`.
         what: What it does, in words, for `tell_compiling`; `None`: that of its package.
     """
     if function is None:
         return functools.partial(  # pyright: ignore
-            program, quick=quick, level=level, what=what
+            program, quick=quick, level=level, often=often, what=what
         )
     if what is not None:
         _WHAT[_place_of(function)] = what
@@ -216,7 +226,8 @@ def program(
         name = _name(call, given) if _can_keep(given) else None
         if name is None:
             return jitted()(*args, **kwargs)
-        return _run_kept(name, function, given, OPTIONS[level] if quick else {})
+        chosen = OPTIONS[1 if often and not _STORE.few_calls else level]
+        return _run_kept(name, function, given, chosen if quick else {})
 
     return call  # pyright: ignore
 
@@ -407,7 +418,7 @@ def _surroundings() -> Iterator[str]:
     places = ("jax_compilation_cache_dir", "jax_logging_level")
     yield repr(sorted((k, v) for k, v in jax.config.values.items() if k not in places))
     yield os.environ.get("XLA_FLAGS", "")
-    yield repr(OPTIONS)
+    yield repr((OPTIONS, _STORE.few_calls))
     yield repr([device.device_kind for device in jax.devices()])
     yield _processor()
 
