@@ -240,10 +240,11 @@ def test_solve_in_new_process_reuses_stored_programs(tmp_path):
     hidden = ("JAX_", "XLA_", "PYTHONWARNINGS")
     clean = {k: v for k, v in os.environ.items() if not k.startswith(hidden)}
     out = tmp_path / "out.json"
+    ending = "--json", out, "--quiet"
 
     def solve(*settings):
         done = subprocess.run(
-            [sys.executable, "-c", program, "solve", *settings, "--json", out],
+            [sys.executable, "-c", program, "solve", *settings, *ending],
             env={**clean, "XDG_CACHE_HOME": str(tmp_path / "cache")},
             capture_output=True,
             text=True,
