@@ -8,23 +8,24 @@ that as a multiple of what a process takes that imports JAX and adds two arrays.
 `--beside TREE` runs another checkout in turn. Answers are compared: a run with kept
 programs prints what the first one did.
 
-README: an import of JAX takes 1.2 to 1.5 s of this machine's processor, 0.86 on that of
-the goals; a second bearing of a kind 3.1 to 3.4 times that, the first 15; gearbox 37 s,
+README: an import of JAX takes 1.2 to 1.7 s of this machine's processor, 0.86 on that of
+the goals; a second bearing of a kind 2.5 times that, the first 8.3; gearbox 37 s,
 stored 7.2; fan 39 and 9.1; wind turbine 36 and 9.0; heated spindle 89 and 15; search
 for a gearbox 135 and 32; flexible rotor 67 and 15 | 3 times; shafts 12 s, 3.5 s; wind
-turbine 20, 6; search 40, 15; rotors 28 and 6 imports | bearings nearly; **missed**:
+turbine 20, 6; search 40, 15; rotors 28 and 6 imports | bearings yes; **missed**:
 gearbox 24 and 4.7 s, turbine 23 and 5.8, spindle 58 and 10, search 88 and 21, rotor 44
 and 9.6 imports
 
-Last run, in two parts:
+Last run, in three parts:
 
 what                          wall s   CPU s
-solve 6206, first               14.8    18.0
-solve 6206, once more            3.6     3.9
-solve 6205, same kind            4.0     4.1
-solve 6310, same kind            3.8     3.8
-life 6206, first                 5.4     5.6
-life 6310, same kind             3.1     3.2
+solve 6206, first               13.3    14.1
+solve 6206, once more            3.1     3.5
+solve 6205, same kind            4.1     4.1
+solve 6310, same kind            4.0     4.1
+life 6206, first                 5.0     5.2
+life 6310, same kind             4.2     4.3
+
 gearbox, first                  34.0    36.5
 gearbox, once more               5.3     7.2
 output torque halved             5.4     7.1
