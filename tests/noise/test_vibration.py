@@ -62,6 +62,15 @@ def rms(model, **change):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("speed", [(-20.0, 30.0), (-30.0, 20.0), (30.0, 0.0)])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_shaft_is_the_ring_that_turns_faster_either_way(speed, swapped):
+    rings = bj.Speed(*(speed[::-1] if swapped else speed))
+    model = dataclasses.replace(AXIAL, speed=rings)
+    assert model.shaft_speed == 30.0
+    assert jax.jit(lambda m: m.shaft_speed)(model) == 30.0
+
+
 def test_damping_follows_the_rate_of_loads_along_their_normals():
     """Contacts go round with the balls; that their forces turn is no change of them.
 

@@ -32,6 +32,24 @@ def test_cache_tells_size_and_place_and_is_emptied(run, cache):
     assert "0 files" in run("cache").out and other.exists()
 
 
+def test_commands_compile_for_few_calls(tmp_path):
+    """In a process of its own, since the command sets JAX's settings."""
+    program = (
+        "from argparse import Namespace; from bearingjax.studies import jax_settings;"
+        "from bearingjax.numerics.compiled import programs;"
+        "jax_settings.configure(Namespace(command='solve'));"
+        "print(programs._STORE.few_calls, programs._STORE.folder)"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert told == f"True {tmp_path / 'bearingjax' / 'programs'}\n"
+
+
 def test_kinds_of_designations_are_named_once():
     kinds = kinds_of_catalogue(["6205", "6308", "NU 210", "6206", "NU 214"])
     assert [name for name, _ in kinds] == ["6205", "NU 210", "NU 214"]

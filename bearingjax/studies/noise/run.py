@@ -167,12 +167,13 @@ def run_noise(
         model, line = (
             dataclasses.replace(one, half_width=width) for one in (model, line)
         )
+    # JAX would compile every operation on what it holds, in each process anew.
     model, line = in_numpy((model, line))
     task = dataclasses.replace(task, model=model, line=line)
     tolerances = task.tolerances if task.bearings else None
     _announce(on_stage, "vibration")
-    given = task.vibration.steps
-    record = in_numpy(vibration(model, **task.counts, steps=given, throw=False))
+    motion = vibration(model, **task.counts, steps=task.vibration.steps, throw=False)
+    record = in_numpy(motion)
     result, steps = Result(int(record.result)), record.steps
     asked = model_warnings(model, task.vibration.samples, steps, tolerances)
     warned = (*task.warnings, *asked)
