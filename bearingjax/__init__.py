@@ -22,7 +22,8 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
 
 - Packages, from the ground up: `numerics`, `files`, `design`, `fits`, `contact`,
   `lubrication`, `element`, `statics`, `life`, `cases`, `catalogue`, `friction`,
-  `optimise`, `skid`, `rotor`, `shafts`, `noise`, `report`, `plot`, `studies`.
+  `optimise`, `skid`, `rotor`, `shafts`, `noise`, `validation`, `report`, `plot`,
+  `studies`.
 - Ball bearings: `DeepGrooveBallBearing`, `AngularContactBallBearing`,
   `FourPointBallBearing`, `SelfAligningBallRow`, `ThrustBallBearing`.
 - Roller bearings: `CylindricalRollerBearing`, `NeedleRollerBearing`,
@@ -163,7 +164,18 @@ from .statics import (
 )
 
 if _TYPE_CHECKING:
-    from . import files, noise, optimise, plot, report, rotor, shafts, skid, studies
+    from . import (
+        files,
+        noise,
+        optimise,
+        plot,
+        report,
+        rotor,
+        shafts,
+        skid,
+        studies,
+        validation,
+    )
     from .files import SceneError
     from .studies.bearing.read_scene import load_bearing, read_scene
     from .studies.study import run
@@ -171,7 +183,8 @@ if _TYPE_CHECKING:
 __all__ = [
     "numerics", "files", "design", "fits", "contact", "lubrication", "element",
     "statics", "life", "cases", "catalogue", "friction", "optimise", "skid", "rotor",
-    "shafts", "noise", "report", "plot", "studies", "DeepGrooveBallBearing",
+    "shafts", "noise", "validation", "report", "plot", "studies",
+    "DeepGrooveBallBearing",
     "AngularContactBallBearing", "FourPointBallBearing", "SelfAligningBallRow",
     "ThrustBallBearing", "CylindricalRollerBearing", "NeedleRollerBearing",
     "TaperedRollerBearing", "CylindricalThrustRollerBearing",
@@ -191,7 +204,7 @@ __all__ = [
 
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = dict.fromkeys(
-    "files noise optimise plot report rotor shafts skid studies".split()
+    "files noise optimise plot report rotor shafts skid studies validation".split()
 ) | {
     "SceneError": "files",
     "load_bearing": "studies.bearing.read_scene",

@@ -19,7 +19,8 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics files design fits contact lubrication element statics life"
-    " cases catalogue friction optimise skid rotor shafts noise report plot studies cli"
+    " cases catalogue friction optimise skid rotor shafts noise validation report plot"
+    " studies cli"
 ).split()
 
 
@@ -88,6 +89,7 @@ STUDIES = (
     *"bearing solve cases contact noise skid rotor shaft optimise".split(),
     "catalogue",
     "programs",
+    "validate",
 )
 
 

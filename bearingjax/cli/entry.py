@@ -27,6 +27,7 @@ from ..studies.skid import command as skid
 from ..studies.solve import command as solve
 from ..studies.solve import compare_command as compare
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
+from ..studies.validate import command as validate
 from .execute import execute
 
 _SOLVING = (
@@ -40,6 +41,7 @@ _SOLVING = (
     rotor,
     shaft,
     noise,
+    validate,
 )
 """Commands that solve scenes; `execute` writes their outcome."""
 

@@ -290,6 +290,31 @@ def _scale(number: decimal.Decimal, size: float, name: str, kind: str) -> float:
     return float(number) * size
 
 
+def size_of_unit(name: str) -> float:
+    """Return how many SI units a unit is, of any kind; 1 for none.
+
+    Raises:
+        ValueError: If it is not known.
+    """
+    known = _parse(_plain_unit(name)) if name else (1.0, {})
+    if known is None:
+        raise ValueError(f"the unit {name!r} is not known")
+    return known[0]
+
+
+def read_quantity(text: str) -> float | None:
+    """Return a text such as "12 kN" or "70 °C" in SI, whatever its kind; `None` if it
+    is not a number with a unit."""
+    match = _NUMBER.fullmatch(text)
+    name = _plain_unit(match[2]) if match else ""
+    if match is None or not name:
+        return None
+    if name in _ZEROS:
+        return to_si(text, "temperature")
+    known = _parse(name)
+    return None if known is None else float(match[1].replace("−", "-")) * known[0]
+
+
 def article_of(kind: str) -> str:
     """Return the article of a kind of quantity."""
     return "an" if kind[0] in "aeiou" else "a"

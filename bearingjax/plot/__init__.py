@@ -8,7 +8,7 @@ Names
 
 - Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`,
   `optimise_overview`, `noise_overview`, `skid_overview`, `rotor_overview`,
-  `shaft_overview`.
+  `shaft_overview`, `validation_overview`.
 - Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
 - A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
@@ -54,9 +54,9 @@ from .rotors.rotor_motion import orbits, waterfall, waveforms
 from .rotors.rotor_page import rotor_overview
 from .rotors.rotor_response import linear_curve, response_curve, speed_curve
 from .shafts import shaft_overview
-from .skid import cage_speed, power_bars, skid_overview
-from .skid_contact import heat_map, sliding_map
-from .skid_curves import (
+from .skidding.skid import cage_speed, power_bars, skid_overview
+from .skidding.skid_contact import heat_map, sliding_map
+from .skidding.skid_curves import (
     cage_force_over_orbit,
     cage_force_over_time,
     heat_over_orbit,
@@ -72,12 +72,13 @@ from .skid_curves import (
     spin_over_time,
 )
 from .sweep import sweep_overview
+from .validation import validation_overview
 
 __all__ = [
     "overview", "sweep_overview", "life_overview", "contact_overview",
     "optimise_overview", "noise_overview", "skid_overview", "rotor_overview",
-    "shaft_overview", "drawing",
-    "cross_section", "cross_sections", "rotor_section", "profile", "load_zone",
+    "shaft_overview", "validation_overview", "drawing", "cross_section",
+    "cross_sections", "rotor_section", "profile", "load_zone",
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",
     "contact_stress", "contact_line_load", "centre_pressure", "acceleration_over_time",

@@ -120,7 +120,7 @@ def report_page(
         ),
         "" if table is None else _table(table),
         "" if drawing is None else _picture("Drawing", drawing),
-        _inputs(inputs),
+        _inputs(inputs) if inputs else "",
         _rerun(origin),
     ]
     return _page(title, parts, origin)
@@ -285,8 +285,8 @@ def _rerun(origin: Origin) -> str:
     changes = "".join(f"\n  {one}" for one in origin.settings)
     changed = f"\nwith these changes to the scene below:{changes}" if changes else ""
     again = f"{origin.command}{changed}"
+    scene = f"\n<p>The scene:</p>\n<pre>{escape(origin.text)}</pre>"
     return _section(
         "How to run it again",
-        f"<pre>{escape(again)}</pre>\n<p>The scene:</p>\n"
-        f"<pre>{escape(origin.text)}</pre>",
+        f"<pre>{escape(again)}</pre>" + (scene if origin.text else ""),
     )

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..skid import Ellipse
-from .style import GREY, SMALL, Ax, Axes, axes_or_new, pyplot
+from ...skid import Ellipse
+from ..style import GREY, SMALL, Ax, Axes, axes_or_new, pyplot
 
 _MAP = "viridis"
 

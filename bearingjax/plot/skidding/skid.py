@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..skid import (
+from ...skid import (
     Conditions,
     SkidHistory,
     SkidModel,
@@ -14,8 +14,19 @@ from ..skid import (
     SteadySkid,
     sliding_ellipse,
 )
-from ..skid.conditions import by_raceway
-from .panel import NEWTONS, Ax, Axis, Bars, Curve, Panel, chart
+from ...skid.conditions import by_raceway
+from ..panel import NEWTONS, Ax, Axis, Bars, Curve, Panel, chart
+from ..style import (
+    COLOURS,
+    GREY,
+    RACEWAYS,
+    ROLLER,
+    SMALL,
+    Figure,
+    degrees,
+    head,
+    new_page,
+)
 from .skid_contact import heat_map, sliding_map
 from .skid_curves import (
     cage_force_over_orbit,
@@ -31,17 +42,6 @@ from .skid_curves import (
     speed_over_time,
     spin_over_orbit,
     spin_over_time,
-)
-from .style import (
-    COLOURS,
-    GREY,
-    RACEWAYS,
-    ROLLER,
-    SMALL,
-    Figure,
-    degrees,
-    head,
-    new_page,
 )
 
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..skid import SkidHistory, SkidRollerHistory, SteadyRollerSkid, SteadySkid, zones
-from ..skid import sliding_spectrum as spectrum
-from ..skid.conditions import by_raceway
-from .panel import NEWTONS, Ax, Axis, Curve, Panel, chart, finish
-from .style import (
+from ...skid import SkidHistory, SkidRollerHistory, SteadyRollerSkid, SteadySkid, zones
+from ...skid import sliding_spectrum as spectrum
+from ...skid.conditions import by_raceway
+from ..panel import NEWTONS, Ax, Axis, Curve, Panel, chart, finish
+from ..style import (
     COLOURS,
     GREY,
     INNER,

@@ -1,0 +1,1 @@
+"""Plots of rolling elements that skid."""

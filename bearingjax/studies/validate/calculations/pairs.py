@@ -1,0 +1,51 @@
+"""Pairs of angular contact ball bearings."""
+
+import numpy as np
+
+from ....design.ball_types import AngularContactBallBearing
+from ....element.bearing_element import BearingElement
+from ....statics.load import solve_load
+from ....statics.support import Support
+
+
+def preloaded_pair(
+    bore: float,
+    outside_diameter: float,
+    contact_angle: float,
+    n_balls: int,
+    ball_diameter: float,
+    osculation: float,
+    preload: np.ndarray,
+    measuring_load: float,
+) -> dict[str, np.ndarray]:
+    """Return axial rigidity and axial clearance of a pair back to back.
+
+    The rigidity of a pair is twice that of one bearing under the preload; its clearance
+    is what the rings of one move between preload and measuring load, twice.
+
+    Args:
+        bore, outside_diameter: d and D; the pitch diameter is their mean [m].
+        contact_angle: Unloaded contact angle [rad].
+        n_balls: Number of balls.
+        ball_diameter: [m].
+        osculation: Of both grooves [1].
+        preload: Preloads (n,) [N].
+        measuring_load: Axial load under which the maker measures clearance [N].
+    """
+    bearing = AngularContactBallBearing(
+        n_balls,
+        0.5 * (bore + outside_diameter),
+        ball_diameter,
+        contact_angle=contact_angle,
+        outer_osculation=osculation,
+        inner_osculation=osculation,
+    )
+    element = BearingElement(bearing)
+    axial = Support(free=["ux", "uy", "uz"])
+    solved = [
+        solve_load(element, [0.0, 0.0, force, 0.0, 0.0, 0.0], support=axial)
+        for force in (*preload, measuring_load)
+    ]
+    moved = np.array([float(one.displacement[8]) for one in solved])
+    rigidity = np.array([2.0 * float(one.stiffness[8, 8]) for one in solved[:-1]])
+    return {"rigidity": rigidity, "clearance": -2.0 * (moved[:-1] - moved[-1])}

@@ -1,0 +1,15 @@
+"""Cases with known answers: published, measured, or computed by independent programs.
+
+A case is a file of this package's folder `cases`: where its numbers come from and how
+far they are to be trusted, the inputs, their answers, and how near ours must come. The
+tests, `bearingjax validate` and the site read the same files.
+
+Names
+-----
+
+- Cases: `cases`, `Case`, `Number`, `SUBJECTS`, `TRUST`.
+"""
+
+from .case import SUBJECTS, TRUST, Case, Number, cases
+
+__all__ = ["cases", "Case", "Number", "SUBJECTS", "TRUST"]

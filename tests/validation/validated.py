@@ -1,0 +1,44 @@
+"""Tests of validation cases, shared by the files of this folder."""
+
+import functools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bearingjax.studies.validate.run import compare_case
+from bearingjax.validation import cases
+
+STORED = Path(__file__).parents[2] / "notebooks" / "validation.json"
+"""Our numbers as the site shows them; written by `bearingjax validate --json`."""
+_SAME = 1e-5
+"""Relative difference of numbers that count as the stored ones."""
+
+
+def parameters(*subjects):
+    """Return a parameter for each case of some subjects."""
+    return [
+        pytest.param(case, marks=[pytest.mark.slow] if case.slow else [], id=name)
+        for name, case in cases().items()
+        if case.subject in subjects
+    ]
+
+
+def check_case(case):
+    """Assert that ours are as near to theirs as the case asks for, and those stored."""
+    stored = _stored().get(case.name, {})
+    for one in compare_case(case):
+        number = one.number
+        if number.is_test:
+            where = f"{number.name}: {one.ours} {number.unit}, theirs {number.theirs}"
+            assert one.kept, f"{where}: differs by {one.largest:.3g}"
+        assert number.name in stored, f"run bearingjax validate --json {STORED.name}"
+        old = np.array(stored[number.name]["ours"], float)
+        scale = np.nanmax(np.abs(one.ours), initial=0.0)
+        np.testing.assert_allclose(one.ours, old, rtol=_SAME, atol=1e-9 * scale)
+
+
+@functools.cache
+def _stored():
+    return json.loads(STORED.read_text("utf-8"))["cases"]
