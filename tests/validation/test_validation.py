@@ -144,8 +144,8 @@ def made_case(name, pitch, load, kind="deep_groove_ball"):
     "load, order",
     [
         (1000.0, "like small heavy"),
-        (4e3, "like heavy small"),
-        (0.0, "like heavy small"),
+        (4e3, "heavy like small"),
+        (0.0, "heavy like small"),
     ],
 )
 def test_nearest_cases(monkeypatch, load, order):
