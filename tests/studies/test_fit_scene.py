@@ -350,7 +350,8 @@ def test_needed_drive_up_of_small_bores_beside_tables_of_makers():
                 ring_width=entry.width,
                 bore_taper=1 / 12,
             )
-            seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
+            row = rows_of(bj.load_bearing(entry.designation))[0].bearing
+            seats = with_bearing_dimensions(seats, row)
             for less, travel in SMALL[30 if bore <= 30 else 40]:
                 found = 1e3 * float(needed_drive_up(seats, 1e-6 * less))
                 ratios.append(travel / found)
@@ -378,7 +379,8 @@ def test_drive_up_beside_the_table_of_a_maker():
             ring_width=entry.width,
             bore_taper=1 / 12 if steep else 1 / 30,
         )
-        seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
+        row = rows_of(bj.load_bearing(entry.designation))[0].bearing
+        seats = with_bearing_dimensions(seats, row)
         for less, travel in zip(found[0], found[1 if steep else 2], strict=True):
             ratios.append(float(needed_drive_up(seats, 1e-6 * less)) / 1e-3 / travel)
     assert len(ratios) > 120
