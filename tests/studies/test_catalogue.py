@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import equinox as eqx
+import jax
 import numpy as np
 import pytest
 from tolerances import SOLVER
@@ -288,6 +289,8 @@ def test_bearing_by_designation_and_by_scene():
     assert entry.limiting_speed == pytest.approx(18000.0 * np.pi / 30.0)
     assert "2RS1 (seals or shields): no effect" in entry.notes
     assert isinstance(bj.load_bearing("1205 EKTN9"), bj.BearingSet)
+    with jax.enable_x64(False):
+        assert bj.load_bearing("6205").pitch_diameter.dtype == np.float32
     assert type(bj.load_bearing("tapered")) is bj.TaperedRollerBearing
 
 
