@@ -6,7 +6,8 @@ import gc
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from ..studies import jax_settings
 from ..studies import schema_command as schema
@@ -28,6 +29,8 @@ from ..studies.solve import command as solve
 from ..studies.solve import compare_command as compare
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 from ..studies.validate import command as validate
+from .about import citations, describe_version
+from .completion import completion_script
 from .execute import execute
 
 _SOLVING = (
@@ -59,10 +62,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
         solved, 130 interrupted.
     """
-    options, unknown = parser().parse_known_args(arguments)
-    if unknown:  # told with the usage of the command, not with that of all
-        options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
-    options.given = list(sys.argv[1:] if arguments is None else arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
             stream.reconfigure(errors="backslashreplace")
@@ -73,6 +72,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
+        options, unknown = parser().parse_known_args(arguments)
+        if unknown:  # told with the usage of the command, not with that of all
+            options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
+        options.given = list(sys.argv[1:] if arguments is None else arguments)
         jax_settings.configure(options)
         return options.execute(options)
     except SceneError as error:
@@ -98,12 +101,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """Build the parser; `execute` of the parsed options runs the command."""
-    from importlib.metadata import version
-
     top = argparse.ArgumentParser(
         prog="bearingjax", description="Rolling-bearing mechanics."
     )
-    top.add_argument("--version", action="version", version=version("bearingjax"))
+    top.add_argument(
+        "--version",
+        action=_Tell,
+        tell=describe_version,
+        nargs=0,
+        help="tell the versions, backend, devices and precision that runs use",
+    )
+    top.add_argument(
+        "--cite",
+        action=_Tell,
+        tell=citations,
+        nargs="?",
+        const="",
+        metavar="SCENE",
+        help="tell how to cite this program, and the methods that a scene uses: BibTeX",
+    )
+    top.add_argument(
+        "--completion",
+        action=_Tell,
+        tell=lambda shell: completion_script(parser(), shell),
+        choices=("bash", "zsh", "fish"),
+        help="print the script with which a shell completes commands",
+    )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (*_SOLVING, *_LOOKING_UP):
         added = command.add(commands)
@@ -113,6 +136,18 @@ def parser() -> argparse.ArgumentParser:
             add_quiet(added)
         added.set_defaults(execute=call, refuse=added.error)
     return top
+
+
+class _Tell(argparse.Action):
+    """Print what `tell` makes of the value of an option, and end."""
+
+    def __init__(self, *names, tell: Callable[[Any], str], **settings):
+        super().__init__(*names, **settings)
+        self.tell = tell
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        print(self.tell(values), flush=True)
+        parser.exit()
 
 
 def _forget_output() -> None:
