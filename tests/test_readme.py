@@ -49,6 +49,8 @@ def test_two_commands_and_their_scene():
     assert "pytest" in blocks[1]
     # Continuous integration runs the others after it.
     assert '-m "not slow"' in blocks[1]
+    (command,) = re.findall(r"bin/(pytest .*)", blocks[1])
+    assert f"run: {command}\n" in (ROOT / ".github/workflows/tests.yml").read_text()
 
 
 @pytest.mark.parametrize("place", ["", "bearingjax/studies", "benchmarks"])
