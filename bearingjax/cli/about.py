@@ -1,9 +1,9 @@
-"""What `bearingjax --version`, `--cite` and `--completion` print."""
+"""What `bearingjax --version` and `--cite` print."""
 
+import json
 import re
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterator
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
@@ -12,7 +12,7 @@ from .._version import __version__
 
 
 def describe_version(_: Any = None) -> str:
-    """Return what a report of a fault names: versions, backend, devices, precision."""
+    """Return versions, backend, devices and precision, for a report of a fault."""
     import platform
 
     import jax
@@ -45,37 +45,24 @@ def citations(source: str) -> str:
     Raises:
         SceneError: If the scene cannot be read.
     """
-    used: set[str] = set()
+    echo = ""
     if source:
         from ..studies import jax_settings
         from ..studies.study import STUDIES, study_of
 
         jax_settings.configure(Namespace(command="cite"))
-        used = set(_choices(STUDIES[study_of(source)].read(source).inputs))
+        echo = json.dumps(STUDIES[study_of(source)].read(source).inputs)
     entries = (files("bearingjax.cli") / "references.bib").read_text(encoding="utf-8")
     return "\n\n".join(
         entry.strip().replace("{VERSION}", f"{{{__version__}}}")
         for entry in re.split(r"\n(?=@)", entries)
         if (rules := re.search(r"usedby = \{(.*?)\}", entry)) is None
-        or any(_fits(rule, used) for rule in rules[1].split("; "))
+        or any(_fits(rule, echo) for rule in rules[1].split("; "))
     )
 
 
-def _fits(rule: str, used: set[str]) -> bool:
-    """Whether a scene has all choices of a rule, such as "lubricant & n_balls"."""
-    return all(f".{part}" in used for part in rule.split(" & "))
-
-
-def _choices(value: Any, place: str = "") -> Iterator[str]:
-    """Yield the ends of all paths in the echo of a scene, ".a", ".a.b", ".b=word"."""
-    names = place.split(".")[1:]
-    ends = ["." + ".".join(names[k:]) for k in range(len(names))]
-    yield from ends
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _choices(inner, f"{place}.{key}")
-    elif isinstance(value, list):
-        for inner in value:
-            yield from _choices(inner, place)
-    elif isinstance(value, str):
-        yield from (f"{end}={value}" for end in ends)
+def _fits(rule: str, echo: str) -> bool:
+    """Whether a scene has the keys and words of a rule, "lubricant & line_law=x"."""
+    parts = (part.partition("=") for part in rule.split(" & "))
+    words = ((key, rf'(\[[^]]*)?"{word}"' if word else "") for key, _, word in parts)
+    return all(re.search(f'"{key}": {word}', echo) for key, word in words)

@@ -4,11 +4,11 @@ import argparse
 import importlib
 from pathlib import Path
 
+SHELLS = ("bash", "zsh", "fish")
+
 
 def completion_script(top: argparse.ArgumentParser, shell: str) -> str:
-    """Return the completion script of a parser for "bash", "zsh" or "fish".
-
-    It holds all words, so that completing never starts Python.
+    """Return the script for one of `SHELLS`; it has all words, and starts no Python.
 
     Raises:
         SceneError: Without shtab.

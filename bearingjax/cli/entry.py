@@ -7,7 +7,6 @@ import io
 import os
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from ..studies import jax_settings
 from ..studies import schema_command as schema
@@ -30,7 +29,7 @@ from ..studies.solve import compare_command as compare
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 from ..studies.validate import command as validate
 from .about import citations, describe_version
-from .completion import completion_script
+from .completion import SHELLS, completion_script
 from .execute import execute
 
 _SOLVING = (
@@ -104,28 +103,15 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="bearingjax", description="Rolling-bearing mechanics."
     )
-    top.add_argument(
-        "--version",
-        action=_Tell,
-        tell=describe_version,
-        nargs=0,
-        help="tell the versions, backend, devices and precision that runs use",
-    )
-    top.add_argument(
-        "--cite",
-        action=_Tell,
-        tell=citations,
-        nargs="?",
-        const="",
-        metavar="SCENE",
-        help="tell how to cite this program, and the methods that a scene uses: BibTeX",
-    )
-    top.add_argument(
+    _tell(top, "--version", describe_version, "versions, devices, precision", nargs=0)
+    text = "BibTeX of this program, and of the methods that a scene uses"
+    _tell(top, "--cite", citations, text, nargs="?", const="", metavar="SCENE")
+    _tell(
+        top,
         "--completion",
-        action=_Tell,
-        tell=lambda shell: completion_script(parser(), shell),
-        choices=("bash", "zsh", "fish"),
-        help="print the script with which a shell completes commands",
+        lambda shell: completion_script(parser(), shell),
+        "the script with which a shell completes commands",
+        choices=SHELLS,
     )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (*_SOLVING, *_LOOKING_UP):
@@ -138,16 +124,15 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-class _Tell(argparse.Action):
-    """Print what `tell` makes of the value of an option, and end."""
+def _tell(top, name: str, tell: Callable[..., str], text: str, **settings) -> None:
+    """Add an option that prints what `tell` makes of its value, and ends."""
 
-    def __init__(self, *names, tell: Callable[[Any], str], **settings):
-        super().__init__(*names, **settings)
-        self.tell = tell
+    class Tell(argparse.Action):
+        def __call__(self, parser, namespace, values, option_string=None):
+            print(tell(values), flush=True)
+            parser.exit()
 
-    def __call__(self, parser, namespace, values, option_string=None):
-        print(self.tell(values), flush=True)
-        parser.exit()
+    top.add_argument(name, action=Tell, help=f"print {text}", **settings)
 
 
 def _forget_output() -> None:
