@@ -6,10 +6,12 @@ What follows from the code is written into `_generated` first (`site_pages.py`).
 notebooks show the outputs that are stored in them; the tests run them.
 """
 
+import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
+os.environ["MPLBACKEND"] = "Agg"
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
 import jax  # noqa: E402
@@ -24,12 +26,8 @@ import bearingjax  # noqa: E402
 project = "bearingjax"
 author = "the authors of bearingjax"
 version = release = bearingjax.__version__
-extensions = [
-    "myst_nb",
-    "sphinx.ext.autodoc",
-    "sphinx.ext.napoleon",
-    "sphinx_copybutton",
-]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions += ["sphinx_copybutton"]
 exclude_patterns = ["_build", "types", "jupyter_execute", "**/.ipynb_checkpoints"]
 # Guides and theory come from elsewhere: take this line out when all of them are here.
 suppress_warnings = ["toc.not_readable"]

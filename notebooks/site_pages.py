@@ -18,6 +18,7 @@ import bearingjax as bj
 from bearingjax.design.keywords import BALLS, ROLLERS
 from bearingjax.skid.model import _KINDS as SKIDDING
 from bearingjax.statics.support import axial_senses, restrained_freedoms
+from bearingjax.studies.bearing.read_scene import scene_of
 from bearingjax.studies.catalogue.catalogue_report import new_scene
 from bearingjax.studies.scene_schema import key_guide
 
@@ -94,55 +95,50 @@ def api_page(package):
     return text
 
 
-def source_of(kind):
-    """The designation, or the path of a scene, that a type's page draws."""
-    return DRAWN.get(kind) or str(HERE / "types" / f"{kind}.toml")
+def scene_text(kind):
+    """Scene of the bearing that a type's page draws: of a designation, or its file."""
+    if kind in DRAWN:
+        return new_scene(bj.catalogue_entry(DRAWN[kind]))
+    return Path(HERE, "types", f"{kind}.toml").read_text()
 
 
 def type_page(kind):
     """Page of a type of bearing: drawing, model, smallest example, validation."""
-    entry = bj.catalogue_entry(DRAWN[kind]) if kind in DRAWN else None
-    scene = new_scene(entry) if entry else Path(source_of(kind)).read_text()
-    path = "my.toml" if entry else f"{kind}.toml"
-    asked, about = tomllib.loads(scene)["operating"], (BALLS | ROLLERS)[kind]
-    force = {name: float(text.split()[0]) for name, text in asked["load"].items()}
-    bearing = bj.load_bearing(source_of(kind))
+    text, about = scene_text(kind), (BALLS | ROLLERS)[kind]
+    scene = scene_of(tomllib.loads(text), Path(kind))
+    bearing = scene.element.bearing
+    new, python, shown = "", f'bj.load_bearing("{kind}.toml")', "the scene below"
+    if kind in DRAWN:
+        new = f'bearingjax new "{DRAWN[kind]}" > {kind}.toml\n'
+        python = f'bj.catalogue_entry("{DRAWN[kind]}").bearing'
+        shown = f"{DRAWN[kind]}, its inside {bj.catalogue_entry(DRAWN[kind]).geometry}"
     sizes = [e.geometry for e in bj.catalogue_entries() if e.type == kind]
+    known = f"inside published of {sizes.count('published')}, else estimated"
+    along = "along a line, in slices or on a half-space, with the roller's profile"
+    senses = (f"{sense:+d}z".replace("1", "") for sense in axial_senses(bearing))
     title = kind.replace("f_a", "f-a").replace("_point", "-point contact")
     tables = re.split(r"\n(?=##)", key_guide("bearing"))
     (keys,) = [t for t in tables if t.startswith(f"### `[bearing]`, {kind}\n")]
-    given = (
-        f"{DRAWN[kind]}, its inside {entry.geometry}" if entry else "the scene below"
-    )
-    along = "along a line, in slices or on a half-space, with the roller's profile"
-    senses = (f"{sense:+d}z".replace("1", "") for sense in axial_senses(bearing))
-    known = f"{sizes.count('published')} of them with published inside, the others"
-    return (
-        Path(HERE, "types", "page.md")
-        .read_text()
-        .format(
-            title=title.replace("_", " ").capitalize() + " bearing",
-            kind=kind,
-            name=about.__name__,
-            about=(inspect.getdoc(about) or "").partition("Attributes")[0].strip(),
-            given=given,
-            rows=len(bj.design.rows_of(bearing)),
-            contact="elliptical (Hertz), of balls in grooves"
-            if kind in BALLS
-            else along,
-            freedoms=", ".join(restrained_freedoms(bearing)),
-            senses=" and ".join(senses) or "none without ribs",
-            sizes=f"{len(sizes)} sizes, {known} estimated" if sizes else "none",
-            skids="yes" if issubclass(about, SKIDDING) else "no",
-            keys=keys[keys.index("| key") :].strip(),
-            scene="" if entry else f"`{path}`:\n\n```toml\n{scene}```\n\n",
-            new=f'bearingjax new "{DRAWN[kind]}" > {path}\n' if entry else "",
-            path=path,
-            source=DRAWN.get(kind, path),
-            load=[force.get(f"{what}{axis}", 0.0) for what in "FM" for axis in "xyz"],
-            rpm=float(asked["inner_speed"].split()[0]),
-            validation=validation_of(kind),
-        )
+    template = Path(HERE, "types", "page.md").read_text()
+    return template.format(
+        title=title.replace("_", " ").capitalize() + " bearing",
+        kind=kind,
+        name=about.__name__,
+        about=(inspect.getdoc(about) or "").partition("Attributes")[0].strip(),
+        shown=shown,
+        rows=len(bj.design.rows_of(bearing)),
+        contact=along if kind in ROLLERS else "elliptical (Hertz), of balls in grooves",
+        freedoms=", ".join(restrained_freedoms(bearing)),
+        senses=" and ".join(senses) or "none without ribs",
+        sizes=f"{len(sizes)} sizes, {known}" if sizes else "none",
+        skids="yes" if isinstance(bearing, SKIDDING) else "no",
+        keys=keys[keys.index("| key") :].strip(),
+        scene="" if new else f"`{kind}.toml`:\n\n```toml\n{text}```\n\n",
+        new=new,
+        python=python,
+        load=[*map(float, scene.load)],
+        speed=float(scene.speed.inner),
+        validation=validation_of(kind),
     )
 
 
@@ -167,14 +163,12 @@ def included(source):
 
 def draw(kind):
     """Draw the bearing of a type, unless its design and our plots are as they were."""
-    bearing, place = bj.load_bearing(source_of(kind)), MADE / "drawings" / f"{kind}.svg"
-    code = b"".join(
-        p.read_bytes() for p in sorted(Path(bj.__path__[0]).rglob("plot/**/*.py"))
-    )
-    mark = f"<!-- {hashlib.sha256(repr(bearing).encode() + code).hexdigest()} -->\n"
+    place = MADE / "drawings" / f"{kind}.svg"
+    plots = sorted(Path(bj.__path__[0], "plot").rglob("*.py"))
+    known = scene_text(kind).encode() + b"".join(p.read_bytes() for p in plots)
+    mark = f"<!-- {hashlib.sha256(known).hexdigest()} -->\n"
     if not place.exists() or not place.read_text().endswith(mark):
         place.parent.mkdir(parents=True, exist_ok=True)
-        figure = bj.plot.drawing(bearing, DRAWN.get(kind, ""))
-        figure.savefig(place)
-        figure.clear()
+        scene = scene_of(tomllib.loads(scene_text(kind)), Path(kind))
+        bj.plot.drawing(scene.element.bearing, DRAWN.get(kind, "")).savefig(place)
         place.write_text(place.read_text() + mark)

@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -62,10 +63,12 @@ def test_page_of_a_type(kind):
     assert f"../drawings/{kind}.svg" in text and f"| `type` | `{kind}` |" in text
     (python,) = re.findall(r"```python\n(.*?)```", text, re.S)
     compile(python, kind, "exec")
-    load = [
-        float(word) for word in re.findall(r"\[(.*?)\],  # Fx", python)[0].split(",")
-    ]
-    assert len(load) == 6 and any(load)
+    load = json.loads(re.findall(r"(\[.*\]),  # Fx", python)[0])
+    asked = tomllib.loads(site_pages.scene_text(kind))["operating"]["load"]
+    newtons = {"N": 1.0, "kN": 1e3}
+    for place, name in enumerate(("Fx", "Fy", "Fz", "Mx", "My", "Mz")):
+        number, unit = asked.get(name, "0 N").split()
+        assert load[place] == float(number) * newtons[unit]
     for block in re.findall(r"```toml\n(.*?)```", text, re.S):
         assert tomllib.loads(block)["bearing"]["type"] == kind
 
