@@ -55,4 +55,7 @@ def short_types(app, what, name, obj, options, lines):
 
 
 def _short(words):
-    return re.sub(r"\b(jaxlib\._jax|jaxtyping|equinox\._module\._module)\.", "", words)
+    """Types without their modules; one array for those of JAX and NumPy."""
+    words = re.sub(r"\b(jaxlib\._jax|jaxtyping|equinox\._module\._module)\.", "", words)
+    alike = r"\[Array, ('[^']*')\](?: \| \w+\[(?:ndarray|floating), \1\])+"
+    return re.sub(alike, r"[Array, \1]", words).replace("Float[Array, '']", "Scalar")
