@@ -42,7 +42,8 @@ autodoc_preserve_defaults = True
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 80
-add_module_names = smartquotes = False
+add_module_names = False
+smartquotes_action = "De"  # dashes and dots, and quotes as they are
 toc_object_entries = False  # a page has the subjects of a package; else it takes long
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True

@@ -13,6 +13,8 @@ def to_rst(app, what, name, obj, options, lines):
     """Rewrite the lines of a docstring in place, as Sphinx has it."""
     if what == "data":
         lines[:] = _words_on(name)
+    if what in ("property", "attribute", "data"):
+        lines.insert(0, "\\ ")  # or napoleon takes what precedes a colon for a type
     text = "\n".join(_escaped(line) for line in lines)
     # "Attributes are those of `X`, and" goes straight on with a list of others.
     opening = r"(?m)^((?:.*\bAttributes are|follows from the sphere, and).*)\n(?= {4})"

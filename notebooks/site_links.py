@@ -71,7 +71,8 @@ def plain_types(app, document):
     for node in list(document.findall(pending_xref)):
         if node.get("refspecific") and node["reftarget"].split(".")[-1] not in known:
             short = find_pending_xref_condition(node, "resolved") or node
-            node.replace_self(short.children)
+            of_jax = node["reftarget"].startswith("jaxlib")
+            node.replace_self(nodes.Text("Array") if of_jax else short.children)
 
 
 def resolve(app, env, node, content):
