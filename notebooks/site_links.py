@@ -71,8 +71,9 @@ def plain_types(app, document):
     for node in list(document.findall(pending_xref)):
         if node.get("refspecific") and node["reftarget"].split(".")[-1] not in known:
             short = find_pending_xref_condition(node, "resolved") or node
-            of_jax = node["reftarget"].startswith("jaxlib")
-            node.replace_self(nodes.Text("Array") if of_jax else short.children)
+            node.replace_self(short.children)
+    for node in [one for one in document.findall(nodes.Text) if "jaxlib." in one]:
+        node.parent.replace(node, nodes.Text(node.replace("jaxlib._jax.", "")))
 
 
 def resolve(app, env, node, content):
