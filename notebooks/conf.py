@@ -28,7 +28,13 @@ author = "the authors of bearingjax"
 version = release = bearingjax.__version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 extensions += ["sphinx_copybutton"]
-exclude_patterns = ["_build", "types", "jupyter_execute", "**/.ipynb_checkpoints"]
+exclude_patterns = [
+    "_build",
+    "types",
+    "validation_head.md",
+    "jupyter_execute",
+    "**/.ipynb_checkpoints",
+]
 # Guides and theory come from elsewhere: take this line out when all of them are here.
 suppress_warnings = ["toc.not_readable"]
 default_role = "literal"  # backticks of docstrings; `site_links` links them

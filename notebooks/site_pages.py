@@ -14,6 +14,8 @@ import re
 import tomllib
 from pathlib import Path
 
+import site_validation
+
 import bearingjax as bj
 from bearingjax.design.keywords import BALLS, ROLLERS
 from bearingjax.skid.model import _KINDS as SKIDDING
@@ -39,6 +41,7 @@ def write_pages():
     """Write all pages that are generated."""
     texts = {f"api/{package}.rst": api_page(package) for package in packages()}
     texts |= {f"types/{kind}.md": type_page(kind) for kind in (*BALLS, *ROLLERS)}
+    texts["validation.md"] = site_validation.validation_page()
     texts |= {f"{name}.md": included(source) for source, name in INCLUDED.items()}
     for name, text in texts.items():
         place = MADE / name
@@ -47,6 +50,7 @@ def write_pages():
             place.write_text(text, "utf-8")
     for kind in (*BALLS, *ROLLERS):
         draw(kind)
+    site_validation.draw_overview()
 
 
 @functools.cache
@@ -110,7 +114,7 @@ def type_page(kind):
     new, python, shown = "", f'bj.load_bearing("{kind}.toml")', "the scene below"
     if kind in DRAWN:
         new = f'bearingjax new "{DRAWN[kind]}" > {kind}.toml\n'
-        python = f'bj.catalogue_entry("{DRAWN[kind]}").bearing'
+        python = f'bj.load_bearing("{DRAWN[kind]}")'
         shown = f"{DRAWN[kind]}, its inside {bj.catalogue_entry(DRAWN[kind]).geometry}"
     sizes = [e.geometry for e in bj.catalogue_entries() if e.type == kind]
     known = f"inside published of {sizes.count('published')}, else estimated"
@@ -138,13 +142,8 @@ def type_page(kind):
         python=python,
         load=[*map(float, scene.load)],
         speed=float(scene.speed.inner),
-        validation=validation_of(kind),
+        validation=site_validation.cases_of_type(kind),
     )
-
-
-def validation_of(kind):
-    """What the validation page has about a type, in Markdown."""
-    return "The published cases are on the [validation page](../../validation.md)."
 
 
 def included(source):

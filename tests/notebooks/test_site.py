@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import site_pages
+import site_validation
 
 import bearingjax as bj
 from bearingjax.studies.scene_schema import scene_schema
@@ -79,3 +80,13 @@ def test_links_of_an_included_text_lead_somewhere(source):
     for target in re.findall(r"\]\((?!\w+:|#)([^)#]+)", text):
         own = Path(target).stem in site_pages.INCLUDED.values()
         assert own or (site_pages.MADE / target).resolve().is_file(), target
+
+
+def test_validation_page_has_every_case_and_number():
+    """Its numbers are those stored, which the tests of the cases compare."""
+    text = site_validation.validation_page()
+    for name, case in bj.validation.cases().items():
+        assert f"(case-{name.replace('_', '-')})=" in text and case.title in text
+        assert all(number.name in text for number in case.numbers)
+    here = site_validation.cases_of_type("angular_contact_ball")
+    assert "(#case-harris-218-thrust)" in here

@@ -26,19 +26,8 @@ steady_module = importlib.import_module(
     "bearingjax.skid.orbits.steady"
 )  # a function's name
 
-# Axial load [N]: pitch angle of the spin axis [deg], as an independent integration of
-# one ball in time ended; other numbers are the validation case `han_chu_end_states`.
-ENDS = {
-    40.0: 0.2,
-    80.0: None,
-    120.0: 3.2,
-    200.0: 24.1,
-    300.0: 31.2,
-    400.0: 32.1,
-    520.0: 32.6,
-    600.0: 32.9,
-}
-
+ENDS = 40.0, 80.0, 120.0, 200.0, 300.0, 400.0, 520.0, 600.0
+"""Axial loads of the validation case `han_chu_end_states` [N]."""
 
 ASIDE = float(0.02 * BEARING.ball_diameter * np.sin(np.radians(25.0)))
 """From the middle of the balls to the inner groove's centre, where method 001 has the
@@ -91,16 +80,6 @@ def combined(many_places):
 
 def row(result, k):
     return jax.tree.map(lambda a: np.asarray(a)[k], result)
-
-
-@pytest.mark.slow
-def test_steady_axial_loads_match_published_pitch(axial):
-    """AF001-14."""
-    assert np.all(axial.result == Result.CONVERGED)
-    for k, angle in enumerate(ENDS.values()):
-        if angle is not None:
-            got = np.degrees(row(axial, k).pitch_angle[0])
-            np.testing.assert_allclose(got, angle, atol=0.3)
 
 
 @pytest.mark.slow

@@ -1,12 +1,15 @@
 """Rotors, vibration and noise."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ....design import Material
 from ....design.ball_types import AngularContactBallBearing, DeepGrooveBallBearing
+from ....element.balls.ball_speed import EqualShare
 from ....element.bearing_element import BearingElement
 from ....element.inertia import Speed
+from ....lubrication import mil_l_23699
 from ....noise import (
     NoiseModel,
     acceleration_of,
@@ -17,6 +20,8 @@ from ....noise import (
 )
 from ....numerics.power import positive_power
 from ....rotor.nonlinear import Grooves, Shooting, VibratingSystem, backbone
+from ....skid import SkidModel, steady
+from ....statics.support import Support
 
 _TURN = 2.0 * np.pi
 
@@ -207,3 +212,62 @@ def preloaded_grooves(
         "radial": float(stiffness[0, 0]),
         "axial": float(stiffness[2, 2]),
     }
+
+
+def skidding_balls(
+    n_balls: int,
+    ball_diameter: float,
+    pitch_diameter: float,
+    osculation: float,
+    contact_angle: float,
+    inner_speed: float,
+    oil_temperature: float,
+    axial_load: np.ndarray,
+) -> dict[str, np.ndarray]:
+    """Return where balls end under axial loads, their contact loads being those of pure
+    rolling; the oil is MIL-L-23699, and there is no cage.
+
+    Args:
+        n_balls: Number of balls.
+        ball_diameter, pitch_diameter: [m].
+        osculation: Of both grooves [1].
+        contact_angle: Unloaded [rad].
+        inner_speed: [rad/s].
+        oil_temperature: [K].
+        axial_load: (load,) [N].
+
+    Returns:
+        Of each load `slip` of the orbit [1], `angle` of both contacts [rad], `load` of
+        the inner one [N], `spin` (tangential, radial, axial) [rad/s], `pitch` of the
+        spin axis [rad].
+    """
+    bearing = AngularContactBallBearing(
+        n_balls,
+        pitch_diameter,
+        ball_diameter,
+        outer_osculation=osculation,
+        inner_osculation=osculation,
+        contact_angle=contact_angle,
+        material=Material(206e9, 0.3, 7850.0),
+    )
+    element = BearingElement(bearing, raceway_control=EqualShare())
+    model = SkidModel(element, mil_l_23699(), oil_temperature)
+    free, speed = ["ux", "uy", "uz", "gx", "gy"], Speed(inner=inner_speed)
+
+    @jax.jit
+    @jax.vmap
+    def end(axial):
+        load = jnp.zeros(6).at[2].set(axial)
+        support = Support(free)
+        found = steady(
+            model, load, speed=speed, support=support, places=1, load_speed=speed
+        )
+        return {
+            "slip": found.slip[0],
+            "angle": found.contact_angle[0],
+            "load": found.contact_load[0, 1],
+            "spin": found.spin[0],
+            "pitch": found.pitch_angle[0],
+        }
+
+    return jax.device_get(end(jnp.asarray(axial_load)))
