@@ -1,5 +1,7 @@
 """Pairs of angular contact ball bearings."""
 
+from typing import Any
+
 import numpy as np
 
 from ....design.ball_types import AngularContactBallBearing
@@ -49,3 +51,25 @@ def preloaded_pair(
     moved = np.array([float(one.displacement[8]) for one in solved])
     rigidity = np.array([2.0 * float(one.stiffness[8, 8]) for one in solved[:-1]])
     return {"rigidity": rigidity, "clearance": -2.0 * (moved[:-1] - moved[-1])}
+
+
+def fixed_sets(preload: float, **bearing: Any) -> dict[str, np.ndarray]:
+    """Return preload and axial rigidity over those of the pair: of one bearing against
+    two and of two against two, pressed together as much as the pair.
+
+    Args:
+        preload: That of the pair [N].
+        bearing: Other arguments of `preloaded_pair`.
+    """
+    force = preload
+    for _ in range(4):  # Newton's steps
+        loads = np.array([preload, force, 0.5 * force])
+        found = preloaded_pair(preload=loads, **bearing)
+        pair, one, half = found["rigidity"]
+        moved = -0.5 * found["clearance"]
+        force += (2.0 * moved[0] - moved[1] - moved[2]) / (2.0 / one + 1.0 / half)
+    rigidity = (0.5 * one + half) / pair
+    return {
+        "preload": np.array([loads[1] / preload, 2.0]),
+        "rigidity": np.array([rigidity, 2.0]),
+    }

@@ -1,0 +1,78 @@
+"""Any public function or method, called with the inputs of a case."""
+
+import dataclasses
+import importlib
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....catalogue.entry import catalogue_entry
+from ....design.bearing_set import BearingSet
+from ....design.keywords import bearing_of
+from ....numerics.types import Reals, Scalar
+
+
+def bearing_by(bearing: str | Mapping[str, Any], arrangement: str = "") -> Any:
+    """Return a bearing by its designation or its keywords, alone or as a pair."""
+    of_text = isinstance(bearing, str)
+    own = catalogue_entry(bearing).bearing if of_text else bearing_of(bearing)
+    return getattr(BearingSet, arrangement)(own, 0.03) if arrangement else own
+
+
+def call(function: str, **given: Any) -> Mapping[str, Any]:
+    """Return what a public function returns, as `value` or its fields by name.
+
+    Args:
+        function: "life.ratings" is that of `bearingjax`; "oil.viscosity" is a method of
+            the argument `oil`.
+        given: Its arguments by name; those of a row may be dotted, "mounting.bore".
+            `bearing` is a designation, or keywords of a design, with the `arrangement`
+            of a pair. A table with `make` is what that function returns.
+    """
+    for key in [key for key in given if "." in key]:
+        table, _, name = key.partition(".")
+        given[table] = {**given[table], name: given.pop(key)}
+    if "bearing" in given:
+        given["bearing"] = bearing_by(given["bearing"], given.pop("arrangement", ""))
+    found = _as_data(_made({"make": function, **given}))
+    return found if isinstance(found, Mapping) else {"value": found}
+
+
+def _made(value: Any) -> Any:
+    if not isinstance(value, Mapping) or "make" not in value:
+        return value
+    given = {name: _made(inner) for name, inner in value.items() if name != "make"}
+    owner, _, name = value["make"].rpartition(".")
+    if hasattr(given.get(owner), name):
+        called = getattr(given.pop(owner), name)
+    else:
+        called = getattr(importlib.import_module(f"....{owner}", __package__), name)
+    return called(**_typed(called, given))
+
+
+def _typed(called: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arguments as arrays where a function takes nothing else."""
+    kinds = inspect.signature(called).parameters
+    arrays = {name for name in given if kinds[name].annotation in (Scalar, Reals)}
+    return {k: jnp.asarray(v) if k in arrays else v for k, v in given.items()}
+
+
+def _as_data(found: Any) -> Any:
+    """Return a result as tables by the names of its fields, lists and numbers."""
+    if isinstance(found, jax.Array | np.ndarray):
+        return np.asarray(found).tolist()
+    if isinstance(found, tuple) and hasattr(found, "_fields"):
+        found = {name: getattr(found, name) for name in found._fields}
+    elif dataclasses.is_dataclass(found):
+        found = {
+            one.name: getattr(found, one.name) for one in dataclasses.fields(found)
+        }
+    if isinstance(found, Mapping):
+        return {name: _as_data(value) for name, value in found.items()}
+    if isinstance(found, list | tuple):
+        return [_as_data(value) for value in found]
+    return found

@@ -1,0 +1,65 @@
+"""Friction torques of one row without a solve, and constants of SKF's model."""
+
+import jax.numpy as jnp
+import numpy as np
+
+from ....catalogue.entry import catalogue_entry
+from ....design.bearing_set import rows_of
+from ....design.keywords import BALLS, ROLLERS
+from ....friction import friction_skf as skf
+from ....friction.friction import _of_row
+from ....life.equivalent_load import equivalent_load
+
+
+def torque(
+    bearing: str,
+    load: np.ndarray,
+    speed: float,
+    viscosity: float,
+    supply: str = "oil_bath",
+) -> dict[str, float]:
+    """Return the torques of a bearing of the catalogue by SKF's and Palmgren's models.
+
+    Args:
+        bearing: Its designation.
+        load: On the bearing (6,); rows bear their share as one [N, N m].
+        speed: Of the inner ring [rad/s].
+        viscosity: Kinematic [m²/s].
+        supply: One of `SUPPLIES`.
+    """
+    entry, force = catalogue_entry(bearing), jnp.asarray(load)
+    row = rows_of(entry.bearing)[0].bearing
+    kind, series = skf._TYPES[type(row)], skf.skf_series_of(entry)
+    assert series is not None
+    rpm, nu = speed * 30.0 / np.pi, 1e6 * viscosity
+    mean, span = skf._diameters(row, kind, (entry.bore, entry.outside_diameter))
+    flow, radial = nu * rpm, np.hypot(*load[:2])
+    given = kind.series[series], mean, radial, load[2], rpm, entry.static_capacity, flow
+    rolling, sliding = (1e-3 * float(x) for x in skf._variables(row, *given))
+    warm = 1.0 / (1.0 + 1.84e-9 * (rpm * float(mean)) ** 1.28 * nu**0.64)
+    oiled = flow * 2.0 * float(mean) * np.sqrt(kind.kz / (2.0 * float(span)))
+    full = np.exp(-skf._STARVED[supply] * oiled)
+    dry = np.exp(-2.6e-8 * flow**1.4 * float(mean))
+    film = skf.OILS["mineral"] if kind.film is None else kind.film
+    parts = {
+        "rolling": warm * full * flow**0.6 * rolling,
+        "sliding": (dry * skf._BOUNDARY + (1.0 - dry) * film) * sliding,
+    }
+    p = float(equivalent_load(entry.bearing, force).dynamic)
+    whole = sum(parts.values())
+    palmgren = _of_row(row, force, viscosity * speed, supply, entry.static_capacity)
+    return parts | {
+        "heating": warm,
+        "replenishment": float(full),
+        "skf": whole,
+        "palmgren": float(sum(palmgren)),
+        "coefficient": whole / (0.5 * p * entry.bore),
+    }
+
+
+def constants() -> dict[str, np.ndarray]:
+    """Return the sums of the logarithms of SKF's constants over the series of types."""
+    kinds = {**BALLS, **ROLLERS}
+    rows = {name: skf._TYPES.get(kind) for name, kind in kinds.items()}
+    tables = {k: [*kind.series.values()] for k, kind in rows.items() if kind}
+    return {name: np.log(np.array(rows)).sum(axis=0) for name, rows in tables.items()}

@@ -1,0 +1,150 @@
+"""Factors of the load ratings, and lives of worked examples, by ISO 281 and ISO 76."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ....cases.cases import Cases
+from ....cases.spectrum import spectrum_life
+from ....design.bearing_set import rows_of
+from ....life import CLEANLINESS, Cleanliness, row_rating
+from ....life.equivalent_load import equivalent_load
+from ....life.life_factor import life_factor, viscosity_ratio
+from ....life.rating import ratings
+from ....life.reference_life import contact_capacities, exponents_of
+from .direct import bearing_by
+
+
+def ball_factors(ratio: np.ndarray) -> dict[str, np.ndarray]:
+    """Return f_c and f_0 over D cos α/D_pw (n,), of one row of one ball of 1 mm."""
+
+    def row(gamma, angle, osculation):
+        pitch = 1e-3 * jnp.cos(angle) / gamma
+        return row_rating.BallRow(1.0, jnp.asarray(1e-3), pitch, angle, osculation)
+
+    def steep(gamma, degrees):
+        angle = jnp.deg2rad(degrees)
+        one = row(gamma, angle, (0.535, 0.535))
+        along = jnp.cos(angle) ** 0.7 * jnp.tan(angle)
+        return row_rating.steep_ball_dynamic(one, row_rating.THRUST, 1) / along / 1.3
+
+    def table(gamma):
+        zero = jnp.zeros_like(gamma)
+        radial, thrust = (row(gamma, zero, o) for o in ((0.53, 0.52), (0.535, 0.535)))
+        kinds = row_rating.ANGULAR_CONTACT, row_rating.THRUST
+        found = {f"f_c {angle}": steep(gamma, zero + angle) for angle in (45, 60, 75)}
+        return found | {
+            "f_c": row_rating.radial_ball_dynamic(radial, kinds[0], 1) / 1.3,
+            "f_c 90": row_rating.thrust_ball_dynamic(thrust, kinds[1], 1) / 1.3,
+            "f_0": row_rating.ball_static(radial, kinds[0]) / 5.0,
+            "f_0 thrust": row_rating.ball_static(thrust, kinds[1]),
+        }
+
+    return jax.device_get(jax.jit(jax.vmap(table))(jnp.asarray(ratio)))
+
+
+def roller_factors(ratio: np.ndarray) -> dict[str, Any]:
+    """Return f_c of thrust rollers at 90° over D/D_pw (n,), of one roller of 1 mm."""
+    one, angle = jnp.asarray(1e-3), jnp.asarray(0.5 * np.pi)
+    rows = [row_rating.RollerRow(1.0, one, one, one / r, angle, 1.0) for r in ratio]
+    return {"f_c": [float(row_rating.steep_roller_dynamic(row, 1)) for row in rows]}
+
+
+def life_factors(
+    viscosity_ratio: float, load_ratio: np.ndarray, balls: bool
+) -> dict[str, np.ndarray]:
+    """Return a_ISO of radial bearings, and of thrust bearings under larger loads."""
+    larger = (3.0 if balls else 2.5) * load_ratio
+    ratios = {"radial": load_ratio, "thrust": larger}
+    return {
+        kind: np.asarray(
+            life_factor(viscosity_ratio, jnp.asarray(x), balls, kind == "thrust")
+        )
+        for kind, x in ratios.items()
+    }
+
+
+def modified_life(
+    bearing: str | Mapping[str, Any],
+    load: np.ndarray,
+    speed: np.ndarray | float,
+    viscosity: np.ndarray | float,
+    contamination: float,
+    mean_diameter: float,
+    arrangement: str = "",
+    share: np.ndarray | float = 1.0,
+    capacity: float | None = None,
+) -> dict[str, Any]:
+    """Return ratings, equivalent load and modified life of ISO 281, without a solve.
+
+    Args:
+        bearing, arrangement: As in `direct.bearing_by`.
+        load: On the bearing, in each interval (n, 6) [N, N m].
+        speed, viscosity: Of each interval [rad/s], [m²/s].
+        contamination: e_C [1].
+        mean_diameter: Of κ, in place of the pitch diameter [m].
+        share: Shares of time of the intervals [1].
+        capacity: C in place of that of the bearing [N].
+    """
+    own = bearing_by(bearing, arrangement)
+    row = rows_of(own)[0].bearing
+    rated = ratings(own, dynamic_capacity=capacity)
+    c, limit = float(rated.dynamic_capacity), float(rated.fatigue_load_limit)
+    p, p0 = np.array([equivalent_load(own, jnp.asarray(one)) for one in load], float).T
+    speed = np.broadcast_to(speed, p.shape)
+    pitch, kind = jnp.asarray(mean_diameter), (row.is_ball, row.is_thrust)
+    below = contamination * limit / p
+
+    @jax.vmap
+    def oiled(nu, omega, ratio):
+        kappa = viscosity_ratio(nu, omega, pitch)
+        return kappa, life_factor(kappa, ratio, *kind)
+
+    given = np.broadcast_to(viscosity, p.shape), speed, below
+    kappa, a_iso = map(np.asarray, oiled(*map(jnp.asarray, given)))
+    n, d = exponents_of(row).basic
+    life = 1e6 * (c / p) ** (n / d)
+    time = 2.0 * np.pi * life / speed
+    hours = share * np.ones_like(p)
+    cases = Cases(load, inner_speed=speed, outer_speed=0.0, hours=hours)
+    total = spectrum_life(cases, 1.0 / (a_iso * life)).life_hours
+    assert total is not None
+    return {
+        "C": c,
+        "P": p,
+        "C/P": c / p,
+        "C0/P0": float(rated.static_capacity) / p0,
+        "viscosity": viscosity / kappa,
+        "kappa": kappa,
+        "load ratio": below,
+        "a_iso": a_iso,
+        "life": life,
+        "time": time,
+        "modified time": a_iso * time,
+        "total": 3600.0 * float(total),
+    }
+
+
+def contacts(
+    bearing: Mapping[str, Any], capacity: float, contact_angle: float
+) -> dict[str, Any]:
+    """Return C and C0 by formula, and capacities of the contacts of a given C."""
+    own = bearing_by(bearing)
+    rated = ratings(own)
+    given = jnp.asarray(capacity), jnp.asarray(contact_angle)
+    return {
+        "C": float(rated.dynamic_capacity),
+        "C0": float(rated.static_capacity),
+        "contacts": np.asarray(contact_capacities(own, *given)),
+    }
+
+
+def contamination(
+    cleanliness: str, viscosity_ratio: float, pitch_diameter: float
+) -> dict[str, float]:
+    """Return e_C of a class of cleanliness."""
+    clean = Cleanliness(*CLEANLINESS[cleanliness])
+    return {"e_C": float(clean.factor(viscosity_ratio, pitch_diameter))}
