@@ -11,15 +11,18 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....catalogue.entry import catalogue_entry
-from ....design.bearing_set import BearingSet
+from ....design.bearing_set import BearingSet, rows_of
 from ....design.keywords import bearing_of
 from ....numerics.types import Reals, Scalar
 
 
 def bearing_by(bearing: str | Mapping[str, Any], arrangement: str = "") -> Any:
-    """Return a bearing by its designation or its keywords, alone or as a pair."""
+    """Return a bearing by its designation or its keywords: alone, one `row` of it, or
+    a pair."""
     of_text = isinstance(bearing, str)
     own = catalogue_entry(bearing).bearing if of_text else bearing_of(bearing)
+    if arrangement == "row":
+        return rows_of(own)[0].bearing
     return getattr(BearingSet, arrangement)(own, 0.03) if arrangement else own
 
 
@@ -30,8 +33,8 @@ def call(function: str, **given: Any) -> Mapping[str, Any]:
         function: "life.ratings" is that of `bearingjax`; "oil.viscosity" is a method of
             the argument `oil`.
         given: Its arguments by name; those of a row may be dotted, "mounting.bore".
-            `bearing` is a designation, or keywords of a design, with the `arrangement`
-            of a pair. A table with `make` is what that function returns.
+            `bearing` is a designation, or keywords of a design, with an `arrangement`
+            of it. A table with `make` is what that function returns.
     """
     for key in [key for key in given if "." in key]:
         table, _, name = key.partition(".")

@@ -1,5 +1,7 @@
 """Friction torques of one row without a solve, and constants of SKF's model."""
 
+import contextlib
+
 import jax.numpy as jnp
 import numpy as np
 
@@ -47,7 +49,10 @@ def torque(
     }
     p = float(equivalent_load(entry.bearing, force).dynamic)
     whole = sum(parts.values())
-    palmgren = _of_row(row, force, viscosity * speed, supply, entry.static_capacity)
+    palmgren = (np.nan,)
+    with contextlib.suppress(ValueError):  # of some types no constants are known
+        given = viscosity * speed, supply, entry.static_capacity
+        palmgren = _of_row(row, force, *given)
     return parts | {
         "heating": warm,
         "replenishment": float(full),

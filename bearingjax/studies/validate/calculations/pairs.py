@@ -53,23 +53,23 @@ def preloaded_pair(
     return {"rigidity": rigidity, "clearance": -2.0 * (moved[:-1] - moved[-1])}
 
 
-def fixed_sets(preload: float, **bearing: Any) -> dict[str, np.ndarray]:
+def fixed_sets(preload: float, count: int, **bearing: Any) -> dict[str, np.ndarray]:
     """Return preload and axial rigidity over those of the pair: of one bearing against
     two and of two against two, pressed together as much as the pair.
 
     Args:
         preload: That of the pair [N].
+        count: How often the ratios are returned, which no size changes.
         bearing: Other arguments of `preloaded_pair`.
     """
-    force = preload
-    for _ in range(4):  # Newton's steps
-        loads = np.array([preload, force, 0.5 * force])
+    share = 1.36  # by Hertz contact at a constant angle
+    for _ in range(2):  # Newton's steps
+        loads = preload * np.array([1.0, share, 0.5 * share])
         found = preloaded_pair(preload=loads, **bearing)
         pair, one, half = found["rigidity"]
         moved = -0.5 * found["clearance"]
-        force += (2.0 * moved[0] - moved[1] - moved[2]) / (2.0 / one + 1.0 / half)
+        missing = 2.0 * moved[0] - moved[1] - moved[2]
+        share += missing / (2.0 / one + 1.0 / half) / preload
     rigidity = (0.5 * one + half) / pair
-    return {
-        "preload": np.array([loads[1] / preload, 2.0]),
-        "rigidity": np.array([rigidity, 2.0]),
-    }
+    ratios = {"preload": [share, 2.0], "rigidity": [rigidity, 2.0]}
+    return {name: np.tile(both, (count, 1)) for name, both in ratios.items()}

@@ -77,6 +77,7 @@ def modified_life(
     arrangement: str = "",
     share: np.ndarray | float = 1.0,
     capacity: float | None = None,
+    static_capacity: float | None = None,
 ) -> dict[str, Any]:
     """Return ratings, equivalent load and modified life of ISO 281, without a solve.
 
@@ -87,11 +88,11 @@ def modified_life(
         contamination: e_C [1].
         mean_diameter: Of κ, in place of the pitch diameter [m].
         share: Shares of time of the intervals [1].
-        capacity: C in place of that of the bearing [N].
+        capacity, static_capacity: C and C0 in place of those of the bearing [N].
     """
     own = bearing_by(bearing, arrangement)
     row = rows_of(own)[0].bearing
-    rated = ratings(own, dynamic_capacity=capacity)
+    rated = ratings(own, capacity, static_capacity)
     c, limit = float(rated.dynamic_capacity), float(rated.fatigue_load_limit)
     p, p0 = np.array([equivalent_load(own, jnp.asarray(one)) for one in load], float).T
     speed = np.broadcast_to(speed, p.shape)
