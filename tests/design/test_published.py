@@ -100,7 +100,8 @@ def test_rated_fields_are_those_that_the_ratings_depend_on():
 def test_changed_dimension_leaves_the_published_ratings():
     bearing = bj.load_bearing("22220 E")
     rated = ratings(bearing)
-    assert (float(rated.dynamic_capacity), rated.dynamic_source) == (425e3, "published")
+    own = bj.catalogue_entry("22220 E").dynamic_capacity
+    assert (float(rated.dynamic_capacity), rated.dynamic_source) == (own, "published")
     assert rated.factors_source == "published"
     shorter = [eqx.tree_at(lambda r: r.roller_length, r, r.roller_length * 0.9)
                for r in rows(bearing)]  # fmt: skip
@@ -127,7 +128,8 @@ def test_published_capacity_has_the_relative_slope_of_the_formula():
         return jax.jit(jax.value_and_grad(at))(bearing.roller_length)
 
     value, slope = log_of(lambda b: ratings(b).dynamic_capacity)
-    assert float(value) == pytest.approx(np.log(28.6e3), rel=ROUNDING)
+    own = bj.catalogue_entry("NU 205 EC").dynamic_capacity
+    assert float(value) == pytest.approx(np.log(own), rel=ROUNDING)
     assert float(slope) == pytest.approx(7 / 9 / float(bearing.roller_length), rel=1e-9)
     assert float(slope) == pytest.approx(
         float(log_of(bj.dynamic_capacity)[1]), rel=1e-9
@@ -141,23 +143,28 @@ def test_optimised_dimension_voids_the_published_ratings():
     assert jax.tree.structure(same) == jax.tree.structure(bearing)
     assert ratings(same).dynamic_source == "ISO 281 from geometry"
     looser = with_numbers(bearing, {"radial_internal_clearance": jnp.asarray(2e-5)})
-    assert float(ratings(looser).dynamic_capacity) == 14.8e3
+    own = bj.catalogue_entry("6205").dynamic_capacity
+    assert float(ratings(looser).dynamic_capacity) == own
 
 
 def test_sets_scale_the_published_ratings_of_their_rows():
     bearing = bj.load_bearing("7208 BE")
+    own = ratings(bearing)
+    assert own.dynamic_source == "published"
     for count, pair in (
         (2, bj.BearingSet.back_to_back(bearing, 0.02)),
         (3, bj.BearingSet.tandem(bearing, 0.02, 3)),
     ):
         rated = ratings(pair)
-        capacity = count**0.7 * 36.5e3
+        capacity = count**0.7 * float(own.dynamic_capacity)
         assert float(rated.dynamic_capacity) == pytest.approx(capacity, rel=ROUNDING)
-        assert float(rated.static_capacity) == pytest.approx(count * 26e3, rel=ROUNDING)
-        assert float(rated.fatigue_load_limit) == pytest.approx(count * 1.1e3)
+        for name in ("static_capacity", "fatigue_load_limit"):
+            wanted = count * float(getattr(own, name))
+            assert float(getattr(rated, name)) == pytest.approx(wanted, rel=ROUNDING)
     groove = bj.load_bearing("6205")
     capacity = float(ratings(bj.BearingSet.back_to_back(groove, 0.02)).dynamic_capacity)
-    assert capacity == pytest.approx(2**0.7 * 0.90 / 0.95 * 14.8e3, rel=ROUNDING)
+    alone = float(ratings(groove).dynamic_capacity)
+    assert capacity == pytest.approx(2**0.7 * 0.90 / 0.95 * alone, rel=ROUNDING)
 
 
 def test_equivalent_loads_have_the_printed_axial_factors():

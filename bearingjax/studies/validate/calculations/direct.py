@@ -1,9 +1,10 @@
 """Any public function or method, called with the inputs of a case."""
 
 import dataclasses
+import functools
 import importlib
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import jax
@@ -14,6 +15,9 @@ from ....catalogue.entry import catalogue_entry
 from ....design.bearing_set import BearingSet, rows_of
 from ....design.keywords import bearing_of
 from ....numerics.types import Reals, Scalar
+
+_ARRAYS = Scalar, Reals, Reals | float
+"""Annotations of arguments that NumPy's arrays and numbers do not meet."""
 
 
 def bearing_by(bearing: str | Mapping[str, Any], arrangement: str = "") -> Any:
@@ -30,8 +34,8 @@ def call(function: str, **given: Any) -> Mapping[str, Any]:
     """Return what a public function returns, as `value` or its fields by name.
 
     Args:
-        function: "life.ratings" is that of `bearingjax`; "oil.viscosity" is a method of
-            the argument `oil`.
+        function: "life.ratings" is that of `bearingjax`; "oil.density.at" is a method
+            of the argument `oil`.
         given: Its arguments by name; those of a row may be dotted, "mounting.bore".
             `bearing` is a designation, or keywords of a design, with an `arrangement`
             of it. A table with `make` is what that function returns.
@@ -49,19 +53,17 @@ def _made(value: Any) -> Any:
     if not isinstance(value, Mapping) or "make" not in value:
         return value
     given = {name: _made(inner) for name, inner in value.items() if name != "make"}
-    owner, _, name = value["make"].rpartition(".")
-    if hasattr(given.get(owner), name):
-        called = getattr(given.pop(owner), name)
+    first, *names = value["make"].split(".")
+    if hasattr(given.get(first), names[0]):
+        called = functools.reduce(getattr, names, given.pop(first))
     else:
-        called = getattr(importlib.import_module(f"....{owner}", __package__), name)
-    return called(**_typed(called, given))
-
-
-def _typed(called: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return arguments as arrays where a function takes nothing else."""
+        owner = importlib.import_module(
+            ".".join(("...", first, *names[:-1])), __package__
+        )
+        called = getattr(owner, names[-1])
     kinds = inspect.signature(called).parameters
-    arrays = {name for name in given if kinds[name].annotation in (Scalar, Reals)}
-    return {k: jnp.asarray(v) if k in arrays else v for k, v in given.items()}
+    arrays = {name for name in given if kinds[name].annotation in _ARRAYS}
+    return called(**{k: jnp.asarray(v) if k in arrays else v for k, v in given.items()})
 
 
 def _as_data(found: Any) -> Any:

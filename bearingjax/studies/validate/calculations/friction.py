@@ -1,7 +1,5 @@
 """Friction torques of one row without a solve, and constants of SKF's model."""
 
-import contextlib
-
 import jax.numpy as jnp
 import numpy as np
 
@@ -9,25 +7,21 @@ from ....catalogue.entry import catalogue_entry
 from ....design.bearing_set import rows_of
 from ....design.keywords import BALLS, ROLLERS
 from ....friction import friction_skf as skf
-from ....friction.friction import _of_row
 from ....life.equivalent_load import equivalent_load
 
 
-def torque(
+def coefficient(
     bearing: str,
     load: np.ndarray,
     speed: float,
     viscosity: float,
-    supply: str = "oil_bath",
 ) -> dict[str, float]:
-    """Return the torques of a bearing of the catalogue by SKF's and Palmgren's models.
+    """Return M/(P d/2) of a bearing of the catalogue in an oil bath by SKF's model.
 
     Args:
         bearing: Its designation.
-        load: On the bearing (6,); rows bear their share as one [N, N m].
-        speed: Of the inner ring [rad/s].
-        viscosity: Kinematic [m²/s].
-        supply: One of `SUPPLIES`.
+        load: On the bearing (6,), which one row bears [N, N m].
+        speed, viscosity: Of the inner ring [rad/s], of the oil [m²/s].
     """
     entry, force = catalogue_entry(bearing), jnp.asarray(load)
     row = rows_of(entry.bearing)[0].bearing
@@ -40,26 +34,13 @@ def torque(
     rolling, sliding = (1e-3 * float(x) for x in skf._variables(row, *given))
     warm = 1.0 / (1.0 + 1.84e-9 * (rpm * float(mean)) ** 1.28 * nu**0.64)
     oiled = flow * 2.0 * float(mean) * np.sqrt(kind.kz / (2.0 * float(span)))
-    full = np.exp(-skf._STARVED[supply] * oiled)
+    full = np.exp(-skf._STARVED["oil_bath"] * oiled)
     dry = np.exp(-2.6e-8 * flow**1.4 * float(mean))
     film = skf.OILS["mineral"] if kind.film is None else kind.film
-    parts = {
-        "rolling": warm * full * flow**0.6 * rolling,
-        "sliding": (dry * skf._BOUNDARY + (1.0 - dry) * film) * sliding,
-    }
+    whole = float(warm * full * flow**0.6 * rolling)
+    whole += (dry * skf._BOUNDARY + (1.0 - dry) * film) * sliding
     p = float(equivalent_load(entry.bearing, force).dynamic)
-    whole = sum(parts.values())
-    palmgren = (np.nan,)
-    with contextlib.suppress(ValueError):  # of some types no constants are known
-        given = viscosity * speed, supply, entry.static_capacity
-        palmgren = _of_row(row, force, *given)
-    return parts | {
-        "heating": warm,
-        "replenishment": float(full),
-        "skf": whole,
-        "palmgren": float(sum(palmgren)),
-        "coefficient": whole / (0.5 * p * entry.bore),
-    }
+    return {"coefficient": whole / (0.5 * p * entry.bore)}
 
 
 def constants() -> dict[str, np.ndarray]:

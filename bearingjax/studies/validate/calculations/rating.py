@@ -7,14 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....cases.cases import Cases
-from ....cases.spectrum import spectrum_life
 from ....design.bearing_set import rows_of
-from ....life import CLEANLINESS, Cleanliness, row_rating
+from ....life import row_rating
 from ....life.equivalent_load import equivalent_load
 from ....life.life_factor import life_factor, viscosity_ratio
 from ....life.rating import ratings
-from ....life.reference_life import contact_capacities, exponents_of
+from ....life.reference_life import exponents_of
 from .direct import bearing_by
 
 
@@ -53,20 +51,6 @@ def roller_factors(ratio: np.ndarray) -> dict[str, Any]:
     return {"f_c": [float(row_rating.steep_roller_dynamic(row, 1)) for row in rows]}
 
 
-def life_factors(
-    viscosity_ratio: float, load_ratio: np.ndarray, balls: bool
-) -> dict[str, np.ndarray]:
-    """Return a_ISO of radial bearings, and of thrust bearings under larger loads."""
-    larger = (3.0 if balls else 2.5) * load_ratio
-    ratios = {"radial": load_ratio, "thrust": larger}
-    return {
-        kind: np.asarray(
-            life_factor(viscosity_ratio, jnp.asarray(x), balls, kind == "thrust")
-        )
-        for kind, x in ratios.items()
-    }
-
-
 def modified_life(
     bearing: str | Mapping[str, Any],
     load: np.ndarray,
@@ -75,9 +59,7 @@ def modified_life(
     contamination: float,
     mean_diameter: float,
     arrangement: str = "",
-    share: np.ndarray | float = 1.0,
-    capacity: float | None = None,
-    static_capacity: float | None = None,
+    **given: float,
 ) -> dict[str, Any]:
     """Return ratings, equivalent load and modified life of ISO 281, without a solve.
 
@@ -87,32 +69,24 @@ def modified_life(
         speed, viscosity: Of each interval [rad/s], [m²/s].
         contamination: e_C [1].
         mean_diameter: Of κ, in place of the pitch diameter [m].
-        share: Shares of time of the intervals [1].
-        capacity, static_capacity: C and C0 in place of those of the bearing [N].
+        given: Ratings in place of those of the bearing [N].
     """
     own = bearing_by(bearing, arrangement)
-    row = rows_of(own)[0].bearing
-    rated = ratings(own, capacity, static_capacity)
-    c, limit = float(rated.dynamic_capacity), float(rated.fatigue_load_limit)
+    row, rated = rows_of(own)[0].bearing, ratings(own, **given)
+    c = float(rated.dynamic_capacity)
     p, p0 = np.array([equivalent_load(own, jnp.asarray(one)) for one in load], float).T
-    speed = np.broadcast_to(speed, p.shape)
-    pitch, kind = jnp.asarray(mean_diameter), (row.is_ball, row.is_thrust)
-    below = contamination * limit / p
+    speed, viscosity = (x * np.ones_like(p) for x in (speed, viscosity))
+    below = contamination * float(rated.fatigue_load_limit) / p
 
     @jax.vmap
     def oiled(nu, omega, ratio):
-        kappa = viscosity_ratio(nu, omega, pitch)
-        return kappa, life_factor(kappa, ratio, *kind)
+        kappa = viscosity_ratio(nu, omega, jnp.asarray(mean_diameter))
+        return kappa, life_factor(kappa, ratio, row.is_ball, row.is_thrust)
 
-    given = np.broadcast_to(viscosity, p.shape), speed, below
-    kappa, a_iso = map(np.asarray, oiled(*map(jnp.asarray, given)))
+    kappa, a_iso = map(np.asarray, oiled(*map(jnp.asarray, (viscosity, speed, below))))
     n, d = exponents_of(row).basic
     life = 1e6 * (c / p) ** (n / d)
     time = 2.0 * np.pi * life / speed
-    hours = share * np.ones_like(p)
-    cases = Cases(load, inner_speed=speed, outer_speed=0.0, hours=hours)
-    total = spectrum_life(cases, 1.0 / (a_iso * life)).life_hours
-    assert total is not None
     return {
         "C": c,
         "P": p,
@@ -125,27 +99,4 @@ def modified_life(
         "life": life,
         "time": time,
         "modified time": a_iso * time,
-        "total": 3600.0 * float(total),
     }
-
-
-def contacts(
-    bearing: Mapping[str, Any], capacity: float, contact_angle: float
-) -> dict[str, Any]:
-    """Return C and C0 by formula, and capacities of the contacts of a given C."""
-    own = bearing_by(bearing)
-    rated = ratings(own)
-    given = jnp.asarray(capacity), jnp.asarray(contact_angle)
-    return {
-        "C": float(rated.dynamic_capacity),
-        "C0": float(rated.static_capacity),
-        "contacts": np.asarray(contact_capacities(own, *given)),
-    }
-
-
-def contamination(
-    cleanliness: str, viscosity_ratio: float, pitch_diameter: float
-) -> dict[str, float]:
-    """Return e_C of a class of cleanliness."""
-    clean = Cleanliness(*CLEANLINESS[cleanliness])
-    return {"e_C": float(clean.factor(viscosity_ratio, pitch_diameter))}

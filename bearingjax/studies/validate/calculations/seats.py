@@ -30,9 +30,5 @@ def drive_up(
             row = rows_of(entry.bearing)[0].bearing
             seats = with_bearing_dimensions(seats, row)
             found.append([float(needed_drive_up(seats, x)) for x in reduction])
-    travel = np.array(found)
-    return {
-        "mean": travel.mean(axis=0),
-        "least": travel.min(axis=0),
-        "largest": travel.max(axis=0),
-    }
+    reduced = {"mean": np.mean, "least": np.min, "largest": np.max}
+    return {name: of(found, axis=0) for name, of in reduced.items()}
