@@ -129,6 +129,7 @@ def test_published_capacity_has_the_relative_slope_of_the_formula():
 
     value, slope = log_of(lambda b: ratings(b).dynamic_capacity)
     own = bj.catalogue_entry("NU 205 EC").dynamic_capacity
+    assert own is not None
     assert float(value) == pytest.approx(np.log(own), rel=ROUNDING)
     assert float(slope) == pytest.approx(7 / 9 / float(bearing.roller_length), rel=1e-9)
     assert float(slope) == pytest.approx(

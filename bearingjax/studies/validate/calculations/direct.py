@@ -57,10 +57,8 @@ def _made(value: Any) -> Any:
     if hasattr(given.get(first), names[0]):
         called = functools.reduce(getattr, names, given.pop(first))
     else:
-        owner = importlib.import_module(
-            ".".join(("...", first, *names[:-1])), __package__
-        )
-        called = getattr(owner, names[-1])
+        owner = ".".join(("...", first, *names[:-1]))
+        called = getattr(importlib.import_module(owner, __package__), names[-1])
     kinds = inspect.signature(called).parameters
     arrays = {name for name in given if kinds[name].annotation in _ARRAYS}
     return called(**{k: jnp.asarray(v) if k in arrays else v for k, v in given.items()})
@@ -70,12 +68,11 @@ def _as_data(found: Any) -> Any:
     """Return a result as tables by the names of its fields, lists and numbers."""
     if isinstance(found, jax.Array | np.ndarray):
         return np.asarray(found).tolist()
-    if isinstance(found, tuple) and hasattr(found, "_fields"):
-        found = {name: getattr(found, name) for name in found._fields}
-    elif dataclasses.is_dataclass(found):
-        found = {
-            one.name: getattr(found, one.name) for one in dataclasses.fields(found)
-        }
+    names = getattr(found, "_fields", ())
+    if dataclasses.is_dataclass(found):
+        names = [field.name for field in dataclasses.fields(found)]
+    if names:
+        found = {name: getattr(found, name) for name in names}
     if isinstance(found, Mapping):
         return {name: _as_data(value) for name, value in found.items()}
     if isinstance(found, list | tuple):

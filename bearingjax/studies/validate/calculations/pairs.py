@@ -62,7 +62,7 @@ def fixed_sets(preload: float, count: int, **bearing: Any) -> dict[str, np.ndarr
         count: How often the ratios are returned, which no size changes.
         bearing: Other arguments of `preloaded_pair`.
     """
-    share = 1.36  # by Hertz contact at a constant angle
+    share, rigidity = 1.36, np.nan  # by Hertz contact at a constant angle
     for _ in range(2):  # Newton's steps
         loads = preload * np.array([1.0, share, 0.5 * share])
         found = preloaded_pair(preload=loads, **bearing)
@@ -70,6 +70,6 @@ def fixed_sets(preload: float, count: int, **bearing: Any) -> dict[str, np.ndarr
         moved = -0.5 * found["clearance"]
         missing = 2.0 * moved[0] - moved[1] - moved[2]
         share += missing / (2.0 / one + 1.0 / half) / preload
-    rigidity = (0.5 * one + half) / pair
+        rigidity = (0.5 * one + half) / pair
     ratios = {"preload": [share, 2.0], "rigidity": [rigidity, 2.0]}
     return {name: np.tile(both, (count, 1)) for name, both in ratios.items()}

@@ -21,7 +21,7 @@ def ball_factors(ratio: np.ndarray) -> dict[str, np.ndarray]:
 
     def row(gamma, angle, osculation):
         pitch = 1e-3 * jnp.cos(angle) / gamma
-        return row_rating.BallRow(1.0, jnp.asarray(1e-3), pitch, angle, osculation)
+        return row_rating.BallRow(1, jnp.asarray(1e-3), pitch, angle, osculation)
 
     def steep(gamma, degrees):
         angle = jnp.deg2rad(degrees)
@@ -47,7 +47,7 @@ def ball_factors(ratio: np.ndarray) -> dict[str, np.ndarray]:
 def roller_factors(ratio: np.ndarray) -> dict[str, Any]:
     """Return f_c of thrust rollers at 90° over D/D_pw (n,), of one roller of 1 mm."""
     one, angle = jnp.asarray(1e-3), jnp.asarray(0.5 * np.pi)
-    rows = [row_rating.RollerRow(1.0, one, one, one / r, angle, 1.0) for r in ratio]
+    rows = [row_rating.RollerRow(1, one, one, one / r, angle, 1.0) for r in ratio]
     return {"f_c": [float(row_rating.steep_roller_dynamic(row, 1)) for row in rows]}
 
 
