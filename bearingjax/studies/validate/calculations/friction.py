@@ -11,10 +11,7 @@ from ....life.equivalent_load import equivalent_load
 
 
 def coefficient(
-    bearing: str,
-    load: np.ndarray,
-    speed: float,
-    viscosity: float,
+    bearing: str, load: np.ndarray, speed: float, viscosity: float
 ) -> dict[str, float]:
     """Return M/(P d/2) of a bearing of the catalogue in an oil bath by SKF's model.
 
@@ -45,7 +42,6 @@ def coefficient(
 
 def constants() -> dict[str, np.ndarray]:
     """Return the sums of the logarithms of SKF's constants over the series of types."""
-    kinds = {**BALLS, **ROLLERS}
-    rows = {name: skf._TYPES.get(kind) for name, kind in kinds.items()}
-    tables = {k: [*kind.series.values()] for k, kind in rows.items() if kind}
-    return {name: np.log(np.array(rows)).sum(axis=0) for name, rows in tables.items()}
+    kinds = {name: skf._TYPES.get(kind) for name, kind in {**BALLS, **ROLLERS}.items()}
+    tables = {name: [*one.series.values()] for name, one in kinds.items() if one}
+    return {name: np.log(rows).sum(axis=0) for name, rows in tables.items()}

@@ -44,13 +44,6 @@ def ball_factors(ratio: np.ndarray) -> dict[str, np.ndarray]:
     return jax.device_get(jax.jit(jax.vmap(table))(jnp.asarray(ratio)))
 
 
-def roller_factors(ratio: np.ndarray) -> dict[str, Any]:
-    """Return f_c of thrust rollers at 90° over D/D_pw (n,), of one roller of 1 mm."""
-    one, angle = jnp.asarray(1e-3), jnp.asarray(0.5 * np.pi)
-    rows = [row_rating.RollerRow(1, one, one, one / r, angle, 1.0) for r in ratio]
-    return {"f_c": [float(row_rating.steep_roller_dynamic(row, 1)) for row in rows]}
-
-
 def modified_life(
     bearing: str | Mapping[str, Any],
     load: np.ndarray,
