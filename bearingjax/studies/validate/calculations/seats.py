@@ -23,9 +23,10 @@ def drive_up(
         steep = not entry.designation.startswith("24")
         inside = bores[0] < entry.bore <= bores[1] * (1.0 + 1e-9)
         if entry.type == "spherical_roller" and inside and steep == (taper > 0.05):
-            own = {"ring_width": entry.width, "bore_taper": taper}
-            sizes = entry.bore, entry.outside_diameter, 2.0 * entry.outside_diameter
-            seats = Mounting(*sizes, 0.0, -1e-4, **own)
+            d, big, width = entry.bore, entry.outside_diameter, entry.width
+            seats = Mounting(
+                d, big, 2.0 * big, 0.0, -1e-4, ring_width=width, bore_taper=taper
+            )
             seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
             found.append([float(needed_drive_up(seats, x)) for x in reduction])
     reduced = {"mean": np.mean, "least": np.min, "largest": np.max}
