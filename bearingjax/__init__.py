@@ -33,7 +33,7 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
 - Sets of rows: `BearingSet`, `SetRow`, `PreloadSpring`.
 - Parts of a drawing: `Material`, `Rib`, `Ribs`, `Straight`, `CircularCrown`,
   `CrownedEnds`, `Logarithmic`, `Lundberg`, `JohnsGohar`, `FujiwaraKawase`, `Tabulated`.
-- Catalogue: `catalogue_entry`, `catalogue_entries`.
+- From a designation: `load_bearing`, `catalogue_entry`, `catalogue_entries`.
 - The bearing as an element: `BearingElement`, `Speed`, `FREEDOMS`.
 - Installation: `Installed`, `Mounting`, `FitConditions`, `preload`.
 - Under a load: `solve_load`, `Support`, `linearise`, `refine`.
@@ -42,7 +42,7 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
   `LifeConditions`.
 - Oil and friction: `Lubricant`, `films`, `friction_torque`.
 - Whether an answer holds: `Result`, `SolveError`, `warnings`.
-- Scene files: `run`, `read_scene`, `load_bearing`, `SceneError`.
+- Scene files: `run`, `read_scene`, `SceneError`.
 - The program: `keep_programs`, `__version__`.
 
 Conventions
@@ -192,13 +192,13 @@ __all__ = [
     "ToroidalRollerBearing", "CrossedRollerRow", "BearingSet", "SetRow",
     "PreloadSpring", "Material", "Rib", "Ribs", "Straight", "CircularCrown",
     "CrownedEnds", "Logarithmic", "Lundberg", "JohnsGohar", "FujiwaraKawase",
-    "Tabulated", "catalogue_entry", "catalogue_entries", "BearingElement", "Speed",
-    "FREEDOMS", "Installed", "Mounting", "FitConditions", "preload", "solve_load",
-    "Support",
-    "linearise", "refine", "sweep", "Cases", "stack_designs", "spectrum_life",
-    "ratings", "dynamic_capacity", "static_capacity", "rating_life", "LifeConditions",
-    "Lubricant", "films", "friction_torque", "Result", "SolveError", "warnings", "run",
-    "read_scene", "load_bearing", "SceneError", "keep_programs", "__version__",
+    "Tabulated", "load_bearing", "catalogue_entry", "catalogue_entries",
+    "BearingElement", "Speed", "FREEDOMS", "Installed", "Mounting", "FitConditions",
+    "preload", "solve_load", "Support", "linearise", "refine", "sweep", "Cases",
+    "stack_designs", "spectrum_life", "ratings", "dynamic_capacity", "static_capacity",
+    "rating_life", "LifeConditions", "Lubricant", "films", "friction_torque", "Result",
+    "SolveError", "warnings", "run", "read_scene", "SceneError", "keep_programs",
+    "__version__",
 ]  # fmt: skip
 
 

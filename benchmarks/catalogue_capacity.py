@@ -64,8 +64,8 @@ import bearingjax as bj
 def differences(entry: bj.catalogue.CatalogueEntry) -> dict:
     """Calculated over printed capacities less one, in percent; `None` if unknown."""
     c, c0 = (
-        float(bj.dynamic_capacity(entry.bearing)),
-        float(bj.static_capacity(entry.bearing)),
+        float(bj.dynamic_capacity(bj.load_bearing(entry.designation))),
+        float(bj.static_capacity(bj.load_bearing(entry.designation))),
     )
     other = entry.other
     return {

@@ -347,7 +347,8 @@ def of_catalogue(every):
         if entry.design.get("arrangement", "NU") != "NU":
             continue  # of the same inside
         kind = entry.type
-        row = bj.design.rows_of(entry.bearing)[0].bearing
+        listed = bj.load_bearing(entry.designation)
+        row = bj.design.rows_of(listed)[0].bearing
         d, big, b = (1e3 * v for v in (entry.bore, entry.outside_diameter, entry.width))
         rated = {"as printed": (entry.dynamic_capacity, entry.static_capacity)}
         if entry.other is not None:
@@ -358,7 +359,7 @@ def of_catalogue(every):
                 continue
             angle = known_angle(kind, row)
             made = estimate(kind, d, big, b, c, c0, angle).bearing
-            (count, size, _), (real, own, _) = inside(made), inside(entry.bearing)
+            (count, size, _), (real, own, _) = inside(made), inside(listed)
             key = kind, entry.geometry, name
             found.setdefault(key, []).append((count - real, size / own - 1))
     for (kind, geometry, name), errors in sorted(found.items()):

@@ -43,7 +43,7 @@ def elements(count=None):
         if entry.type == "deep_groove_ball":
             bearing = eqx.tree_at(
                 lambda b: (b.outer_shoulder, b.inner_shoulder),
-                entry.bearing,
+                bj.load_bearing(entry.designation),
                 (None, None),
                 is_leaf=lambda leaf: leaf is None,
             )

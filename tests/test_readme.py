@@ -49,6 +49,8 @@ def test_two_commands_and_their_scene():
     assert "pytest" in blocks[1]
     # Continuous integration runs the others after it.
     assert '-m "not slow"' in blocks[1]
+    (command,) = re.findall(r"bin/(pytest .*)", blocks[1])
+    assert f"run: {command}\n" in (ROOT / ".github/workflows/tests.yml").read_text()
 
 
 @pytest.mark.parametrize("place", ["", "bearingjax/studies", "benchmarks"])
@@ -68,8 +70,9 @@ def test_folders_exist():
 
 
 def test_all_notebooks_are_named():
+    listed = (ROOT / "notebooks" / "notebooks.md").read_text()
     for notebook in (ROOT / "notebooks").glob("*.ipynb"):
-        assert f"notebooks/{notebook.name}" in README
+        assert f"({notebook.name})" in listed
 
 
 def test_commands_and_scenes_of_the_guide_exist():

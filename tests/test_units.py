@@ -81,7 +81,8 @@ def with_axes():
 def test_units_of_fields_are_those_of_the_docstring(kind):
     fields = {field.name: field for field in dataclasses.fields(kind)}
     for name in numbers(kind):
-        units = {*np.ravel(fields[name].metadata["unit"])}
+        stated = fields[name].metadata
+        units = {*np.ravel(stated.get("unit", stated.get("units")))}
         assert units == stated_units(kind, name), name
 
 

@@ -8,12 +8,13 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..design.checks import of_shape
+from ..numerics.shown import Printable
 from ..numerics.types import array_namespace
 from ..numerics.units import unit
 from .cases import Cases
 
 
-class SpectrumLife(eqx.Module):
+class SpectrumLife(Printable):
     """Life under all cases of a spectrum, one after the other again and again.
 
     Attributes:

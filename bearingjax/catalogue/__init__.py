@@ -1,7 +1,8 @@
 """Bearings by their designation: entries, suffixes, estimated internal dimensions.
 
-`catalogue_entry(designation)` is one of `catalogue_entries()`; its `design` holds the
-keywords of `design.bearing_of`, with published ratings.
+`bearingjax.load_bearing("6205")` is the bearing, with its published ratings.
+`catalogue_entry("6205")`, one of `catalogue_entries()`, is what the catalogue knows of
+it: boundary dimensions, ratings, speeds, sources; its `design` is data.
 
 `estimate_geometry(bore, outside_diameter, width, kind, C, C0)` makes a design of a
 bearing of which only the catalogue data are known: the rolling elements that best fit

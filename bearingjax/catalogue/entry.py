@@ -18,7 +18,8 @@ from typing import Annotated, Any, NamedTuple
 
 import tomli  # as tomllib, but compiled: three times as fast
 
-from ..design import bearing_of, rows_of
+from ..design import rows_of
+from ..design.keywords import bearing_of
 from ..design.published import PublishedRatings, rated_dimensions, with_published
 from ..fits.fit_limits import (
     CLEARANCE_CLASSES,
@@ -180,7 +181,7 @@ class CatalogueEntry:
             estimated.
         sources: Source of "capacity" and "geometry".
         notes: Interpretation of the designation, in words.
-        design: Keywords of the design in SI, as `bearing_of` takes them.
+        design: `type` and fields of the design in SI; `load_bearing` builds it.
         taper: "K" or "K30" for a tapered bore, else "".
         printed: What else the publisher prints, in SI: lengths, and pure numbers such
             as the limit e and factors Y1, Y2, Y0 of axial loads.
@@ -253,15 +254,6 @@ class CatalogueEntry:
                 found.append(Warning("other_seat_size", words, given, own))
         return found
 
-    @property
-    def bearing(self) -> Any:
-        """The design: a bearing, or the set of both rows of a self-aligning bearing.
-
-        It carries the published ratings and axial factors.
-        """
-        bearing = bearing_of(self.design)
-        return with_published(bearing, self.ratings_for(rows_of(bearing)[0].bearing))
-
     def ratings_for(self, row: Any) -> PublishedRatings | None:
         """Return its ratings and axial factors for a row; `None`: not published.
 
@@ -282,7 +274,7 @@ class CatalogueEntry:
 
 
 def catalogue_entry(designation: str) -> CatalogueEntry:
-    """Look up a bearing of the catalogue by its designation.
+    """Look up what the catalogue knows of a bearing; `load_bearing` makes the design.
 
     Args:
         designation: Such as "6205", "SKF 6205-2RS1/C3", "NJ 205 ECP". Suffixes for
@@ -306,6 +298,16 @@ def catalogue_entry(designation: str) -> CatalogueEntry:
     name, suffixes = split_designation(designation, listed)
     kind, key, changes, remarks = listed[name]
     return _entry(kind, key, changes, remarks, suffixes)
+
+
+def bearing_of_entry(entry: CatalogueEntry) -> Any:
+    """Return the bearing of an entry, with its published ratings; see `load_bearing`.
+
+    Args:
+        entry: From `catalogue_entry`.
+    """
+    bearing = bearing_of(entry.design)
+    return with_published(bearing, entry.ratings_for(rows_of(bearing)[0].bearing))
 
 
 @functools.cache

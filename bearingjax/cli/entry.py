@@ -6,7 +6,7 @@ import gc
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ..studies import jax_settings
 from ..studies import schema_command as schema
@@ -28,6 +28,8 @@ from ..studies.solve import command as solve
 from ..studies.solve import compare_command as compare
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
 from ..studies.validate import command as validate
+from .about import citations, describe_version
+from .completion import SHELLS, completion_script
 from .execute import execute
 
 _SOLVING = (
@@ -59,10 +61,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 solved, 2 bad input (or an output that cannot be written), 3 not
         solved, 130 interrupted.
     """
-    options, unknown = parser().parse_known_args(arguments)
-    if unknown:  # told with the usage of the command, not with that of all
-        options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
-    options.given = list(sys.argv[1:] if arguments is None else arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # which may not know "µ"
             stream.reconfigure(errors="backslashreplace")
@@ -73,6 +71,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
+        options, unknown = parser().parse_known_args(arguments)
+        if unknown:  # told with the usage of the command, not with that of all
+            options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
+        options.given = list(sys.argv[1:] if arguments is None else arguments)
         jax_settings.configure(options)
         return options.execute(options)
     except SceneError as error:
@@ -98,12 +100,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """Build the parser; `execute` of the parsed options runs the command."""
-    from importlib.metadata import version
-
     top = argparse.ArgumentParser(
         prog="bearingjax", description="Rolling-bearing mechanics."
     )
-    top.add_argument("--version", action="version", version=version("bearingjax"))
+    _tell(top, "--version", describe_version, "versions, devices, precision", nargs=0)
+    text = "BibTeX of this program, and of the methods that a scene uses"
+    _tell(top, "--cite", citations, text, nargs="?", const="", metavar="SCENE")
+    _tell(
+        top,
+        "--completion",
+        lambda shell: completion_script(parser(), shell),
+        "the script with which a shell completes commands",
+        choices=SHELLS,
+    )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (*_SOLVING, *_LOOKING_UP):
         added = command.add(commands)
@@ -113,6 +122,17 @@ def parser() -> argparse.ArgumentParser:
             add_quiet(added)
         added.set_defaults(execute=call, refuse=added.error)
     return top
+
+
+def _tell(top, name: str, tell: Callable[..., str], text: str, **settings) -> None:
+    """Add an option that prints what `tell` makes of its value, and ends."""
+
+    class Tell(argparse.Action):
+        def __call__(self, parser, namespace, values, option_string=None):
+            print(tell(values), flush=True)
+            parser.exit()
+
+    top.add_argument(name, action=Tell, help=f"print {text}", **settings)
 
 
 def _forget_output() -> None:

@@ -12,7 +12,7 @@ Names
 - Barrel and crossed rollers: `SphericalRollerRow`, `SphericalThrustRollerBearing`,
   `ToroidalRollerBearing`, `CrossedRollerRow`, `AbstractBarrelBearing`,
   `pitch_on_sphere`.
-- Any bearing: `AbstractBearing`, `bearing_of`.
+- Any bearing: `AbstractBearing`.
 - Sets: `BearingSet`, `SetRow`, `PreloadSpring`, `rows_of`.
 - Profiles: `Straight`, `CircularCrown`, `CrownedEnds`, `Logarithmic`, `Lundberg`,
   `JohnsGohar`, `FujiwaraKawase`, `Tabulated`, `AbstractProfile`.
@@ -52,7 +52,6 @@ from .bearing import (
 from .bearing_set import BearingSet, PreloadSpring, SetRow, rows_of
 from .deviation import Deviation, with_raceways
 from .form_error import FormErrors, Harmonics, RacewayErrors, Spall
-from .keywords import bearing_of
 from .logarithmic import FujiwaraKawase, JohnsGohar, Logarithmic, Lundberg
 from .material import MATERIALS, Material, contact_modulus
 from .profile import AbstractProfile, CircularCrown, CrownedEnds, Straight
@@ -77,12 +76,11 @@ __all__ = [
     "CylindricalThrustRollerBearing", "TaperedThrustRollerBearing",
     "AbstractRollerBearing", "SphericalRollerRow", "SphericalThrustRollerBearing",
     "ToroidalRollerBearing", "CrossedRollerRow", "AbstractBarrelBearing",
-    "pitch_on_sphere", "AbstractBearing", "bearing_of", "BearingSet", "SetRow",
-    "PreloadSpring", "rows_of", "Straight", "CircularCrown", "CrownedEnds",
-    "Logarithmic", "Lundberg", "JohnsGohar", "FujiwaraKawase", "Tabulated",
-    "AbstractProfile", "Rib", "Ribs", "RIB_NAMES", "Material", "MATERIALS",
-    "contact_modulus", "FormErrors", "RacewayErrors", "Harmonics", "Spall", "Deviation",
-    "with_raceways", "ball_grade", "BallGrade", "BALL_GRADES", "roller_grade",
-    "RollerGrade", "ROLLER_GRADES", "running_accuracy", "RunningAccuracy",
-    "TOLERANCE_CLASSES",
+    "pitch_on_sphere", "AbstractBearing", "BearingSet", "SetRow", "PreloadSpring",
+    "rows_of", "Straight", "CircularCrown", "CrownedEnds", "Logarithmic", "Lundberg",
+    "JohnsGohar", "FujiwaraKawase", "Tabulated", "AbstractProfile", "Rib", "Ribs",
+    "RIB_NAMES", "Material", "MATERIALS", "contact_modulus", "FormErrors",
+    "RacewayErrors", "Harmonics", "Spall", "Deviation", "with_raceways", "ball_grade",
+    "BallGrade", "BALL_GRADES", "roller_grade", "RollerGrade", "ROLLER_GRADES",
+    "running_accuracy", "RunningAccuracy", "TOLERANCE_CLASSES",
 ]  # fmt: skip

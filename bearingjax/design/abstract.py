@@ -8,6 +8,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar
 from ..numerics.warning import Warning
 from .checks import check_filled, count, instance, number
@@ -15,7 +16,7 @@ from .material import Material
 from .published import PublishedRatings
 
 
-class AbstractBearing(eqx.Module):
+class AbstractBearing(Printable):
     """A single row of balls or rollers between two rings.
 
     Attributes:

@@ -6,6 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Real, Scalar, array_namespace, as_real, with_fields
 from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
@@ -25,7 +26,7 @@ from .checks import count as whole
 from .overlap import overlap
 
 
-class PreloadSpring(eqx.Module):
+class PreloadSpring(Printable):
     """Spring that preloads one row of a set, by sliding one of its rings axially.
 
     Attributes:
@@ -65,7 +66,7 @@ class PreloadSpring(eqx.Module):
         return energy, force, jnp.where(slack, 0.0, self.stiffness)
 
 
-class SetRow(eqx.Module):
+class SetRow(Printable):
     """One row of a set.
 
     Attributes:
@@ -110,7 +111,7 @@ def _as_tuple(rows):
     return tuple(rows) if isinstance(rows, Iterable) else rows
 
 
-class BearingSet(eqx.Module):
+class BearingSet(Printable):
     """Rows of which all inner rings move together, and all outer rings.
 
     Motions and loads of both are taken at the node, z = 0 of the set. Rows may differ

@@ -4,12 +4,13 @@ from typing import Any, ClassVar
 
 import equinox as eqx
 
+from ..numerics.shown import Printable
 from ..numerics.types import Real
 from ..numerics.units import real
 from .checks import check_fields
 
 
-class Material(eqx.Module):
+class Material(Printable):
     """An isotropic elastic material, by default bearing steel.
 
     Attributes:

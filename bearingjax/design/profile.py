@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.compiled.programs import program
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Real, RealOrNone, Reals, Scalar
 from ..numerics.units import real
 from .checks import check, check_fields, in_range, is_traced
@@ -26,7 +27,7 @@ _ROUND_OFF = 1e-12
 """Drop below zero that is none [m]."""
 
 
-class AbstractProfile(eqx.Module):
+class AbstractProfile(Printable):
     """Profile of a roller or a raceway."""
 
     arcs: ClassVar[bool] = False

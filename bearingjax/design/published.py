@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from ..numerics.types import as_real
-from ..numerics.units import unit
+from ..numerics.units import unit, units
 from .checks import is_traced
 
 
@@ -34,7 +34,7 @@ class PublishedRatings(eqx.Module):
     ratings: Float[Array, "3"] = eqx.field(converter=as_real, metadata=unit("N"))
     axial_factors: Float[Array, "3"] = eqx.field(converter=as_real, metadata=unit("1"))
     dimensions: Float[Array, " dimension"] = eqx.field(
-        converter=as_real, metadata=unit(("1", "m", "rad"))
+        converter=as_real, metadata=units("1", "m", "rad")
     )
 
     def without_ratings(self) -> "PublishedRatings":

@@ -5,6 +5,7 @@ from typing import ClassVar
 import equinox as eqx
 
 from ..numerics.labels import name_axis
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Real, as_real
 from ..numerics.units import real
 from .checks import check_fields, instance, number, one_of
@@ -21,7 +22,7 @@ ARRANGEMENTS = {
 """Ribs of the cylindrical roller bearing types; NJ carries inner-ring load to +z."""
 
 
-class Rib(eqx.Module):
+class Rib(Printable):
     """A rib that is straight in the axial section, against a spherical roller end.
 
     The rib's normal passes through the centre of the sphere, so the height of the
@@ -55,7 +56,7 @@ class Rib(eqx.Module):
         number(self, "axial_gap")
 
 
-class Ribs(eqx.Module):
+class Ribs(Printable):
     """The ribs of a bearing; an absent one is `None` and is not computed.
 
     Attributes:

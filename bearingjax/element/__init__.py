@@ -46,7 +46,7 @@ Which numerics?
   `LineConstant(c)` for your own. `CoupledSlices()`: slices that press on each other,
   loads within half a hundredth of the half-space where independent slices are off by a
   twelfth (medians; worst 4 and 27 hundredths), line loads that rise towards a sharp
-  end; a load solve takes 35 times as long, which a sweep of thousands can afford.
+  end; a load solve takes 63 times as long (benchmarks/coupled_slices.py).
 
 Faster
 ------

@@ -13,6 +13,7 @@ from ..design.bearing_set import bearings_of
 from ..design.checks import flag, is_traced, of_class
 from ..design.deviation import deviation_of
 from ..numerics import AbstractMinimiser, AbstractQuadrature, TrustRegionNewton, Warning
+from ..numerics.shown import Printable
 from ..numerics.types import Ring, Scalar
 from .azimuth import azimuths, orbit_ratio
 from .balls.ball_speed import AbstractRacewayControl
@@ -50,7 +51,7 @@ def check_element(owner: str, element: object) -> None:
 AnyBearing = TypeVar("AnyBearing", bound=AbstractBearing | BearingSet, covariant=True)
 
 
-class BearingElement(eqx.Module, Generic[AnyBearing]):
+class BearingElement(Printable, Generic[AnyBearing]):
     """A rolling bearing, or a set of bearings, between two ring nodes: 12 freedoms.
 
     V(q) = Σ_elements min_x [U(q, x) - F·y]; `force` is its gradient, `stiffness` its

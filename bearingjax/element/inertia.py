@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from ..design.checks import number
 from ..design.profile import sagitta
+from ..numerics.shown import Printable
 from ..numerics.types import Real, Scalar
 from ..numerics.units import real
 from .constants import ContactConstants
@@ -16,7 +17,7 @@ _NODES = 16
 """Nodes of the volume integrals of a barrel: exact to round-off for a flat arc."""
 
 
-class Speed(eqx.Module):
+class Speed(Printable):
     """Speeds of the rings about the bearing axis, positive from x towards y.
 
     Attributes:

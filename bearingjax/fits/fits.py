@@ -22,12 +22,13 @@ from ..design.checks import (
     number,
     positive,
 )
+from ..numerics.shown import Printable
 from ..numerics.types import Real, RealOrNone, array_namespace
 from ..numerics.units import real, unit
 from .warm_material import WarmMaterial
 
 
-class Mounting(eqx.Module):
+class Mounting(Printable):
     """A radial bearing on its shaft and in its housing.
 
     Attributes:
@@ -171,7 +172,7 @@ def _check_larger(owner, name, smaller):
         check(owner, name, known[0] > known[1], f"above `{smaller}`, {known[1]:.6g} m")
 
 
-class FitConditions(eqx.Module):
+class FitConditions(Printable):
     """Temperatures and speed.
 
     Attributes:

@@ -11,6 +11,7 @@ from ..design.checks import of_class, positive
 from ..lubrication import Lubricant
 from ..lubrication.film import line_film, point_film
 from ..numerics.labels import to_xarray
+from ..numerics.shown import Printable
 from ..numerics.types import Number, as_real
 from ..numerics.units import unit
 from ..statics.solution import BallSolution, RollerSolution, Solution, check_single
@@ -19,7 +20,7 @@ _SIDES = (1.0, -1.0)
 """Signs of outer and inner raceway: outside and inside of the pitch circle."""
 
 
-class Films(eqx.Module):
+class Films(Printable):
     """Films of all contacts; axis contact as in `BallResults`, of rollers (outer,
     inner). Where no load is carried films are infinite.
 

@@ -37,6 +37,7 @@ from ..design.checks import check, of_class, one_of, positive
 from ..life.equivalent_load import equivalent_load
 from ..life.rating import static_capacity as rated
 from ..numerics.labels import to_xarray
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution, check_single
@@ -78,7 +79,7 @@ _SLOW = 2000e-6 / 60.0
 """ν n below which the oil's part is constant: 2000 mm²/s per minute [m²/s²]."""
 
 
-class Friction(eqx.Module):
+class Friction(Printable):
     """Friction torque against the rotation of one ring in the other.
 
     Attributes:

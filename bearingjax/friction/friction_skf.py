@@ -36,6 +36,7 @@ from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..life.rating import static_capacity as rated
 from ..numerics.labels import to_xarray
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Scalar, as_real
 from ..numerics.units import unit
 from ..statics.solution import Solution
@@ -189,7 +190,7 @@ _TYPES: dict[type, _Type] = {
 }
 
 
-class SkfFriction(eqx.Module):
+class SkfFriction(Printable):
     """Friction torque against the rotation of one ring in the other.
 
     Attributes:

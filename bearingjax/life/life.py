@@ -34,6 +34,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
+from ..numerics.shown import Printable
 from ..numerics.types import Real, RealOrNone, Scalar, in_numpy
 from ..numerics.units import meaning, real, unit
 from ..statics.empty_places import solution_with_empty_places, spread_elements
@@ -102,7 +103,7 @@ _MILLION = 1e6
 _RATED = "published for the `designation`, else from the geometry"
 
 
-class LifeConditions(eqx.Module):
+class LifeConditions(Printable):
     """Conditions of a rating life in addition to the solution.
 
     Attributes:
@@ -216,7 +217,7 @@ class LifeConditions(eqx.Module):
             )
 
 
-class Life(eqx.Module):
+class Life(Printable):
     """Rating life of a bearing under one load.
 
     Numbers are NaN if the solution did not converge. Lives are in revolutions of one

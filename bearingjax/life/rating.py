@@ -33,6 +33,7 @@ from ..design.bearing_set import shares_rings
 from ..design.checks import is_traced, of_class, one_of, positive
 from ..design.published import close, is_as_published
 from ..numerics.compiled.programs import program
+from ..numerics.shown import Printable
 from ..numerics.types import Flag, Number, Real, Scalar, as_array, as_real, in_numpy
 from ..numerics.units import real, unit
 from . import row_rating as by_row
@@ -46,7 +47,7 @@ STATIC_FROM_GEOMETRY = "ISO 76 from geometry"
 LIMIT_FROM_STATIC = "ISO 281 from static capacity"
 
 
-class Ratings(eqx.Module):
+class Ratings(Printable):
     """Load ratings, and where they and the axial factors come from.
 
     Attributes:

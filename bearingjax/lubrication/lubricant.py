@@ -8,6 +8,7 @@ from jaxtyping import Array, Bool
 
 from ..design.checks import instance, is_traced, non_negative, positive
 from ..numerics.compiled.programs import program
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Real, Reals, Scalar, as_real
 from ..numerics.units import real
 from .coefficient import AbstractCoefficient, as_coefficient
@@ -48,7 +49,7 @@ class Density(eqx.Module):
         return self.value - self.slope * warmer
 
 
-class Lubricant(eqx.Module):
+class Lubricant(Printable):
     """An oil: viscosity over temperature and pressure, density.
 
     Temperatures are in K, pressures in Pa above atmosphere. All values are finite from

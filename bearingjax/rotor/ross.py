@@ -56,7 +56,7 @@ def to_ross(
             of another shape, not finite or negative on its diagonal.
         SolveError: If a solve fails; the message names the speed.
 
-    Source: frame and orders of ROSS 2.3, `ShaftElement.K`, `DiskElement.G`,
+    Source: frame and orders of ROSS 2.3 to 3.1, `ShaftElement.K`, `DiskElement.G`,
         `Rotor._unbalance_force` and `gravitational_force`; a test holds them.
     """
     check_element("to_ross", element)

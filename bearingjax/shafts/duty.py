@@ -21,6 +21,7 @@ from ..life.rating import check_alike
 from ..life.reference_life import BALLS, exponents_of
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit
 from ..statics.solution import Solution
@@ -49,7 +50,7 @@ LIVES = (
 """Numbers of a `Life` that a `DutyResult` has; the damage is last."""
 
 
-class DutyResult(eqx.Module):
+class DutyResult(Printable):
     """Load cases of a system of shafts, or one, without its axis. Numbers of failed
     cases are NaN.
 

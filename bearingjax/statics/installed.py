@@ -22,6 +22,7 @@ from ..fits import (
     with_bearing_dimensions,
 )
 from ..numerics.compiled.programs import program
+from ..numerics.shown import Printable
 from ..numerics.types import RealOrNone, as_array, as_real
 from ..numerics.units import real, rpm
 from ..numerics.warning import Warning
@@ -41,7 +42,7 @@ def _as_limits(given: SizeLimits | None) -> SizeLimits | None:
     return SizeLimits(*(Limits(*map(as_real, ends)) for ends in given))
 
 
-class Installed(eqx.Module):
+class Installed(Printable):
     """A bearing with its preload, its seats and its temperatures.
 
     The order is that of the workshop: the rows of a set are ground to their preload,

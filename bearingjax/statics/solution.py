@@ -1,6 +1,8 @@
 """Solution of a bearing: displacement, force, stiffness, loads, pressures, code."""
 
+import dataclasses
 import functools
+from collections.abc import Iterator
 from typing import Any
 
 import equinox as eqx
@@ -18,12 +20,14 @@ from ..element.frame import (
     LOAD_UNITS,
     LOADS,
     MOTION_UNITS,
+    RINGS,
     STIFFNESS_UNITS,
 )
 from ..element.inertia import Speed
 from ..element.solved_row import RowResults
 from ..numerics import Result, TrustRegionNewton
 from ..numerics.labels import axes_of, to_xarray
+from ..numerics.shown import Fact, Printable, facts_of, has_numbers, numbers_text
 from ..numerics.types import Number, Ring, Scalar, in_numpy
 from ..numerics.units import unit
 from .balls import BallResults, above_round_off, ball_results
@@ -35,6 +39,10 @@ LARGEST_PRESSURE = 4e9
 _BALANCED, _ROUND_OFF = 1e-10, 1e-7
 """Residuals of a load solve, and of its rolling elements, that are out of balance by no
 more than what round-off leaves of large loads [1]."""
+
+
+_FIRST = "result force displacement roller_load roller_pressure".split()
+"""Fields of a solution that `print` shows."""
 
 
 class Stats(eqx.Module):
@@ -54,7 +62,7 @@ class Stats(eqx.Module):
     roller_iterations: Int[Array, ""]
 
 
-class Solution(eqx.Module):
+class Solution(Printable):
     """A solved bearing. Axes: element counts the rollers or balls, in a set row by row;
     raceway and ring are (outer, inner). Under `jax.vmap` cases come before them.
 
@@ -122,6 +130,24 @@ class Solution(eqx.Module):
     free: tuple[str, ...] = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
     moving_ring: str = eqx.field(static=True)
+
+    def shown_facts(self) -> Iterator[Fact]:
+        """Yield what an engineer looks at first, and the names of the other fields."""
+        facts = list(facts_of(self, _FIRST))
+        known = all(map(has_numbers, (self.result, self.stiffness, self.roller_load)))
+        if known and not np.ndim(self.result):
+            facts[0] = (*facts[0][:3], self.failure_message or "of the load solve")
+            zone, ring = np.asarray(self.load_zone), RINGS.index(self.moving_ring)
+            loaded, of = f"{zone.sum()} of {zone.size}", f"of the {RINGS[ring]} ring"
+            own = np.diagonal(self.stiffness).reshape(2, 6)[ring]
+            units = np.repeat(["kN/mm", "N m/mrad"], 3)
+            text = numbers_text(own * np.repeat([1e-6, 1e-3], 3), units, FREEDOMS)
+            facts += [(1, "load_zone", loaded, "rolling elements under load")]
+            facts += [(1, "stiffness", text, f"diagonal, {of}")]
+        yield from facts
+        shown = {name for _, name, *_ in facts}
+        others = [f.name for f in dataclasses.fields(self) if f.name not in shown]
+        yield 1, "further", "", ", ".join(others)
 
     @property
     def load_zone(self) -> Bool[Array | np.ndarray, "*case element"]:

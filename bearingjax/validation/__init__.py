@@ -8,8 +8,10 @@ Names
 -----
 
 - Cases: `cases`, `Case`, `Number`, `SUBJECTS`, `TRUST`.
+- Those nearest to a bearing: `nearest_cases`, `Near`.
 """
 
 from .case import SUBJECTS, TRUST, Case, Number, cases
+from .nearest import Near, nearest_cases
 
-__all__ = ["cases", "Case", "Number", "SUBJECTS", "TRUST"]
+__all__ = ["cases", "Case", "Number", "SUBJECTS", "TRUST", "nearest_cases", "Near"]

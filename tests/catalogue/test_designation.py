@@ -187,7 +187,7 @@ def test_steel_and_balls_by_designation():
     assert "stainless steel" in steel.sources["capacity"]
     hybrid = bj.catalogue_entry("6205-2RSLTN9/HC5C3WT")
     assert hybrid.dynamic_capacity == plain.dynamic_capacity
-    made = hybrid.bearing
+    made = bj.load_bearing(hybrid.designation)
     assert float(made.material.elastic_modulus) == 310e9
     assert float(made.ring_material.elastic_modulus) == 206e9
     again = bj.catalogue_entry(hybrid.designation)

@@ -55,7 +55,7 @@ def test_python_and_scenes_rate_catalogue_bearings_as_published(tmp_path):
     """C, C0, Pu, P and L10 of 39 designations of all types, from either side."""
     path, seen = tmp_path / "scene.toml", 0
     for entry in some():
-        found = numbers(entry.bearing)
+        found = numbers(bj.load_bearing(entry.designation))
         path.write_text(
             f'[bearing]\ndesignation = "{entry.designation}"\n[operating]\n'
             'load = { Fz = "1 kN" }\n[life]\n',
@@ -78,7 +78,7 @@ def test_rated_fields_are_those_that_the_ratings_depend_on():
     Fits change what a four-point bearing touches at, not its shim angle.
     """
     for entries in by_type().values():
-        (row, *_) = rows(entries[0].bearing)
+        (row, *_) = rows(bj.load_bearing(entries[0].designation))
         before = jax.tree.leaves(rating._row(row))
         names = [f.name for f in row.__dataclass_fields__.values() if f.metadata]
         for name in names:
@@ -178,7 +178,7 @@ def test_equivalent_loads_have_the_printed_axial_factors():
         if y2 is None:
             y2, x2 = entry.printed["axial_factor"], 0.65
             y1, y0 = y2 * 0.42 / 0.65, y2 * 0.44 / 0.65
-        p, p0 = map(float, equivalent_load(entry.bearing, LOAD))
+        p, p0 = map(float, equivalent_load(bj.load_bearing(entry.designation), LOAD))
         assert p == pytest.approx(max(2e3 + y1 * 4e3, x2 * 2e3 + y2 * 4e3), rel=1e-9)
         assert p0 == pytest.approx(2e3 + y0 * 4e3, rel=1e-9)
     # The maker's angle, not that of the clearance with which one was measured.

@@ -216,7 +216,7 @@ def test_skf_friction_of_a_22208_e_has_the_constants_of_the_series_222_e():
     """At 3500 rpm, 13.2 mm²/s, Fr 5 kN, Fa 1 kN: by hand 319.7 N mm, of 222 400.9."""
     entry = bj.catalogue_entry("22208 E")
     model = friction_skf._TYPES[bj.design.SphericalRollerRow]
-    row = bj.design.rows_of(entry.bearing)[0].bearing
+    row = bj.design.rows_of(bj.load_bearing(entry.designation))[0].bearing
     found = []
     for series in (skf_series_of(entry), "222"):
         assert series is not None

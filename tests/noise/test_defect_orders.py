@@ -1,9 +1,8 @@
 """Kinematic frequencies and orders of waviness.
 
-Published orders: CWRU bearing data centre (6205, 6203), NASA/IMS data set (Rexnord
-ZA-2115), to the digits they print; all rows to 1e-6 from the formulas of rolling.
-Waviness: relations of Wardle (1988) for a bearing of 8 balls of 6.747 mm on 28.5 mm at
-25 Hz, and a sum over rolling elements in time for any speeds of both rings.
+Published orders and relations of waviness are validation cases (`defect_orders`,
+`waviness_lines`); here are identities, and a sum over rolling elements in time for any
+speeds of both rings.
 """
 
 import jax
@@ -31,40 +30,13 @@ def balls(z, diameter, pitch, degrees=0.0):
     return bj.DeepGrooveBallBearing(z, pitch, diameter, **kind)
 
 
-# BPFO, BPFI, FTF, 2 BSF, BSF per turn of the shaft, and what is published of the first
-# four; dimensions in the unit of the source, as only their ratio counts.
 ROWS = {
-    "CWRU 6205": (
-        balls(9, 0.3126, 1.537),
-        (3.584776, 5.415224, 0.398308, 4.713443, 2.356722),
-        (3.5848, 5.4152, 0.39828, 4.7135),
-    ),
-    "CWRU 6203": (
-        balls(8, 0.2656, 1.122),
-        (3.053119, 4.946881, 0.381640, 3.987677, 1.993839),
-        (3.0530, 4.9469, 0.3817, 3.9874),
-    ),
-    "JIS 6306": (
-        balls(8, 11.9062, 52.0),
-        (3.084138, 4.915862, 0.385517, 4.138507, 2.069254),
-        (),
-    ),
-    "Rexnord ZA-2115": (
-        balls(16, 0.331, 2.815, 15.17),
-        (7.092104, 8.907896, 0.443257, 8.394999, 4.197500),
-        (7.092, 8.908, 0.4433),
-    ),
-    "176211": (
-        balls(14, 14.288, 77.5),
-        (5.709471, 8.290529, 0.407819, 5.239771, 2.619885),
-        (),
-    ),
-    "305": (
-        balls(7, 11.51, 43.5),
-        (2.573908, 4.426092, 0.367701, 3.514725, 1.757362),
-        (),
-    ),
+    "CWRU 6205": balls(9, 0.3126, 1.537),
+    "Rexnord ZA-2115": balls(16, 0.331, 2.815, 15.17),
+    "176211": balls(14, 14.288, 77.5),
+    "305": balls(7, 11.51, 43.5),
 }
+"""Dimensions in the unit of the source, as only their ratio counts."""
 
 
 def listed(found):
@@ -80,13 +52,10 @@ def listed(found):
 
 
 @pytest.mark.parametrize("name", ROWS)
-def test_published_orders(name):
-    bearing, exact, published = ROWS[name]
+def test_orders_and_frequencies(name):
+    bearing = ROWS[name]
     speed = bj.Speed(inner=25 * TURN)
     found = kinematic_frequencies(bearing, speed)
-    np.testing.assert_allclose(listed(found.orders), exact, atol=1e-6)
-    printed = listed(found.orders)[: len(published)]
-    np.testing.assert_allclose(printed, published, atol=5e-4)
     np.testing.assert_allclose(listed(found), 25 * listed(found.orders))
     assert found.inner == 25 and found.outer == 0 and found.shaft == found.inner
     # Every rolling element passes both raceways once per turn of the cage against them.
@@ -94,25 +63,8 @@ def test_published_orders(name):
     np.testing.assert_allclose(found.outer_passage + found.inner_passage, 25.0 * z)
 
 
-def test_orders_of_a_spherical_roller_bearing():
-    """22220, printed by Schaeffler: 18 rollers in each row, γ = 0.1539."""
-    row = bj.SphericalRollerRow(
-        18,
-        0.1376,
-        0.1539 * 0.1376 / np.cos(np.radians(9.5)),
-        0.0185,
-        contact_angle=np.radians(9.5),
-        roller_profile_radius=0.078,
-        inner_raceway_radius=0.0805,
-    )
-    found = kinematic_frequencies(row, bj.Speed(inner=TURN))
-    printed = [7.6149, 10.385]
-    orders = [found.outer_passage, found.inner_passage]
-    np.testing.assert_allclose(orders, printed, rtol=0.0, atol=2e-4)
-
-
 def test_both_rings_turn():
-    bearing = ROWS["176211"][0]
+    bearing = ROWS["176211"]
     of_inner = kinematic_frequencies(bearing, bj.Speed(inner=25 * TURN))
     of_outer = kinematic_frequencies(bearing, bj.Speed(outer=25 * TURN))
     assert of_outer.shaft == 25 and of_outer.inner == 0
@@ -143,7 +95,7 @@ def test_rollers(name):
 
 
 def test_operating_contact_angles():
-    bearing = ROWS["Rexnord ZA-2115"][0]
+    bearing = ROWS["Rexnord ZA-2115"]
     speed = bj.Speed(inner=100.0)
     free = np.radians(15.17)
     at_free = kinematic_frequencies(bearing, speed, free)
@@ -167,7 +119,7 @@ def test_operating_contact_angles():
 
 
 def test_kinematics_and_waviness_reject_invalid_numbers():
-    bearing, speed = ROWS["305"][0], bj.Speed(1.0)
+    bearing, speed = ROWS["305"], bj.Speed(1.0)
     with pytest.raises(ValueError, match="`contact_angle` is given for rollers"):
         kinematic_frequencies(next(iter(rollers().values())), speed, 0.1)
     with pytest.raises(ValueError, match="`contact_angle` is nan rad"):
@@ -179,22 +131,16 @@ def test_kinematics_and_waviness_reject_invalid_numbers():
 
 
 def test_kinematic_frequencies_reject_invalid_arguments(untyped):
-    pair = bj.BearingSet.back_to_back(ROWS["Rexnord ZA-2115"][0], 1.0, 0.0)
+    pair = bj.BearingSet.back_to_back(ROWS["Rexnord ZA-2115"], 1.0, 0.0)
     with pytest.raises(TypeError, match="BearingSet.*rows"):
         kinematic_frequencies(pair, bj.Speed(25.0))  # type: ignore
     with pytest.raises(TypeError, match="`speed` is a float"):
-        kinematic_frequencies(ROWS["305"][0], 25.0)  # type: ignore
+        kinematic_frequencies(ROWS["305"], 25.0)  # type: ignore
     with pytest.raises(TypeError, match="`bearing` is a str"):
         kinematic_frequencies("6205", bj.Speed(25.0))  # type: ignore
 
 
 EIGHT = balls(8, 6.747, 28.5)
-WAVES = {
-    (1, "inner"): ([8, 123.673684], [7, 98.6736842], [9, 148.673684]),
-    (2, "inner"): ([16, 247.347368], [15, 222.347368], [17, 272.347368]),
-    (1, "outer"): ([8, 76.3263158], [7, 76.3263158], [9, 76.3263158]),
-    (2, "outer"): ([16, 152.652632], [15, 152.652632], [17, 152.652632]),
-}
 
 
 def force(part, order, bearing=EIGHT, speed=None):
@@ -202,25 +148,7 @@ def force(part, order, bearing=EIGHT, speed=None):
     return np.array(found.axial), np.array(found.radial)
 
 
-@pytest.mark.parametrize("k, part", WAVES)
-def test_waves_on_raceways(k, part):
-    (n, axial), *both = WAVES[k, part]
-    found = force(part, n)
-    np.testing.assert_allclose(found[0], [axial], rtol=1e-8)
-    assert found[1].size == 0
-    for n, radial in both:
-        found = force(part, n)
-        assert found[0].size == 0
-        np.testing.assert_allclose(abs(found[1]), [radial], rtol=1e-8)
-
-
-def test_waves_on_a_ball():
-    values = {2: (99.6840689, (90.1432795, 109.224858))}
-    values[4] = (199.368138, (189.827348, 208.908927))
-    for n, (axial, radial) in values.items():
-        found = force("element", n)
-        np.testing.assert_allclose(found[0], [axial], rtol=1e-8)
-        np.testing.assert_allclose(np.sort(abs(found[1])), radial, rtol=1e-8)
+def test_odd_waves_on_a_ball_balance():
     for n in (1, 3, 5):
         assert all(lines.size == 0 for lines in force("element", n))
 
@@ -235,7 +163,7 @@ def test_all_other_orders_balance():
 
 
 def test_orders_of_the_four_point_bearing():
-    bearing = ROWS["176211"][0]
+    bearing = ROWS["176211"]
     orders = range(1, 45)
     radial = [n for n in orders if force("inner", n, bearing)[1].size]
     axial = [n for n in orders if force("inner", n, bearing)[0].size]

@@ -1,11 +1,7 @@
 """Whirl modes and Campbell diagrams.
 
-Sources: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees, Dynamics of Rotating
-Machines (2010), examples 5.9.2 and 5.9.5, as the tests of ROSS quote them
-(ross/tests/test_examples.py); and ROSS's own results for the rotor of 5.9.2
-(ross/tests/test_rotor_assembly.py, `test_campbell`, `test_freq_response_w_force`),
-with six elements and Cowper's shear coefficient, whose frame and freedoms are ours
-(tests/rotor/test_ross.py). Torsion, which ROSS has and we have not, is left out.
+Published ones, of Friswell et al. and of ROSS, are the validation cases
+`friswell_campbell` and `friswell_damped`.
 """
 
 from typing import Any
@@ -25,15 +21,8 @@ from bearingjax.rotor import AbstractSupport
 TURN = 2 * np.pi
 
 
-def test_the_campbell_diagram_of_ross():
+def test_whirl_at_rest_turning_and_turning_back():
     found = bj.rotor.campbell(friswell(), [0.0, 150.0, 300.0], count=6)
-    ross = [
-        [82.65303734, 86.65811435, 254.52047828, 274.31285391, 679.48903239],
-        [82.60929602, 86.68625235, 251.70037114, 276.87787937, 652.85679897],
-        [82.48132723, 86.76734307, 245.49092844, 282.33294699, 614.05536277],
-    ]
-    # Ten digits are printed.
-    np.testing.assert_allclose(TURN * found.frequency[:, :5], ross, rtol=SOLVER)
     assert (found.whirl[0] == 0).all()  # at rest each mode is in a plane
     np.testing.assert_array_equal(found.whirl[1:, :5], [[-1, 1, -1, 1, -1]] * 2)
     assert abs(found.damping_ratio).max() < SOLVER
@@ -76,18 +65,10 @@ def test_order_of_equal_frequencies_does_not_hang_on_round_off(across):
         np.testing.assert_array_equal(found.whirl[1:], exact.whirl[1:])
 
 
-def test_the_tables_of_friswell():
-    speed = 4000 * TURN / 60
-    turning = bj.rotor.modes(friswell(), speed, count=6)
-    table = [82.33, 86.86, 239.64, 287.25, 583.49, 806.89]
-    np.testing.assert_allclose(TURN * turning.frequency, table, rtol=PUBLISHED)
+def test_measures_of_damping():
     # Isotropic bearings with damping, at rest: pairs of equal modes.
     damped = bj.rotor.modes(friswell(1e6, 1e6, 3e3), count=6)
-    table = np.repeat([13.89, 46.54, 103.22], 2)
-    np.testing.assert_allclose(damped.frequency, table, rtol=2 * PUBLISHED)
     natural = np.abs(damped.eigenvalue) / TURN
-    table = np.repeat([13.91, 48.18, 137.06], 2)
-    np.testing.assert_allclose(natural, table, rtol=2 * PUBLISHED)
     ratio = damped.damping_ratio
     exact = np.sqrt(1 - (damped.frequency / natural) ** 2)
     np.testing.assert_allclose(ratio, exact, rtol=DIFFERENCE)

@@ -22,7 +22,7 @@ LOAD = np.array([200.0, -600.0, 900.0, 0.0, 0.0, 0.0])
 def ross():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return pytest.importorskip("ross")
+        return pytest.importorskip("ross", exc_type=ModuleNotFoundError)
 
 
 @pytest.fixture(scope="module")

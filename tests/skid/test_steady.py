@@ -26,17 +26,17 @@ steady_module = importlib.import_module(
     "bearingjax.skid.orbits.steady"
 )  # a function's name
 
-# Axial load [N]: slip of the orbit [%], pitch angle of the spin axis [deg], as an
-# independent integration of one ball in time ended, to the digits that are printed.
+# Axial load [N]: pitch angle of the spin axis [deg], as an independent integration of
+# one ball in time ended; other numbers are the validation case `han_chu_end_states`.
 ENDS = {
-    40.0: (7.6, 0.2),
-    80.0: (1.4, None),
-    120.0: (0.33, 3.2),
-    200.0: (0.27, 24.1),
-    300.0: (None, 31.2),
-    400.0: (None, 32.1),
-    520.0: (0.09, 32.6),
-    600.0: (None, 32.9),
+    40.0: 0.2,
+    80.0: None,
+    120.0: 3.2,
+    200.0: 24.1,
+    300.0: 31.2,
+    400.0: 32.1,
+    520.0: 32.6,
+    600.0: 32.9,
 }
 
 
@@ -94,17 +94,12 @@ def row(result, k):
 
 
 @pytest.mark.slow
-def test_steady_axial_loads_match_published_slip_and_pitch(axial):
-    """AF001-11, AF001-12 and AF001-14."""
+def test_steady_axial_loads_match_published_pitch(axial):
+    """AF001-14."""
     assert np.all(axial.result == Result.CONVERGED)
-    for k, (slip, angle) in enumerate(ENDS.values()):
-        end = row(axial, k)
-        if slip is not None:
-            # As far as the digits go; at 40 N we have 7.515 and it 7.6.
-            got = 100.0 * end.slip[0]
-            np.testing.assert_allclose(got, slip, atol=0.1 if slip > 1 else 6e-3)
+    for k, angle in enumerate(ENDS.values()):
         if angle is not None:
-            got = np.degrees(end.pitch_angle[0])
+            got = np.degrees(row(axial, k).pitch_angle[0])
             np.testing.assert_allclose(got, angle, atol=0.3)
 
 
@@ -128,30 +123,18 @@ def test_the_row_is_solved_in_one_place_of_the_program(monkeypatch):
 
 
 @pytest.mark.slow
-def test_loads_and_angles_of_the_paper_s_bearing(axial):
-    """AF001-7 and AF001-8; AF001-6: the axial load is carried."""
-    names = list(ENDS)
-    for load, inner, angles in (
-        (40.0, None, (22.66, 27.49)),
-        (120.0, 22.41, (24.56, 26.17)),
-        (520.0, 97.98, (25.78, 26.17)),
-        (600.0, 112.82, None),
-    ):
-        end = row(axial, names.index(load))
-        if inner is not None:
-            np.testing.assert_allclose(end.contact_load[0, 1], inner, rtol=1e-3)
-        if angles is not None:
-            got = np.degrees(end.contact_angle[0])
-            np.testing.assert_allclose(got, angles, atol=0.015)
+def test_axial_load_is_carried(axial):
+    """AF001-6."""
+    for k, load in enumerate(ENDS):
+        end = row(axial, k)
         axially = 12 * end.contact_load[0] * np.sin(end.contact_angle[0])
         np.testing.assert_allclose(axially, load, rtol=0.11 if load < 100 else 0.04)
 
 
 def test_end_state_at_520_newton(axial):
-    """AF001-13; AF001-3: spins of unlike sign, balanced; AF001-4: no slip amid."""
+    """AF001-3: spins of unlike sign, balanced; AF001-4: no slip amid."""
     end = row(axial, list(ENDS).index(520.0))
     spin = end.spin[0]
-    np.testing.assert_allclose(spin, [0.045, 227.6, -355.6], atol=0.06)
     np.testing.assert_allclose(np.linalg.norm(spin), 419.9, rtol=6e-3)
     np.testing.assert_allclose(end.cage_speed / 209.4395, 0.39270, atol=2e-5)
     assert end.contact_spin[0, 0] > 0.0 > end.contact_spin[0, 1]

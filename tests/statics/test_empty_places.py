@@ -104,7 +104,7 @@ def test_a_row_with_empty_places_may_be_changed():
 
 
 def test_ratings_of_a_row_with_empty_places_are_published():
-    row = bj.design.bearing_of(bj.catalogue_entry("6205").design)
+    row = bj.load_bearing("6205")
     found, wanted = bj.ratings(with_places(row)), bj.ratings(row)
     assert float(found.dynamic_capacity) == float(wanted.dynamic_capacity) > 0
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import equinox as eqx
+import jax
 import numpy as np
 import pytest
 from tolerances import SOLVER
@@ -129,7 +130,7 @@ def test_ratings_of_the_estimated_inside_are_those_printed(kind):
     for entry in (e for e in ENTRIES if e.type == kind):
         raised = NEWER[kind] if "improved" in entry.sources["capacity"] else 1.0
         c, c0 = (
-            float(rate(entry.bearing))
+            float(rate(bj.load_bearing(entry.designation)))
             for rate in (bj.dynamic_capacity, bj.static_capacity)
         )
         assert entry.dynamic_capacity and entry.static_capacity
@@ -258,9 +259,11 @@ def test_bearing_by_designation_and_by_scene():
     middle = np.mean(bj.fits.ball_clearance("C3", 0.025))
     assert float(bearing.radial_internal_clearance) == pytest.approx(middle)
     entry = bj.catalogue_entry("6205-2RS1/C3")
-    assert eqx.tree_equal(entry.bearing, bearing)
+    assert eqx.tree_equal(bj.load_bearing(entry.designation), bearing)
     assert "2RS1 (seals or shields): no effect" in entry.notes
     assert isinstance(bj.load_bearing("1205 EKTN9"), bj.BearingSet)
+    with jax.enable_x64(False):
+        assert bj.load_bearing("6205").pitch_diameter.dtype == np.float32
     assert type(bj.load_bearing("tapered")) is bj.TaperedRollerBearing
 
 
@@ -327,7 +330,7 @@ def test_clearances_of_tapered_bores_and_parts_of_a_class(written, find, name, t
     taper = dict(tapered=True) if tapered else {}
     low, high = 1e6 * np.array(find(name, entry.bore, **taper))
     clearance = 0.5e-6 * (low + high)
-    row = rows_of(entry.bearing)[0].bearing
+    row = rows_of(bj.load_bearing(entry.designation))[0].bearing
     found = float(bj.fits.radial_clearance(row))
     assert found == pytest.approx(clearance, rel=1e-3)
     assert entry.class_limits is not None
@@ -362,7 +365,7 @@ def test_designation_letters_change_geometry():
 
 def test_capacities_from_the_balls_of_another_angle_are_as_far_off_as_told():
     """Of the 7205 both angles are listed: their C, C0 over what its BE would give."""
-    ball = rows_of(bj.catalogue_entry("7205 BE").bearing)[0].bearing
+    ball = rows_of(bj.load_bearing("7205 BE"))[0].bearing
     over = []
     for name in ("7205 C", "7205 AC"):
         entry = bj.catalogue_entry(name)

@@ -356,7 +356,7 @@ def test_spherical_rollers_locate_a_rotor(run, tmp_path):
     assert done.status == 0, done.err
     found = read(out)
     static, station = found["static"], 0
-    element = bj.BearingElement(bj.catalogue_entry("22208 E").bearing)
+    element = bj.BearingElement(bj.load_bearing("22208 E"))
     assert isinstance(element.kinematics, bj.element.Finite)
     q = np.zeros(12)
     q[6:11] = static["displacement"][station]

@@ -1,13 +1,16 @@
 """Reading of validation cases, and the command that compares them."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import bearingjax as bj
 from bearingjax import cli
+from bearingjax.studies.bearing.credibility import credibility_section
 from bearingjax.studies.validate.run import Comparison
-from bearingjax.validation import SUBJECTS, Case, Number, cases
+from bearingjax.validation import SUBJECTS, Case, Number, cases, nearest
 from bearingjax.validation.case import as_number, read_case
 
 CASE = """
@@ -120,3 +123,64 @@ def test_command_writes_every_number(tmp_path, capsys):
     page = files["html"].read_text()
     for number in case.numbers:
         assert number.name in shown and number.name in page
+
+
+def made_case(name, pitch, load, kind="deep_groove_ball"):
+    return Case(
+        name,
+        "",
+        "",
+        "printed",
+        "life",
+        "",
+        (),
+        type=kind,
+        pitch_diameter=pitch,
+        load=load,
+    )
+
+
+@pytest.mark.parametrize(
+    "load, order",
+    [
+        (1000.0, "like small heavy"),
+        (4e3, "heavy like small"),
+        (0.0, "heavy like small"),
+    ],
+)
+def test_nearest_cases(monkeypatch, load, order):
+    """In size and in load over the square of the pitch diameter, of the same type."""
+    made = [
+        made_case("heavy", 0.04, 8e3),
+        made_case("small", 0.02, 250.0),
+        made_case("like", 0.04, 1.1e3),
+        made_case("roller", 0.04, 1e3, "cylindrical_roller"),
+        made_case("no load", 0.04, 0.0),
+    ]
+    monkeypatch.setattr(nearest, "cases", lambda: {one.name: one for one in made})
+    bearing = bj.DeepGrooveBallBearing(
+        9, 0.04, 0.008, outer_osculation=0.53, inner_osculation=0.52
+    )
+    found = nearest.nearest_cases(bearing, load, 3)
+    assert [one.case.name for one in found] == order.split()
+    like = next(one for one in found if one.case.name == "like")
+    assert like.size == pytest.approx(1.0)
+    assert like.load == pytest.approx(load / 1.1e3)
+
+
+def test_report_names_the_nearest_cases():
+    found = SimpleNamespace(
+        bearing=bj.AngularContactBallBearing(
+            16,
+            0.12526,
+            0.022225,
+            contact_angle=0.7,
+            outer_osculation=0.5232,
+            inner_osculation=0.5232,
+        ),
+        kinematics=bj.element.Linearised(),
+    )
+    (facts,) = credibility_section(found, [0, 0, 17.8e3, 0, 0, 0])
+    text = " ".join(str(facts).split())
+    assert "harris_218_thrust (independent program): this bearing has 1 times" in text
+    assert "tilts up to 10 mrad" in text

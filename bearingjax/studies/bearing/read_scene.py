@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...catalogue.entry import catalogue_entry
+from ...catalogue.entry import bearing_of_entry, catalogue_entry
 from ...design import AbstractBearing, BearingSet, rows_of
 from ...element import RINGS, BearingElement, ConstantAngle, Speed
 from ...files import SceneError, shipped_scenes
-from ...files.scene_file import find_scene, is_scene, need_float64, parse_bearing
+from ...files.scene_file import find_scene, is_scene, parse_bearing
 from ...files.schema import read_keys
 from ...files.table import Table
 from ...fits import FitStates
@@ -123,11 +123,16 @@ def _grind_rows(bearing: Installed) -> Installed:
 
 
 def load_bearing(source: str | Path) -> Any:
-    """Load the bearing of a scene file, as drawn, or of the catalogue.
+    """Load a bearing by its designation, or that of a scene file, as drawn.
 
     Args:
-        source: Path of a `.toml` scene, the name of a shipped one, or a designation
-            such as "6205" or "NJ 206 ECP/C3" (see `catalogue_entry`).
+        source: A designation such as "6205" or "NJ 206 ECP/C3" (see
+            `catalogue_entry`), the path of a `.toml` scene, or the name of a shipped
+            one.
+
+    Returns:
+        The bearing, or the set of both rows of one whose rows share rings. One of the
+        catalogue carries its published ratings and axial factors.
 
     Raises:
         SceneError: If the scene cannot be read, or nothing has this name.
@@ -138,9 +143,8 @@ def load_bearing(source: str | Path) -> Any:
         raise TypeError(f"load_bearing: `source` is {source!r}; {problem}.")
     if is_scene(source):
         return read_scene(source).element.bearing
-    need_float64()
     try:
-        return catalogue_entry(str(source)).bearing
+        return bearing_of_entry(catalogue_entry(str(source)))
     except ValueError as error:
         scenes = ", ".join(shipped_scenes())
         problem = f"{error}; nor is it a .toml file or a shipped scene ({scenes})"

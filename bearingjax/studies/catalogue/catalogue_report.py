@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...catalogue.entry import CatalogueEntry
+from ...catalogue.entry import CatalogueEntry, bearing_of_entry
 from ...design import rows_of
 from ...design.keywords import BALLS, ROLLERS
 from ...files.quantity import SceneError, to_si
@@ -356,7 +356,7 @@ def _load(entry: CatalogueEntry) -> list[str]:
 
 def _row(entry: CatalogueEntry) -> Any:
     """Return the first row of the bearing."""
-    return rows_of(entry.bearing)[0].bearing
+    return rows_of(bearing_of_entry(entry))[0].bearing
 
 
 def _speed(entry: CatalogueEntry) -> str:

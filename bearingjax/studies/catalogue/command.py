@@ -38,7 +38,7 @@ def add(commands: Commands) -> ArgumentParser:
 
 def run(options: Namespace) -> int:
     """List bearings of the catalogue."""
-    from ...catalogue import catalogue_entries
+    from ...catalogue.entry import bearing_of_entry, catalogue_entries
     from ...files import SceneError
     from ...report.json_output import write_numbers
     from ..bearing.catalogue_keys import listed_bearing
@@ -71,12 +71,12 @@ def run(options: Namespace) -> int:
             f"{e.designation}, inner geometry {e.geometry}; ring bodies schematic"
             for e in chosen
         ]
-        save(cross_sections([entry.bearing for entry in chosen], titles), path)
+        save(cross_sections(list(map(bearing_of_entry, chosen)), titles), path)
 
     def draw_all_of_it(path):
         from ...plot import drawing
 
-        save(drawing(chosen[0].bearing, catalogue_title(chosen[0])), path)
+        save(drawing(bearing_of_entry(chosen[0]), catalogue_title(chosen[0])), path)
 
     outputs = [
         (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),

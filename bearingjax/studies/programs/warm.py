@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...catalogue import catalogue_entries, catalogue_entry
-from ...design import bearing_of
+from ...catalogue.entry import bearing_of_entry
 from ...element import BearingElement, Speed
 from ...life.life import LifeConditions, rating_life
 from ...numerics.compiled.programs import n_compiled
@@ -32,7 +32,7 @@ def kinds_of_catalogue(
         names = [entry.designation for entry in catalogue_entries()]
     kinds: dict[str, list[tuple[str, BearingElement]]] = {}
     for name in names:
-        element = BearingElement(bearing_of(catalogue_entry(name).design))
+        element = BearingElement(bearing_of_entry(catalogue_entry(name)))
         kind = structure(with_empty_places(element))
         kinds.setdefault(kind, []).append((name, element))
     return [one[0] for one in sorted(kinds.values(), key=len, reverse=True)]

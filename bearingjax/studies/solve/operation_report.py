@@ -1,13 +1,12 @@
 """Settings of a solve in words: freedoms, speeds, materials, laws."""
 
-import dataclasses
 from typing import Any
 
 import numpy as np
 
 from ...design import AbstractBearing, BearingSet, Material, rows_of
 from ...element.frame import FREEDOMS, RINGS
-from ...numerics.units import display_unit, unit_of
+from ...numerics.shown import facts_of
 from ...statics.options import DEFAULT_TOLERANCE
 from ...statics.solution import Solution
 from ...statics.warning_sizes import speed_factor
@@ -97,19 +96,11 @@ def _material(material: Material) -> str:
 
 
 def words(choice: Any) -> str:
-    """Format a law, a kinematics or a method by its class name and numbers.
+    """Format a law, a kinematics or a method by its class name and fields.
 
     Args:
-        choice: A module whose fields are numbers or words; arrays of more than one
-            number and submodules are left out.
+        choice: Module.
     """
-    shown = []
-    for field in dataclasses.fields(choice):
-        value = getattr(choice, field.name)
-        if isinstance(value, bool | str):
-            shown.append(f"{field.name} {value}")
-        elif np.ndim(value) == 0 and np.asarray(value).dtype.kind in "fi":
-            factor, unit = display_unit(unit_of(choice, field.name))
-            shown.append(f"{field.name} {factor * float(value):.6g} {unit}".rstrip())
+    shown = ", ".join(f"{name} {value}" for _, name, value, _ in facts_of(choice))
     name = type(choice).__name__
-    return f"{name} ({', '.join(shown)})" if shown else name
+    return f"{name} ({shown})" if shown else name

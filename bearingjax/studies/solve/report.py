@@ -27,6 +27,7 @@ from ...numerics.units import field_metadata, shown_count, unit_of
 from ...report.report_model import DEGREES, NEWTONS, Column, Grid, Report, Section
 from ...statics.solution import BallSolution, RollerSolution, Solution
 from ...statics.warning_sizes import ends_over
+from ..bearing.credibility import credibility_section
 from ..bearing.fit_report import (
     ACROSS_TAPERS,
     fit_report,
@@ -63,6 +64,7 @@ def report(found: SolvedScene) -> Report:
             f"converged in {shown_count(int(solution.stats.iterations), 'step')},"
             f" residual {float(solution.stats.residual):.1e} of the load"
         ],
+        "Credibility": credibility_section(solution.element, scene.load),
     }
     return Report(sections, found.warnings)
 

@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....catalogue.entry import catalogue_entry
+from ....catalogue.entry import bearing_of_entry, catalogue_entry
 from ....design.bearing_set import BearingSet, rows_of
 from ....design.keywords import bearing_of
 from ....numerics.types import Reals, Scalar
@@ -23,8 +23,10 @@ _ARRAYS = Scalar, Reals, Reals | float
 def bearing_by(bearing: str | Mapping[str, Any], arrangement: str = "") -> Any:
     """Return a bearing by its designation or its keywords: alone, one `row` of it, or
     a pair."""
-    of_text = isinstance(bearing, str)
-    own = catalogue_entry(bearing).bearing if of_text else bearing_of(bearing)
+    if isinstance(bearing, str):
+        own = bearing_of_entry(catalogue_entry(bearing))
+    else:
+        own = bearing_of(bearing)
     if arrangement == "row":
         return rows_of(own)[0].bearing
     return getattr(BearingSet, arrangement)(own, 0.03) if arrangement else own

@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 
-from ....catalogue.entry import catalogue_entry
+from ....catalogue.entry import bearing_of_entry, catalogue_entry
 from ....design.bearing_set import rows_of
 from ....design.keywords import BALLS, ROLLERS
 from ....friction import friction_skf as skf
@@ -21,7 +21,8 @@ def coefficient(
         speed, viscosity: Of the inner ring [rad/s], of the oil [m²/s].
     """
     entry, force = catalogue_entry(bearing), jnp.asarray(load)
-    row = rows_of(entry.bearing)[0].bearing
+    own = bearing_of_entry(entry)
+    row = rows_of(own)[0].bearing
     kind, series = skf._TYPES[type(row)], skf.skf_series_of(entry)
     assert series is not None
     rpm, nu = speed * 30.0 / np.pi, 1e6 * viscosity
@@ -36,7 +37,7 @@ def coefficient(
     film = skf.OILS["mineral"] if kind.film is None else kind.film
     whole = float(warm * full * flow**0.6 * rolling)
     whole += (dry * skf._BOUNDARY + (1.0 - dry) * film) * sliding
-    p = float(equivalent_load(entry.bearing, force).dynamic)
+    p = float(equivalent_load(own, force).dynamic)
     return {"coefficient": whole / (0.5 * p * entry.bore)}
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ....catalogue.entry import catalogue_entries
+from ....catalogue.entry import bearing_of_entry, catalogue_entries
 from ....design.bearing_set import rows_of
 from ....fits import Mounting, needed_drive_up, with_bearing_dimensions
 
@@ -27,7 +27,9 @@ def drive_up(
             seats = Mounting(
                 d, big, 2.0 * big, 0.0, -1e-4, ring_width=width, bore_taper=taper
             )
-            seats = with_bearing_dimensions(seats, rows_of(entry.bearing)[0].bearing)
+            seats = with_bearing_dimensions(
+                seats, rows_of(bearing_of_entry(entry))[0].bearing
+            )
             found.append([float(needed_drive_up(seats, x)) for x in reduction])
     reduced = {"mean": np.mean, "least": np.min, "largest": np.max}
     return {name: of(found, axis=0) for name, of in reduced.items()}

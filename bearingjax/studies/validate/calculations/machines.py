@@ -1,0 +1,209 @@
+"""Rotors, vibration and noise."""
+
+import jax.numpy as jnp
+import numpy as np
+
+from ....design import Material
+from ....design.ball_types import AngularContactBallBearing, DeepGrooveBallBearing
+from ....element.bearing_element import BearingElement
+from ....element.inertia import Speed
+from ....noise import (
+    NoiseModel,
+    acceleration_of,
+    combine_levels,
+    kinematic_frequencies,
+    natural_modes,
+    waviness_force,
+)
+from ....numerics.power import positive_power
+from ....rotor.nonlinear import Grooves, Shooting, VibratingSystem, backbone
+
+_TURN = 2.0 * np.pi
+
+
+def _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle):
+    grooves = {"outer_osculation": 0.52, "inner_osculation": 0.52}
+    sizes = n_balls, pitch_diameter, ball_diameter
+    if not contact_angle:
+        return DeepGrooveBallBearing(*sizes, **grooves)
+    return AngularContactBallBearing(*sizes, contact_angle=contact_angle, **grooves)
+
+
+def defect_orders(
+    n_balls: int, ball_diameter: float, pitch_diameter: float, contact_angle: float
+) -> dict[str, float]:
+    """Return the frequencies of passage and rotation per turn of the inner ring [1].
+
+    Args:
+        n_balls: Number of balls.
+        ball_diameter, pitch_diameter: In one unit, as only their ratio counts.
+        contact_angle: [rad].
+    """
+    bearing = _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle)
+    found = kinematic_frequencies(bearing, Speed(inner=_TURN))
+    names = {
+        "BPFO": found.outer_passage,
+        "BPFI": found.inner_passage,
+        "FTF": found.cage,
+        "2 BSF": found.twice_rotation,
+        "BSF": found.rotation,
+    }
+    return {name: float(value) for name, value in names.items()}
+
+
+def waviness_lines(
+    n_balls: int,
+    ball_diameter: float,
+    pitch_diameter: float,
+    shaft_frequency: float,
+    part: str,
+    order: int,
+) -> dict[str, np.ndarray]:
+    """Return the frequencies of force of one order of waviness [rad/s].
+
+    Args:
+        n_balls: Number of balls.
+        ball_diameter, pitch_diameter: [m].
+        shaft_frequency: Turns of the inner ring per second, as an angular one [rad/s].
+        part: "inner", "outer" or "element".
+        order: Waves around the part.
+
+    Returns:
+        `axial` and `radial`: magnitudes, ascending, two each; NaN where there is none.
+    """
+    bearing = _ball_bearing(n_balls, ball_diameter, pitch_diameter, 0.0)
+    found = waviness_force(bearing, Speed(inner=shaft_frequency), part, order)
+
+    def two(lines):
+        lines = _TURN * np.sort(np.abs(np.asarray(lines)))
+        return np.append(lines, [np.nan, np.nan])[:2]
+
+    return {"axial": two(found.axial), "radial": two(found.radial)}
+
+
+def ring_frequencies(
+    n_balls: int,
+    ball_diameter: float,
+    pitch_diameter: float,
+    osculation: float,
+    ring_mass: float,
+    load: float,
+) -> dict[str, float]:
+    """Return the natural frequencies of an outer ring on its balls, along a radial load
+    and across it [Hz].
+
+    Args:
+        n_balls: Number of balls; one stands in the line of the load.
+        ball_diameter, pitch_diameter: [m].
+        osculation: Of both grooves [1].
+        ring_mass: Mass that vibrates [kg].
+        load: Radial load [N].
+    """
+    bearing = DeepGrooveBallBearing(
+        n_balls,
+        pitch_diameter,
+        ball_diameter,
+        outer_osculation=osculation,
+        inner_osculation=osculation,
+        first_azimuth=np.pi / 2,
+        material=Material(density=7850.0),
+    )
+    radial = [0.0, -load, 0.0, 0.0, 0.0, 0.0]
+    model = NoiseModel(BearingElement(bearing), ring_mass, radial, Speed(), tilts=False)
+    found = natural_modes(model)
+    share = found.ring**2 * ring_mass
+
+    def of(direction):
+        mine = (np.argmax(share, axis=1) == direction) & (found.ring_share > 0.5)
+        return float(found.frequency[mine][0])
+
+    along, across = of(1), of(0)
+    return {"along": along, "across": across, "ratio": along / across}
+
+
+def level_sums(bands: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the level of all octave bands together.
+
+    Args:
+        bands: Level of each band [dB].
+    """
+    return {"total": np.asarray(combine_levels(bands))}
+
+
+def accelerations(levels: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the accelerations of levels [m/s²].
+
+    Args:
+        levels: [dB].
+    """
+    return {"acceleration": np.asarray(acceleration_of(levels))}
+
+
+def _hertz_contact(q, velocity, phase, frequency):
+    """Force of a Hertz contact under a load that it opens without."""
+    return (positive_power(1.0 + q, 3, 2) - 1.0) / 1.5
+
+
+def hertz_oscillator(largest: np.ndarray) -> dict[str, np.ndarray]:
+    """Return frequency and least motion of free vibration on a Hertz contact,
+    u'' + 2/3 ((1 + u)₊^1.5 - 1) = 0.
+
+    Args:
+        largest: Largest motion (n,) [1].
+    """
+    system = VibratingSystem(
+        mass=np.eye(1),
+        damping=np.zeros((1, 1)),
+        gyroscopic=np.zeros((1, 1)),
+        restoring=_hertz_contact,
+        load=lambda phase, frequency, acceleration: jnp.zeros(1),
+        scale=np.ones(1),
+        reference_frequency=1.0,
+    )
+    found = backbone(system, largest, 0, Shooting(400))
+    least = np.asarray(largest) - 2.0 * np.asarray(found.amplitude[:, 0])
+    return {"frequency": np.asarray(found.frequency), "least": least}
+
+
+def preloaded_grooves(
+    inner_radius: float,
+    outer_radius: float,
+    groove_radius: float,
+    ball_diameter: float,
+    contact_angle: float,
+    n_balls: int,
+    elastic_modulus: float,
+) -> dict[str, float]:
+    """Return preload and stiffness of a bearing whose radii press its balls.
+
+    Args:
+        inner_radius, outer_radius: Radii of both grooves' bottoms [m].
+        groove_radius: Of their sections [m].
+        ball_diameter: [m].
+        contact_angle: Under preload [rad].
+        n_balls: Number of balls.
+        elastic_modulus: [Pa]; Poisson's ratio is 0.3.
+
+    Returns:
+        `approach` [m], `constant` [N/m^1.5], `preload` [N], `displacement` that presses
+        the rings [m], `radial` and `axial` stiffness [N/m].
+    """
+    bearing = Grooves(
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        groove_radius=groove_radius,
+        ball_diameter=ball_diameter,
+        contact_angle=contact_angle,
+        n_balls=n_balls,
+        material=Material(elastic_modulus, 0.3),
+    )
+    law = bearing.fixed_angle()
+    stiffness = np.asarray(law.stiffness())
+    return {
+        "approach": float(bearing.approach),
+        "constant": float(law.constant),
+        "preload": float(law.preload()),
+        "displacement": float(law.preload_displacement),
+        "radial": float(stiffness[0, 0]),
+        "axial": float(stiffness[2, 2]),
+    }
