@@ -1,11 +1,6 @@
-"""Rating life: published lives, plain NumPy, limits of the standards, derivatives.
+"""Rating life: plain NumPy, limits of the standards, derivatives.
 
-Sources of the published numbers:
-* Ball bearing 6305, C = 23400 N, E = 210 GPa: lives that a public program of ISO/TS
-  16281 gives and attributes to MASTA; their displacements agree to the printed digit,
-  their lives to 7e-5 with ours.
-* NU 215, 30 laminae (Yan 2025), C = 125 kN: lives by an independent program, to 1e-6.
-* a_ISO and the reference viscosity of ISO 281:2007.
+Published lives and factors are validation cases.
 """
 
 from types import SimpleNamespace
@@ -24,8 +19,6 @@ from bearingjax.life import (
     CLEANLINESS,
     Cleanliness,
     life_factor,
-    reliability_factor,
-    viscosity_ratio,
 )
 from bearingjax.life.equivalent_load import (
     _ANGLES,
@@ -50,7 +43,6 @@ from bearingjax.life.life import (
 from bearingjax.life.life_warning import ALL, LIFE_KINDS, life_sizes, life_warnings
 from bearingjax.life.reference_life import (
     BALLS,
-    contact_capacities,
     edge_stress,
     row_fatigue,
 )
@@ -62,7 +54,6 @@ from bearingjax.life.refined_life import (
 from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.optimise.design_problem import Problem
 
-ATTRIBUTED = 3e-4  # between programs that solve the same equations
 LAMINAE = 30
 SPEED = bj.Speed(inner=150.0)
 
@@ -165,49 +156,6 @@ def balls():
 @pytest.fixture(scope="module")
 def rollers():
     return slopes_of(roller_life)
-
-
-@pytest.mark.parametrize(
-    "clearance, radial, axial, millions",
-    [
-        (0.0, 1000.0, 0.0, 13163.019),
-        (0.0, 0.0, 1000.0, 2222.7318),
-        (10e-6, 1000.0, 0.0, 10795.7948),
-        (10e-6, 0.0, 1000.0, 3115.8781),
-    ],
-)
-def test_ball_lives_attributed_to_another_program(
-    balls, clearance, radial, axial, millions
-):
-    _, found = balls(jnp.asarray([clearance, radial, axial, 0.0]))
-    solution, life = found["of"]
-    assert bool(solution.converged)
-    np.testing.assert_allclose(
-        life.reference_rating_life, 1e6 * millions, rtol=ATTRIBUTED
-    )
-
-
-@pytest.mark.parametrize(
-    "radial, tilt, millions, without_edges",
-    [
-        (10e3, 0.0, 5779.7125, 5977.0542),
-        (10e3, 0.5e-3, 5513.8399, 5721.2491),
-        (10e3, 1.0e-3, 4849.6315, 5078.9898),
-        (20e3, 0.0, 698.7651, 728.12),
-        (20e3, 0.5e-3, 675.958, 706.4471),
-        (20e3, 1.0e-3, 615.1985, 649.0586),
-    ],
-)
-@pytest.mark.slow
-def test_roller_lives_of_another_program(
-    rollers, radial, tilt, millions, without_edges
-):
-    _, found = rollers(jnp.asarray([70e-6, radial, 0.0, -tilt, 0.00035]))
-    _, life, plain = found["of"]
-    np.testing.assert_allclose(life.reference_rating_life, 1e6 * millions, rtol=1e-6)
-    np.testing.assert_allclose(
-        plain.reference_rating_life, 1e6 * without_edges, rtol=1e-6
-    )
 
 
 def plain_balls(loads, capacity, angle, bearing, turning="inner"):
@@ -375,18 +323,6 @@ def test_row_fatigue_of_evenly_loaded_rollers_matches_iso_16281():
     np.testing.assert_allclose(found.load, 9e3 * more * 0.323 / 0.378, rtol=5e-3)
 
 
-def test_contact_capacities_are_those_of_another_program():
-    """HR30306J with C = 59.5 kN: MASTA, as a public program for tapers quotes it.
-
-    With (cos α)^(7/9) they would be 0.5 % less.
-    """
-    taper = bj.TaperedRollerBearing(
-        14, 51.56e-3, 10.530e-3, 11.65e-3, roller_axis_angle=0.17, roller_half_angle=0.0
-    )
-    found = contact_capacities(taper, jnp.asarray(59.5e3), jnp.deg2rad(11.859))
-    np.testing.assert_allclose(found, [24.20e3, 14.16e3], rtol=1e-3)
-
-
 def test_a_radial_load_without_clearance_has_the_life_of_iso_281(balls, rollers):
     """As far as the standards' rounded constants agree: 3 % of balls; rollers have C
     without its reduction and the exponent 4."""
@@ -496,40 +432,6 @@ def test_which_ring_turns_against_the_load():
         np.testing.assert_array_equal(turns_against_load(None, fixed), expected)
 
 
-A_ISO = {
-    True: {
-        0.1: (0.1000759, 0.1001298, 0.1001636, 0.100236, 0.1003528),
-        0.25: (0.1438087, 0.18779, 0.2228178, 0.3250407, 0.617827),
-        0.4: (0.1666486, 0.2437884, 0.3118798, 0.5411626, 1.4167843),
-        0.5: (0.2089008, 0.3660402, 0.5294838, 1.2320121, 5.7765345),
-        1.0: (0.3844374, 1.1436743, 2.4305178, 15.5666818, 50.0),
-        4.0: (0.5727615, 2.5007518, 7.2018349, 50.0, 50.0),
-    },
-    False: {
-        0.1: (0.0999915, 0.0999838, 0.0999786, 0.0999668, 0.0999462),
-        0.25: (0.1119438, 0.1241088, 0.1331203, 0.1564955, 0.208813),
-        0.5: (0.1297579, 0.1652735, 0.1952155, 0.2886567, 0.594725),
-        1.0: (0.169194, 0.2796742, 0.3986486, 0.9447983, 5.3106434),
-        2.0: (0.1856473, 0.3373727, 0.5160974, 1.4738199, 12.9267308),
-    },
-}
-
-
-@pytest.mark.parametrize("balls_roll", [True, False])
-def test_a_iso_matches_iso_281(balls_roll):
-    ratios = jnp.asarray([0.01, 0.05, 0.1, 0.3, 1.0])
-    radial = jax.jit(
-        lambda k, x, thrust: life_factor(k, x, balls_roll, thrust),
-    )
-    for kappa, expected in A_ISO[balls_roll].items():
-        found = radial(jnp.asarray(kappa), ratios, jnp.asarray(False))
-        np.testing.assert_allclose(found, expected, rtol=1e-6)
-        # A thrust bearing has the factor of a third, or of two fifths, of C_u.
-        part = 3.0 if balls_roll else 2.5
-        found = radial(jnp.asarray(kappa), part * ratios, jnp.asarray(True))
-        np.testing.assert_allclose(found, expected, rtol=1e-6)
-
-
 @pytest.mark.parametrize("kappa", [1.2, 1.9])
 def test_a_iso_between_kappa_one_and_two(kappa):
     """Formulas (33) and (39) of ISO 281 by hand: their exponents differ from those
@@ -543,21 +445,6 @@ def test_a_iso_between_kappa_one_and_two(kappa):
     assert balls == pytest.approx(0.1 * rest**-9.3, rel=1e-9)
     rest = 1 - (1.5859 - 1.2348 * film) * 0.3**0.4
     assert rollers == pytest.approx(0.1 * rest**-9.185, rel=1e-9)
-
-
-def test_viscosity_and_reliability_are_those_of_iso_281():
-    def needed(turns):
-        speed, pitch = jnp.asarray(turns * np.pi / 30), jnp.asarray(65e-3)
-        return 1.0 / float(viscosity_ratio(jnp.asarray(1e-6), speed, pitch))
-
-    np.testing.assert_allclose(needed(500), 32.1078, rtol=1e-5)
-    np.testing.assert_allclose(needed(3000), 10.1905, rtol=1e-5)
-    np.testing.assert_allclose(needed(1000 - 1e-9), 18.0616, rtol=1e-5)
-    np.testing.assert_allclose(needed(1000 + 1e-9), 17.6505, rtol=1e-5)
-    table = {0.9: 1.0, 0.95: 0.64, 0.97: 0.47, 0.99: 0.25, 0.999: 0.093, 0.9995: 0.077}
-    for share, factor in table.items():
-        found = float(reliability_factor(jnp.asarray(share)))
-        assert abs(found - factor) <= (0.005 if factor > 0.1 else 0.0005)
 
 
 def angular(degrees, n=14):
@@ -612,30 +499,14 @@ def test_four_points_live_as_one_row_by_axial_and_as_two_by_radial_load():
     np.testing.assert_allclose(of_four, of_one, rtol=1e-12)
 
 
-def test_equivalent_loads_are_those_of_the_tables():
+def test_equivalent_loads_between_lines_of_the_tables_and_by_formula():
     taper = bj.TaperedRollerBearing(
         14, 0.06, 0.008, 0.011, roller_axis_angle=0.25, roller_half_angle=0.0
     )
-    deep = ball_element([0.0]).bearing
     cot = 1.0 / np.tan(0.25)
-    pressed = 0.345e6 * 7 * 11.5e-3**2  # a line of the table
-    pair = bj.BearingSet.back_to_back(angular(40), 0.03)
-    tandem = bj.BearingSet.tandem(angular(40), 0.03)
-    thrust = bj.ThrustBallBearing(12, 0.05, 0.008, **grooves(0.54, 0.54))
     rows = [
-        # bearing, Fr, Fa, P, P0
-        (deep, 2e3, 0.2 * pressed, 2e3, 2e3),
-        (deep, 1e2, pressed, 56 + 1.99 * pressed, 60 + 0.5 * pressed),
-        (angular(40), 1e3, 2e3, 350 + 1140, 1020.0),
-        (angular(40), 1e3, 1e3, 1e3, 1e3),
+        # bearing, Fr, Fa, P, P0; at lines of the tables: a validation case.
         (angular(27.5), 1e3, 3e3, 400 + 0.815 * 3e3, 500 + 0.355 * 3e3),
-        (pair, 1e3, 1e3, 1e3 + 550, 1e3 + 520),
-        (pair, 1e3, 2e3, 570 + 1860, 1e3 + 1040),
-        # As SKF's catalogue prints them for four-point bearings.
-        (four_points(35), 1e3, 0.9e3, 1e3 + 0.66 * 0.9e3, 1e3 + 0.58 * 0.9e3),
-        (four_points(35), 1e3, 2e3, 600 + 2140, 1e3 + 1160),
-        (tandem, 1e3, 2e3, 350 + 1140, 1020.0),
-        (thrust, 0.0, 3e3, 3e3, 3e3),
         (taper, 1e3, 1e3, 400 + 400 * cot, 500 + 220 * cot),
         (taper, 1e3, 0.2e3, 1e3, 1e3),
         (roller_element([0.0, 0, 0, 0, 1e-4]).bearing, 1e3, 5e2, 1e3, 1e3),
@@ -648,37 +519,26 @@ def test_equivalent_loads_are_those_of_the_tables():
         np.testing.assert_allclose(found.static, static, rtol=1e-3)
 
 
-@pytest.mark.parametrize(
-    "degrees, x1, y1, x2",
-    [(50, 1.37, 0.57, 0.73), (60, 1.9, 0.55, 0.92), (80, 5.86, 0.52, 2.43)],
-)
-def test_factors_of_thrust_ball_bearings(degrees, x1, y1, x2):
-    """ISO 281, table of thrust ball bearings in both directions; of one direction
-    those of the second pair hold for any load."""
+@pytest.mark.parametrize("degrees", [50, 80])
+def test_factors_of_thrust_ball_bearings(degrees):
+    """Of one direction those of the second pair hold for any load."""
     single, axial = angular(degrees), jnp.asarray(1e3)
     both = load_factors(bj.BearingSet.back_to_back(single, 0.03), axial)
-    np.testing.assert_allclose(both.dynamic, [[x1, y1], [x2, 1.0]], atol=0.006)
     static = [2.3 * np.tan(np.deg2rad(degrees)), 1.0]
     np.testing.assert_allclose(both.static, 2 * [static], rtol=1e-12)
     one = load_factors(single, axial)
-    np.testing.assert_allclose(one.dynamic, 2 * [[x2, 1.0]], atol=0.006)
+    np.testing.assert_allclose(one.dynamic, 2 * [both.dynamic[1]], rtol=1e-12)
 
 
-def test_x_y_factors_match_catalogues_and_iso_tr_1281():
-    """ISO/TR 1281-1: X = 1 - 0.4 ξ/η, Y e = 1 - X; two rows have 1.625 X, 1.625 Y and
-    0.625/e. Limits e as SKF and LYC print them, of 20 and 45 degrees as ISO 281."""
+def test_x_y_factors_match_iso_tr_1281():
+    """X = 1 - 0.4 ξ/η, Y e = 1 - X; two rows have 1.625 X, 1.625 Y and 0.625/e. Printed
+    limits e are a validation case."""
     angle = np.deg2rad(_ANGLES)
     k = np.where(angle < 0.3, 1 / 2.5, 1 / 2.75)
     x = 1 - 0.4 * 1.25 / (1 - k * np.sin(angle))
     radial = 1 - 0.4 * 1.05 / (1 - np.sin(angle[0]) / 2.5)
     np.testing.assert_allclose(_X, np.append(radial, x[1:]), atol=0.006)
     np.testing.assert_allclose(_X2, 1.625 * x, atol=0.01)
-    limits = {
-        0: (0.19, 0.22, 0.26, 0.28, 0.30, 0.34, 0.38, 0.42, 0.44),
-        10: (0.29, 0.32, 0.36, 0.38, 0.40, 0.44, 0.49, 0.54, 0.54),
-        15: (0.38, 0.40, 0.43, 0.46, 0.47, 0.50, 0.55, 0.56, 0.56),
-        20: (0.57, 0.68, 0.80, 0.95, 1.14, 1.34),
-    }
     flat, steep = _FLAT, _STEEP
     rows = {
         0: (radial, flat["y"][0], flat["y2"][0], None),
@@ -686,31 +546,16 @@ def test_x_y_factors_match_catalogues_and_iso_tr_1281():
         15: (x[2], flat["y"][2], flat["y2"][2], flat["y1"][2]),
         20: (x[3:], steep["y"], steep["y2"], steep["y1"]),
     }
-    for first, (share, y, double, one) in rows.items():
-        e, y = np.array(limits[first]), np.array(y)
-        # Both are rounded to 0.005.
-        off = np.abs(y * e - (1 - share))
-        assert (off < 0.005 * (y + e) + 0.004).all()
+    for share, y, double, one in rows.values():
+        y = np.array(y)
         np.testing.assert_allclose(double, 1.625 * y, atol=0.014)
         if one is not None:
-            np.testing.assert_allclose(one, 0.625 / e, rtol=0.025)
-    # Luoyang Bearing: static factors of 15, 25, 30, 35 and 40 degrees.
-    y0 = np.interp([15, 25, 30, 35, 40], _ANGLES, _Y0)
-    np.testing.assert_allclose(y0, [0.46, 0.38, 0.33, 0.29, 0.26])
+            np.testing.assert_allclose(one, 0.625 * y / (1 - share), rtol=0.03)
     np.testing.assert_allclose(_Y0_DOUBLE, 2 * np.array(_Y0))
 
 
-def test_contamination_factors_of_other_programs():
-    """e_C as MASTA has it, by public programs: 51.56 mm and κ = 3.413; above 500 mm a
-    programmed formula that agrees with it to 0.1 %."""
-    clean = Cleanliness(*CLEANLINESS["grease, high"])
-    found = float(clean.factor(jnp.asarray(3.413), jnp.asarray(51.56e-3)))
-    assert found == pytest.approx(0.8174, abs=1e-4)
-    typical = Cleanliness(*CLEANLINESS["grease, slight to typical"])
-    pitch = 3000.0
-    found = float(typical.factor(jnp.asarray(1.0), jnp.asarray(1e-3 * pitch)))
-    assert found == pytest.approx(1 - 1.677 / pitch ** (1 / 3), rel=1e-12)
-    # A dirtier lubricant is worse, and each class of oil halves the life or so.
+def test_contamination_factors_grow_with_cleanliness():
+    """Each class of oil halves the life or so."""
     names = list(CLEANLINESS)
     factor = [
         float(
@@ -846,26 +691,15 @@ def test_optimise_life_warnings_match_rating_life():
 
 def test_rows_in_tandem_share_the_axial_load_on_which_factors_depend():
     """ISO 281: of a set in tandem Fa/(Z D²) is that of one of its bearings."""
-    load = 0.689e6 * 14 * 14.288e-3**2  # a line of the table, Y = 1.52 at 10 degrees
+    load = 0.689e6 * 14 * 14.288e-3**2  # a line of the table
     tandem = bj.BearingSet.tandem(angular(10), 0.03, 3)
     single = load_factors(angular(10), jnp.asarray(load)).dynamic
-    np.testing.assert_allclose(np.asarray(single)[1], [0.46, 1.52], rtol=1e-9)
     found = load_factors(tandem, jnp.asarray(3 * load)).dynamic
     np.testing.assert_allclose(found, single, rtol=1e-12)
-    # Of two that face each other either may have to bear it all.
+    # Of two that face each other either may have to bear it all: 1.625 X and Y.
     pair = bj.BearingSet.back_to_back(angular(10), 0.03)
     found = np.asarray(load_factors(pair, jnp.asarray(load)).dynamic)
-    np.testing.assert_allclose(found, [[1.0, 1.76], [0.75, 2.47]], rtol=1e-9)
-
-
-def test_equivalent_load_joins_where_the_axial_load_begins_to_count():
-    """ISO 281 steps there, by its rounded factors, from Fr to 0.56 Fr + Y e Fr."""
-    deep = ball_element([0.0]).bearing
-    e = {0.172: 0.19, 1.03: 0.28, 6.89: 0.44}
-    for pressure, limit in e.items():
-        axial = pressure * 1e6 * 7 * 11.5e-3**2
-        x, y = np.asarray(load_factors(deep, jnp.asarray(axial)).dynamic)[1]
-        assert abs(x + y * limit - 1.0) < 0.012
+    np.testing.assert_allclose(found[1], 1.625 * np.asarray(single)[1], rtol=5e-3)
 
 
 def test_edge_stress_matches_iso_16281():

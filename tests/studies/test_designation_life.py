@@ -101,7 +101,8 @@ def test_life_of_22220_E_from_python_and_from_the_command(read, run, tmp_path):
     options = bj.statics.SolveOptions(points=scene.points)
     solution = bj.solve_load(element, list(scene.load), options=options)
     life = bj.rating_life(element, solution)
-    assert found["dynamic_capacity"] == pytest.approx(425e3, rel=1e-12)
+    own = bj.catalogue_entry("22220 E").dynamic_capacity
+    assert found["dynamic_capacity"] == pytest.approx(own, rel=1e-12)
     for name, number in told(scene, life.ratings).items():
         assert found[name] == number
     for name in ("basic_rating_life", "reference_rating_life"):
@@ -132,7 +133,7 @@ def test_another_geometry_is_rated_by_the_standards(read):
     (line,) = why_not_published(scene, ["bearing.ball_diameter"])
     assert "6205: ball_diameter differs" in line
     harmless = ["bearing.radial_internal_clearance", "operating.load.Fy"]
-    assert rated(scene)[0] == 14.8e3
+    assert rated(scene)[0] == bj.catalogue_entry("6205").dynamic_capacity
     assert why_not_published(scene, harmless) == []
 
 
