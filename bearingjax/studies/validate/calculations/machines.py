@@ -1,5 +1,7 @@
 """Rotors, vibration and noise."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -27,7 +29,7 @@ _TURN = 2.0 * np.pi
 
 
 def _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle):
-    grooves = {"outer_osculation": 0.52, "inner_osculation": 0.52}
+    grooves: dict[str, Any] = {"outer_osculation": 0.52, "inner_osculation": 0.52}
     sizes = n_balls, pitch_diameter, ball_diameter
     if not contact_angle:
         return DeepGrooveBallBearing(*sizes, **grooves)
