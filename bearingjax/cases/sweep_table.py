@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files.table_file import read_table
+from ..files.table_file import in_si, read_table
 from ..life.life_warning import ALL
 from ..numerics.result import Result
 from ..numerics.warning import exceeded_kinds
@@ -123,7 +123,7 @@ def _warning_texts(sweep):
 
 
 def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
-    """Columns of a table, from `columns`, that `write_table` wrote.
+    """Columns of a table, from `columns`, that `write_table` wrote, in SI.
 
     Args:
         path: Its ending, .csv, .parquet or .xlsx, sets the format.
@@ -134,7 +134,7 @@ def read(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:
         ImportError: As `read_table`.
         OSError: If the file cannot be read.
     """
-    return read_table(path, ("result", WARNINGS, *texts))
+    return in_si(read_table(path, ("result", WARNINGS, *texts)))
 
 
 def restore_outputs(

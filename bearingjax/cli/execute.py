@@ -40,8 +40,8 @@ def execute(command: Any, options: Any) -> int:
     """
     from ..numerics.compiled.programs import load_ahead, tell_compiling
 
-    check_table(options)
     check_outputs(options)
+    check_table(options)
     origin = _origin(options)
     terminal = sys.stderr.isatty()
     shown, stage = terminal and not options.quiet, None
@@ -75,8 +75,7 @@ def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
     from ..report.json_output import write_numbers
 
     def tabulate(path):
-        assert found.columns is not None
-        write_table(found.columns(), path)
+        write_table(_columns(found, options), path)
 
     def write_sound(path):
         assert found.sound is not None
@@ -93,12 +92,20 @@ def _write(found: Outcome, options, origin, messages: list[str]) -> bool:
         "drawing": picture(found.drawing),
         "report": None
         if found.report is None
-        else lambda path: _write_page(path, found, origin),
+        else lambda path: _write_page(path, found, origin, options),
     }
     return write_outputs([(getattr(options, k, None), writers[k]) for k in OUTPUTS])
 
 
-def _write_page(path: Path, found: Outcome, origin) -> None:
+def _columns(found: Outcome, options) -> Any:
+    """Return the table of a run in the units of the reports, or in SI on request."""
+    from ..files.table_file import in_shown_units
+
+    assert found.columns is not None
+    return found.columns() if options.si else in_shown_units(found.columns())
+
+
+def _write_page(path: Path, found: Outcome, origin, options) -> None:
     """Write the HTML page of a run.
 
     Raises:
@@ -127,7 +134,7 @@ def _write_page(path: Path, found: Outcome, origin) -> None:
         found.inputs,
         origin,
         {name: draw_picture(name, draw) for name, draw in found.pictures.items()},
-        found.columns() if found.table_on_page and found.columns else None,
+        _columns(found, options) if found.table_on_page and found.columns else None,
         found.problems,
         None if found.drawing is None else draw_picture("Drawing", found.drawing),
     )
@@ -141,22 +148,26 @@ def _origin(options):
     read."""
     import datetime
 
-    from ..files.scene_file import find_scene
+    from ..files.scene_file import find_scene, parse_scene
     from ..files.text_file import read_text
     from ..report import Origin
+    from ..report.html_report import flat
 
     now = datetime.datetime.now().astimezone()
-    texts = []
+    texts, written = [], {}
     for source in sources_of(options):
         path = find_scene(source)
         text = read_text(path)
         if path.suffix.lower() == ".json":  # of an earlier run: without its results
             inputs = json.loads(text).get("inputs")
             text = json.dumps({"inputs": inputs}, indent=1, ensure_ascii=False)
+        elif hasattr(options, "scene"):
+            written = dict(flat(parse_scene(path, options.set)))
         texts.append(text)
     return Origin(
         shlex.join(["bearingjax", *options.given]),
         "\n".join(texts),
         tuple(options.set),
         now.strftime("%Y-%m-%d %H:%M %z"),
+        None if options.si else written,
     )

@@ -1,13 +1,21 @@
-"""Tables as files, columns by header: CSV, and with pandas Parquet and Excel."""
+"""Tables as files, columns by header: CSV, and with pandas Parquet and Excel.
+
+Columns are made in SI; here alone they change to the units of the reports, and back, as
+their header tells, "name [unit]".
+"""
 
 import csv
 import importlib.util
 import itertools
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from ..numerics.labels import column_header
+from ..numerics.units import CELSIUS, DISPLAYED, display_unit
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 
@@ -17,8 +25,52 @@ MOST_ROWS = 2**20 - 1
 _BLOCK = 8192
 """Rows of a CSV file that are in memory as text at a time."""
 
-_NEEDED = {".parquet": ("pandas", "pyarrow"), ".xlsx": ("pandas", "openpyxl")}
+NEEDED = {".parquet": ("pandas", "pyarrow"), ".xlsx": ("pandas", "openpyxl")}
 """Optional packages by the ending of the file."""
+
+
+def missing_packages(path: Path) -> str:
+    """Say which optional packages a table needs, if one is missing; else empty."""
+    ending = path.suffix.lower()
+    needed = NEEDED.get(ending, ())
+    if all(map(importlib.util.find_spec, needed)):
+        return ""
+    return f"{ending} tables need {' and '.join(needed)}, .csv nothing"
+
+
+def in_shown_units(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return columns in the units of the reports: µm or mm, mrad or deg, kN, MPa, rpm.
+
+    Args:
+        found: Columns by header, in SI.
+    """
+    shown = {}
+    for header, column in found.items():
+        name, _, unit = header.removesuffix("]").partition(" [")
+        column, zero = np.asarray(column), CELSIUS if unit == "K" else 0.0
+        if column.dtype.kind == "f":
+            most = np.abs(column[np.isfinite(column)]).max(initial=0.0)
+            factor, other = (1.0, "°C") if zero else display_unit(unit, most)
+            if other != unit:  # 15 digits: 2e-5 m are 20 µm, no 20.000000000000004
+                column = np.array(
+                    [float(f"{(x - zero) * factor:.15g}") for x in column]
+                )
+                header = column_header(name, other)
+        shown[header] = column
+    return shown
+
+
+def in_si(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return columns in SI, from the units that their headers tell."""
+    plain = {}
+    for header, column in found.items():
+        name, _, shown = header.removesuffix("]").partition(" [")
+        if shown in DISPLAYED and np.asarray(column).dtype.kind in "fi":
+            factor, zero, unit = DISPLAYED[shown]
+            column = np.asarray(column, float) / factor + zero
+            header = column_header(name, unit)
+        plain[header] = column
+    return plain
 
 
 def check_writable(path: Path, rows: int = 0) -> None:
@@ -36,10 +88,8 @@ def check_writable(path: Path, rows: int = 0) -> None:
     ending = path.suffix.lower()
     if ending not in ENDINGS:
         raise ValueError(f"{path}: a table ends in {', '.join(ENDINGS)}")
-    needed = _NEEDED.get(ending, ())
-    if not all(map(importlib.util.find_spec, needed)):
-        what = f"{ending} tables need {' and '.join(needed)}"
-        raise ImportError(f'{path}: {what}: pip install "bearingjax[table]"')
+    if missing := missing_packages(path):
+        raise ImportError(f'{path}: {missing}: pip install "bearingjax[table]"')
     if ending == ".xlsx" and rows > MOST_ROWS:
         problem = f"{rows} rows, and a sheet has {MOST_ROWS} at most"
         raise ValueError(f"{path}: {problem}; write .csv or .parquet")
@@ -71,9 +121,24 @@ def write_table(found: Mapping[str, np.ndarray], path: str | Path) -> None:
     frame = frame.replace([np.inf, -np.inf], np.nan)
     with pandas.ExcelWriter(path, engine="openpyxl") as book:
         frame.to_excel(book, sheet_name="cases", index=False, freeze_panes=(1, 0))
-        for cells in book.sheets["cases"].iter_cols(max_row=1):
-            width = max(12, len(str(cells[0].value)) + 2)
-            book.sheets["cases"].column_dimensions[cells[0].column_letter].width = width
+        sheet = book.sheets["cases"]
+        for (head, *cells), column in zip(
+            sheet.iter_cols(), arrays.values(), strict=True
+        ):
+            width = max(12, len(str(head.value)) + 2)
+            sheet.column_dimensions[head.column_letter].width = width
+            if column.dtype.kind == "f":
+                shown = _number_format(column)
+                for cell in cells:
+                    cell.number_format = shown
+
+
+def _number_format(column: np.ndarray) -> str:
+    """Return Excel's format of a column: five digits of its largest number."""
+    most = np.abs(column[np.isfinite(column)]).max(initial=0.0)
+    if most and not 1e-3 <= most < 1e9:
+        return "0.0000E+00"
+    return f"{0:.{max(0, 4 - math.floor(math.log10(most)))}f}" if most else "0"
 
 
 def _write_csv(arrays: Mapping[str, np.ndarray], path: Path) -> None:

@@ -124,6 +124,9 @@ def field_metadata(owner: Any, name: str) -> Mapping[str, Any]:
     return found
 
 
+CELSIUS = 273.15
+"""0 °C [K]."""
+
 _SHOWN = {
     "m": (1e6, "µm"),
     "rad": (1e3, "mrad"),
@@ -132,7 +135,20 @@ _SHOWN = {
     "rad/s": (30.0 / np.pi, "rpm"),
     "rev": (1e-6, "million rev"),
     "1/rev": (1e6, "1/million rev"),
+    "m²/s": (1e6, "mm²/s"),
 }
+_LARGE = {
+    "m": (1e-3, 1e3, "mm"),
+    "Pa": (1e10, 1e-9, "GPa"),
+    "rad": (0.1, 180.0 / np.pi, "deg"),
+}
+
+DISPLAYED = {
+    shown: (factor, 0.0, unit)
+    for kinds in (_SHOWN.items(), [(k, large[1:]) for k, large in _LARGE.items()])
+    for unit, (factor, shown) in kinds
+} | {"°C": (1.0, CELSIUS, "K")}
+"""By the unit shown: factor from SI, its zero in SI, the SI unit."""
 
 
 def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
@@ -141,13 +157,10 @@ def display_unit(unit: str, largest: float = 0.0) -> tuple[float, str]:
     Args:
         unit: SI unit; empty for a pure number.
         largest: The largest number that is shown so [SI]: lengths from 1 mm are shown
-            in mm, moduli in GPa.
+            in mm, moduli in GPa, angles from 0.1 rad in degrees.
     """
-    if unit == "m" and largest >= 1e-3:
-        return 1e3, "mm"
-    if unit == "Pa" and largest >= 1e10:
-        return 1e-9, "GPa"
-    return _SHOWN.get(unit, (1.0, unit))
+    least, factor, shown = _LARGE.get(unit, (np.inf, 1.0, unit))
+    return (factor, shown) if largest >= least else _SHOWN.get(unit, (1.0, unit))
 
 
 def shown_count(count: int, noun: str) -> str:
@@ -155,21 +168,18 @@ def shown_count(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-CELSIUS = 273.15
-"""0 °C [K]."""
-
-
-def shown_number(value: float, unit: str) -> str:
+def shown_number(value: float, unit: str, digits: int = 4) -> str:
     """A number with its unit, as it is shown to people: "25 µm", "60 °C".
 
     Args:
         value: In SI; temperatures, not their differences, in K.
         unit: SI unit; empty for a pure number.
+        digits: Significant digits.
     """
     if unit == "K":
-        return f"{value - CELSIUS:.4g} °C"
+        return f"{value - CELSIUS:.{digits}g} °C"
     factor, shown = display_unit(unit, abs(value))
-    return f"{factor * value:.4g} {shown}".rstrip()
+    return f"{factor * value:.{digits}g} {shown}".rstrip()
 
 
 def rpm(speed: Any) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from .._version import __version__
+from ..numerics.units import shown_number
 from .report_model import Part, Report
 
 MOST_ROWS = 200
@@ -78,12 +79,15 @@ class Origin:
         text: Text of the scene file.
         settings: Changes to it, "key=value".
         date: Date and time, as text.
+        written: Inputs by dotted key as the scene has them, whose units the page
+            takes over; others have those of the reports. `None`: all in SI.
     """
 
     command: str
     text: str
     settings: tuple[str, ...]
     date: str
+    written: Mapping[str, str] | None = None
 
 
 def report_page(
@@ -120,7 +124,7 @@ def report_page(
         ),
         "" if table is None else _table(table),
         "" if drawing is None else _picture("Drawing", drawing),
-        _inputs(inputs) if inputs else "",
+        _inputs(inputs, origin.written) if inputs else "",
         _rerun(origin),
     ]
     return _page(title, parts, origin)
@@ -200,22 +204,33 @@ def _picture(title: str, png: bytes | str) -> str:
     return _section(title, f"<figure>{image}</figure>")
 
 
-def _inputs(inputs: Mapping[str, Any]) -> str:
+def _inputs(inputs: Mapping[str, Any], written: Mapping[str, str] | None) -> str:
     """Format a table of all inputs, defaults included."""
     rows = []
     for table, held in inputs.items():
         head = f'<th scope="colgroup" colspan="2">[{escape(table)}]</th>'
         rows.append(f"<tr>{head}</tr>")
-        rows += [
-            f'<tr><td>{escape(key)}</td><td class="number">{escape(value)}</td></tr>'
-            for key, value in flat(held)
-        ]
+        for key, value in flat(held):
+            if written is not None:
+                value = written.get(f"{table}.{key}") or _display(value)
+            row = f'<td>{escape(key)}</td><td class="number">{escape(value)}</td>'
+            rows.append(f"<tr>{row}</tr>")
     body = "\n".join(rows)
-    cases = ", [cases] as written" if "cases" in inputs else ""
-    note = (
-        f"All that was read, in SI{cases}; what the scene leaves out has its default."
-    )
+    units = "in SI, [cases] as written" if "cases" in inputs else "in SI"
+    units = units if written is None else "in the units of the scene"
+    note = f"All that was read, {units}; what the scene leaves out has its default."
     return _section("Inputs", f"<p>{note}</p>\n<table>\n{body}\n</table>")
+
+
+def _display(text: str) -> str:
+    """Return quantities in SI as text in the units of the reports, other text as is."""
+    number, _, unit = text.partition(" ")
+    if ", " in text:
+        return ", ".join(map(_display, text.split(", ")))
+    try:
+        return shown_number(float(number), unit, 8) if unit else text
+    except ValueError:
+        return text
 
 
 def flat(held: Any, key: str = "") -> list[tuple[str, str]]:

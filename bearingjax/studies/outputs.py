@@ -1,6 +1,6 @@
 """Output files of commands: checked before a run, written after it."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -66,11 +66,9 @@ def check_outputs(options: Any, inputs: Sequence[Path] | None = None) -> None:
     outputs = {name: getattr(options, name, None) for name in OUTPUTS}
     for name, (endings, words) in _ENDINGS.items():
         path = outputs[name]
-        if path is not None:
-            if name != "wav":
-                check_matplotlib()
-            if path.suffix.lower() not in endings:
-                raise SceneError(f"{path}: {words}")
+        if path is not None and path.suffix.lower() not in endings:
+            raise SceneError(f"{path}: {words}")
+    _check_packages(outputs)
     if inputs is None:
         inputs = [
             path
@@ -94,16 +92,24 @@ def check_table(options: Any, rows: int = 0) -> None:
         raise SceneError(str(error)) from error
 
 
-def check_matplotlib() -> None:
-    """Fail if pictures cannot be drawn."""
+def _check_packages(outputs: Mapping[str, Path | None]) -> None:
+    """Fail if optional packages are missing; the message names all of them."""
     from ..files import SceneError
+    from ..files.table_file import missing_packages
 
-    try:
-        import matplotlib
-    except ImportError as error:
-        problem = 'pictures need matplotlib: pip install "bearingjax[plot]"'
-        raise SceneError(problem) from error
-    matplotlib.use("Agg")
+    missing = {}
+    if any(outputs[name] for name in ("plot", "drawing", "report")):
+        try:
+            import matplotlib
+
+            matplotlib.use("Agg")
+        except ImportError:
+            missing["plot"] = "pictures need matplotlib"
+    if outputs["table"] and (words := missing_packages(outputs["table"])):
+        missing["table"] = words
+    if missing:
+        cure = f'pip install "bearingjax[{",".join(missing)}]"'
+        raise SceneError(f"{'; '.join(missing.values())}: {cure}")
 
 
 def sources_of(options: Any) -> list[str]:

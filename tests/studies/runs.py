@@ -66,14 +66,16 @@ def place(study: Study, folder) -> dict[str, Path]:
 
 
 def words(study: Study, paths: dict[str, Path], more=()) -> list:
-    """The command line; the text of a scene is written beside the outputs."""
+    """The command line; the text of a scene is written beside the outputs. Tables are
+    in SI, as the numbers of Python, with which they are compared to the last digit."""
     command, scene, *settings = study.command
     if "\n" in scene:
         path = paths["--json"].with_name("mine.toml")
         path.write_text(scene, encoding="utf-8")
         scene = path
     outputs = [word for pair in paths.items() for word in pair]
-    return [command, scene, *settings, *more, *outputs]
+    plain = ["--si"] if "--table" in paths else []
+    return [command, scene, *settings, *more, *plain, *outputs]
 
 
 class Runs:

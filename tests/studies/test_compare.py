@@ -97,7 +97,7 @@ def test_compare_table_of_scenes_named_as_its_columns(run, other, tmp_path):
     found = sweep_table.read(table)
     headers = ["result", "result (1)", "difference [1] (2)", "difference [1]"]
     assert list(found) == headers
-    assert "largest_load [N]" in list(found["result"])
+    assert "largest_load [kN]" in list(found["result"])
     first, second = found["result (1)"], found["difference [1] (2)"]
     assert not np.array_equal(first, second) and np.isfinite([first, second]).all()
 

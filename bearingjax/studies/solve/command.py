@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from ..options import Commands, add_drawing, add_plot, add_report, add_scene
+from ..options import Commands, add_drawing, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools
 from ..status import complain
 from .solution_outcome import solution_outcome
@@ -17,6 +17,7 @@ def add(commands: Commands) -> ArgumentParser:
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
     add_scene(command)
+    add_table(command, "rolling element")
     add_plot(command)
     add_drawing(command, "of the bearing, as it is solved")
     add_report(command, "pictures")

@@ -11,6 +11,7 @@ from ...cases.output_labels import OPERATING_CLEARANCE
 from ...cases.sweep import SUMMARIES
 from ...cases.sweep_table import flatten_columns, kind
 from ...element.frame import FREEDOMS
+from ...files.table_file import in_shown_units
 from ...life.life import LIFE_OUTPUTS
 from ...numerics.labels import summaries
 from ...numerics.result import Result
@@ -185,12 +186,18 @@ def compare_as_dict(found: Comparison) -> dict[str, Any]:
     }
 
 
-def compare_columns(found: Comparison) -> dict[str, np.ndarray]:
-    """Return a comparison as columns by header, a row for each result, in SI."""
-    values = np.array([*found.quantities.values()]).reshape(-1, len(found.names))
+def compare_columns(found: Comparison, si: bool = True) -> dict[str, np.ndarray]:
+    """Return a comparison as columns by header, a row for each result.
+
+    Args:
+        found: From `run_compare`.
+        si: Whether numbers are in SI, else in the units of the reports.
+    """
+    shown = found.quantities if si else in_shown_units(found.quantities)
+    values = np.array([*shown.values()]).reshape(-1, len(found.names))
     result, apart = _HEADERS
     return {
-        result: np.array([*found.quantities], dtype=str),
+        result: np.array([*shown], dtype=str),
         **{name: values[:, k] for k, name in enumerate(found.names)},
         apart: np.array([*map(difference, values)]),
     }

@@ -42,7 +42,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         {f"{name}: {k}": v for name, one in named for k, v in one.scene.inputs.items()},
         lambda: compare_as_dict(found),
         compare_report(found) if some else None,
-        (lambda: compare_columns(found)) if some else None,
+        (lambda: compare_columns(found, options.si)) if some else None,
         problems=[
             f"{name}: {why_unsolved(one)}" for name, one in named if not one.converged
         ],
