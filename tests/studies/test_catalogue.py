@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import re
 import tomllib
 from importlib.resources import files
 from pathlib import Path
@@ -228,6 +229,28 @@ def test_new_scene_with_optional_tables_reads(name, tmp_path):
     assert (table.scene.fits is None) == (name in ("51108", "29412"))
     assert {"gx", "gy"} <= set(table.scene.prescribed)
     assert table.scene.warnings == ()
+
+
+@pytest.mark.parametrize(
+    "name, origins",
+    {
+        "22220/C3": {
+            "n_rollers": "estimated",
+            "roller_profile_radius": "assumed, as usual",
+            "radial_internal_clearance": "calculated, middle of class C3",
+        },
+        "NU 215 EC": {"n_rollers": "published", "arrangement": None},
+    }.items(),
+)
+def test_new_scene_tells_origins_of_what_a_designation_implies(name, origins):
+    entry = bj.catalogue_entry(name)
+    lines = new_scene(entry).partition("[operating]")[0].splitlines()
+    for key, origin in origins.items():
+        (line,) = [line for line in lines if line.startswith(f"# {key} = ")]
+        assert line.partition("  # ")[2] == (origin or "")
+    assert entry.geometry == origins["n_rollers"]
+    table = tomllib.loads(_spelt_out("\n".join(lines)))["bearing"]
+    assert set(table) == {"designation", "type", *entry.design}
 
 
 @pytest.mark.slow
@@ -495,6 +518,12 @@ EDITED = {
 }
 
 
+def _spelt_out(text):
+    """A new scene whose lines of the bearing count: without their #."""
+    head, operating, rest = text.partition("[operating]")
+    return re.sub(r"(?m)^# (\w+ = )", r"\1", head) + operating + rest
+
+
 @pytest.mark.parametrize("name", EDITED)
 @pytest.mark.slow
 def test_lines_left_over_from_another_designation_are_told(name, tmp_path):
@@ -505,6 +534,10 @@ def test_lines_left_over_from_another_designation_are_told(name, tmp_path):
     )
     path = tmp_path / "new.toml"
     path.write_text(text, encoding="utf-8")
+    # The lines of `new` follow the designation until they lose their #.
+    scene = bj.read_scene(path)
+    assert scene.warnings == () and scene.catalogue.overridden == ()
+    path.write_text(_spelt_out(text), encoding="utf-8")
     settings = [f"bearing.{key}={value}" for key, value in changed.items()]
     found = bj.read_scene(path, settings).warnings
     assert len(found) == (told is not None)
@@ -515,8 +548,8 @@ def test_sweep_merges_catalogue_warnings_of_designs(tmp_path):
     path = tmp_path / "new.toml"
 
     def told(grid):
-        text = f"{new_scene(ENTRIES[NAMES.index('6205')])}[cases.grid]\n{grid}"
-        path.write_text(text, encoding="utf-8")
+        text = _spelt_out(new_scene(ENTRIES[NAMES.index("6205")]))
+        path.write_text(f"{text}[cases.grid]\n{grid}", encoding="utf-8")
         return read_cases(path).warnings
 
     (one,) = told('bearing.designation = ["6205", "6206", "6207"]')

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...catalogue.entry import CatalogueEntry, bearing_of_entry
+from ...catalogue.entry import CLEARANCE, CatalogueEntry, bearing_of_entry
 from ...design import rows_of
 from ...design.keywords import BALLS, ROLLERS
 from ...files.quantity import SceneError, to_si
@@ -210,8 +210,8 @@ def new_scene(entry: CatalogueEntry) -> str:
     """Write a scene of a bearing under a tenth of its capacity, to be edited.
 
     Args:
-        entry: The bearing, of the catalogue or from `estimated_entry`; every key is
-            written out, so that it can be changed.
+        entry: The bearing, of the catalogue or from `estimated_entry`; every key of its
+            design is written out, of a designation as a comment.
     """
     lines = [
         f"# {_describe(entry)}.",
@@ -225,8 +225,7 @@ def new_scene(entry: CatalogueEntry) -> str:
     lines += [
         "",
         "[bearing]",
-        *_designation(entry),
-        *(f"{key} = {_toml(value)}" for key, value in as_keys(entry.design).items()),
+        *_bearing_keys(entry),
         "",
         "[operating]",
         'fixed_ring = "outer"',
@@ -243,14 +242,31 @@ def new_scene(entry: CatalogueEntry) -> str:
     return "\n".join(lines)
 
 
-def _designation(entry: CatalogueEntry) -> list[str]:
+def _bearing_keys(entry: CatalogueEntry) -> list[str]:
+    """Return the lines of [bearing]; those that a designation implies as comments, each
+    with its origin, so that they follow when the designation is changed."""
+    keys = as_keys(entry.design).items()
     if not entry.designation:
-        return []
+        return [f"{key} = {_toml(value)}" for key, value in keys]
     return [
         f'designation = "{entry.designation}"',
-        "# What it stands for. A line that is changed counts; one that is left out is",
-        "# as in the catalogue.",
+        "# What it stands for; a line without its # counts in place of the catalogue.",
+        *(f"# {k} = {_toml(v)}{_origin(entry, k, v)}" for k, v in keys),
     ]
+
+
+def _origin(entry: CatalogueEntry, key: str, value: Any) -> str:
+    """Return the origin of a key that a designation implies, as a comment."""
+    if key == "type" or (isinstance(value, str) and not value[0].isdigit()):
+        return ""
+    origin = entry.geometry
+    if key in entry.assumed:
+        origin = "assumed, as usual"
+    elif key in entry.printed:
+        origin = "published"
+    elif key == CLEARANCE and entry.clearance_class is not None:
+        origin = f"calculated, middle of class {entry.clearance_class}"
+    return f"  # {origin}"
 
 
 def _more_tables(entry: CatalogueEntry) -> list[str]:
