@@ -274,7 +274,7 @@ def _output_function(outputs: Any) -> tuple[Any, tuple[str, ...]]:
     names = _check_outputs(outputs)
     if names is None:
         return Keep(None), ()
-    lives = tuple(name for name in names if name in LIFE_OUTPUTS)
+    lives = tuple(name for name in names if name in (*LIFE_OUTPUTS, "limit_ratio"))
     return Keep(tuple(name for name in names if name not in lives)), lives
 
 

@@ -35,7 +35,7 @@ from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.shown import Printable
-from ..numerics.types import Real, RealOrNone, Scalar, in_numpy
+from ..numerics.types import Real, RealOrNone, Scalar, in_numpy, with_fields
 from ..numerics.units import meaning, real, unit
 from ..statics.empty_places import solution_with_empty_places, spread_elements
 from ..statics.service_warning import turns_against_load
@@ -117,6 +117,9 @@ class LifeConditions(Printable):
             such as "grease, normal"; needed with `viscosity`.
         reliability: Share of bearings that reach the modified life [1]; without a
             lubricant `damage` and `life_hours` count it all the same.
+        required: Life that is required, in hours [h]; `None`: none. Together with
+            `required_revolutions` it changes no life: `judge_life` compares.
+        required_revolutions: The same in revolutions [1], in place of hours.
         load_fixed_to: "space"; or the ring, "inner" or "outer", that the direction of
             the load turns with, as that of an unbalance does. A ring that turns against
             the load wears more evenly.
@@ -170,6 +173,20 @@ class LifeConditions(Printable):
         ),
         default=0.9,
     )
+    required: RealOrNone = eqx.field(
+        **real("h", "life that is required, for a verdict", above=0, most=1e8),
+        default=None,
+    )
+    required_revolutions: RealOrNone = eqx.field(
+        **real(
+            "1",
+            "the same in revolutions",
+            above=0,
+            most=1e18,
+            without={"required": "stands beside `required`, in hours; choose one"},
+        ),
+        default=None,
+    )
     load_fixed_to: str = eqx.field(
         static=True,
         metadata=meaning(
@@ -199,6 +216,24 @@ class LifeConditions(Printable):
         one_of(self, "load_fixed_to", self.load_fixed_to, FRAMES)
         flag(self, "edge_stress", self.edge_stress)
         self._check_lubrication()
+        for name in ("required", "required_revolutions"):
+            if getattr(self, name) is not None:
+                positive(self, name)
+        if None not in (self.required, self.required_revolutions):
+            raise ValueError(
+                "LifeConditions: `required` is given in hours, and"
+                " `required_revolutions` too; choose one."
+            )
+
+    @property
+    def requires(self) -> bool:
+        """Whether a life is required."""
+        return (self.required, self.required_revolutions) != (None, None)
+
+    @property
+    def without_requirement(self) -> "LifeConditions":
+        """The same without a required life, on which no life depends."""
+        return with_fields(self, required=None, required_revolutions=None)
 
     def _check_lubrication(self):
         if self.viscosity is not None:
@@ -248,6 +283,8 @@ class Life(Printable):
             reference life, by the survival of all (row, raceway, track) [1]. Raceways
             are (outer, inner); tracks are the arcs of a ball's raceway, or the laminae
             of a roller's from -L/2 to +L/2.
+        limit_ratio: C_u over the load with which each track enters a_ISO
+            (row, track) [1]; a large number without load.
         turns_against_load: 1 where a ring turns against the load (outer, inner) [1].
     """
 
@@ -269,6 +306,7 @@ class Life(Printable):
     a_iso: Scalar | None = eqx.field(metadata=unit("1"))
     reliability_factor: Scalar = eqx.field(metadata=unit("1"))
     damage_share: Float[Array, "row raceway=2 track"] = eqx.field(metadata=unit("1"))
+    limit_ratio: Float[Array, "row track"] = eqx.field(metadata=unit("1"))
     turns_against_load: Float[Array, "raceway=2"] = eqx.field(metadata=unit("1"))
 
     to_xarray = to_xarray
@@ -511,6 +549,9 @@ def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
         "basic_rating_life": _lifetime(positive_power(ratio, *exponent) / _MILLION),
         "reference_rating_life": life,
         "damage_share": same,
+        "limit_ratio": jnp.stack(
+            [load_ratio(jnp.ones_like(r.limit), r.limit, r.fatigue.load) for r in parts]
+        ),
         "turns_against_load": turning,
     }
     a1 = reliability_factor(conditions.reliability)

@@ -121,7 +121,10 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
         xp = array_namespace(load)
         # At a standstill nothing skids.
         turns = xp.isfinite(hours) | (load == 0)
-        yield "light_load", xp.where(turns, 1.0 - load / _floor(bearing, ratings), 0.0)
+        yield (
+            "light_load",
+            xp.where(turns, 1.0 - load / minimum_load(bearing, ratings), 0.0),
+        )
     if "equivalent_load" in numbers:
         load, radius = numbers["equivalent_load"], pitch_radius(bearing)
         much = {"radial": 1e-6, "axial": 1e-6, "moment": LARGEST_MOMENT * radius}
@@ -160,7 +163,15 @@ def _limit(ratings):
     return array_namespace(c0).minimum(0.5 * c, c0)
 
 
-def _floor(bearing, ratings):
+def minimum_load(bearing: AbstractBearing | BearingSet, ratings: Ratings) -> Any:
+    """Return the least equivalent load at which rolling elements are sure to roll [N].
+
+    Args:
+        bearing: The design.
+        ratings: Its load ratings.
+
+    Source: as `LEAST_LOAD`.
+    """
     return LEAST_LOAD[bearing.noun] * ratings.dynamic_capacity
 
 
@@ -170,7 +181,7 @@ def _heavy_numbers(bearing, ratings, numbers):
 
 
 def _light_numbers(bearing, ratings, numbers):
-    least = float(_floor(bearing, ratings))
+    least = float(minimum_load(bearing, ratings))
     share = least / float(ratings.dynamic_capacity)
     kind = bearing.noun
     return (

@@ -51,6 +51,7 @@ from bearingjax.life.refined_life import (
     _peaks_at_an_end,
     refined_lamina_loads,
 )
+from bearingjax.life.required_life import NEEDED, judge_life
 from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.optimise.design_problem import Problem
 
@@ -891,6 +892,20 @@ def test_sweep_warns_of_lives_without_life_outputs(kind, doubted):
     assert swept.warning_sizes[kind][k] > LIFE_KINDS[kind].limit
     told = dict(zip(swept.warning_counts(), swept.warnings, strict=True))[kind]
     assert f", in {swept.warning_counts()[kind]} of 5 cases, worst case" in told
+
+
+def test_required_life_that_is_just_kept_needs_what_there_is(balls):
+    """The a_ISO of the verdict is that of the life, of all its parts."""
+    life = balls(jnp.asarray([10e-6, 2000.0, 500.0, 0.0]))[1]["of"][1]
+    numbers = {name: np.asarray(getattr(life, name))[None] for name in NEEDED}
+    bearing = ball_element(jnp.asarray([10e-6])).bearing
+    given = bj.LifeConditions(23400.0, viscosity=12e-6, contamination="grease, normal")
+    found = judge_life(bearing, given, 1.0, 1.0, 23400.0, numbers)
+    assert found.dynamic_capacity == pytest.approx(23400.0, rel=1e-9)
+    assert found.viscosity == pytest.approx(12e-6, rel=1e-9)
+    clean = float(life.contamination_factor)
+    assert found.contamination_factor == pytest.approx(clean, rel=1e-9)
+    assert "grease, normal" in found.cleanliness and found.kept
 
 
 def test_rating_life_of_unconverged_solution_is_nan(balls):

@@ -14,6 +14,7 @@ from tolerances import SOLVER
 import bearingjax as bj
 from bearingjax.cases.sweep import Sweep
 from bearingjax.files import shipped_scenes
+from bearingjax.files.table_file import read_table
 from bearingjax.lubrication import OILS
 from bearingjax.studies.cases.life_run import (
     LifeRun,
@@ -136,8 +137,15 @@ def test_life_of_one_load_matches_rating_life(run, written, tmp_path, solution):
     told = run("life", path, *SETTINGS, *(w for s in still for w in ("--set", s)))
     assert told.status == 0 and "hours  " not in told.out
     assert "\nat rest: no life in hours; the inner ring is taken as the" in told.out
-    told = run("life", path, "--table", tmp_path / "t.csv")
-    assert told.status == 2 and "--table is for a scene with [cases]" in told.err
+    required = ("--set", "life.required=9000 h")
+    told = run("life", path, *SETTINGS, *required, "--table", tmp_path / "t.csv")
+    row = {k: v[0] for k, v in read_table(tmp_path / "t.csv").items()}
+    assert told.status == 0 and row["result"] == "converged" and row["Fx [kN]"] == 2.0
+    hours = row["modified_rating_life [h]"]
+    assert hours == pytest.approx(found["life_hours"], rel=1e-12)
+    assert row["life_factor"] == pytest.approx(hours / 9000.0, rel=1e-12)
+    assert row["life_kept"] == (hours >= 9000.0)
+    assert "required 9000 h: " in told.out
 
 
 @pytest.mark.slow
@@ -170,7 +178,7 @@ def test_life_command_spectrum_sums_damage(written, undrawn):
     mean = np.cbrt((turns * loads**3).sum() / turns.sum())
     np.testing.assert_allclose(found["equivalent_load"], mean, rtol=1e-9)
     table = paths["--table"]
-    again = (*STUDIES["spectrum"].command, "--table", table)
+    again = (*STUDIES["spectrum"].command, "--si", "--table", table)
     undrawn("life_overview", paths["--json"], *again, others=[table])
 
 

@@ -12,7 +12,7 @@ from .read_scene import Scene
 
 
 def life_conditions(scene: Scene, turning: bool = True) -> LifeConditions:
-    """Return the conditions of the rating life of a scene.
+    """Return the conditions of the rating life of a scene, but for a required one.
 
     Ratings that [life] does not give are those that the bearing carries, published or
     from its geometry (`life.ratings`).
@@ -22,7 +22,7 @@ def life_conditions(scene: Scene, turning: bool = True) -> LifeConditions:
         turning: Whether the rings have a relative speed; without it there is no film
             and no modified life.
     """
-    own = LifeConditions() if scene.life is None else scene.life
+    own = LifeConditions() if scene.life is None else scene.life.without_requirement
     if not turning:
         own = dataclasses.replace(own, viscosity=None, contamination=None)
     return own

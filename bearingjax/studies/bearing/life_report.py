@@ -1,12 +1,15 @@
 """Rating life of a scene as text, and as numbers in SI."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ...element.frame import RINGS
-from ...life.life import LIFE_OUTPUTS, Life
+from ...life.life import LIFE_OUTPUTS, Life, LifeConditions
+from ...life.life_warning import LEAST_LOAD, minimum_load
+from ...life.required_life import NEEDED, RequiredLife, judge_life
 from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
 from ...statics.solution import RollerSolution, Solution
@@ -25,15 +28,103 @@ def life_as_dict(life: Life, scene: Scene) -> dict[str, Any]:
 
     Returns:
         The available numbers of `LIFE_OUTPUTS`, the ratings as in
-        `ratings_as_dict`, `reliability_factor`, `weakest` (row, ring, track), and the
-        `standards` that results follow.
+        `ratings_as_dict`, `minimum_load`, `reliability_factor`, `weakest` (row, ring,
+        track), and the `standards` that results follow.
     """
     found = ratings_as_dict(life.ratings, rating_origins(scene, life.ratings))
     for name in (*LIFE_OUTPUTS, "reliability_factor"):
         found[name] = to_json(getattr(life, name))
     row, ring, track = life.weakest
     found["weakest"] = {"row": row, "ring": ring, "track": track}
+    found["minimum_load"] = minimum_load(scene.element.bearing, life.ratings)
     return {**found, "standards": dict(life.standards)}
+
+
+def life_verdict(scene: Scene, life: Life) -> RequiredLife | None:
+    """Judge a life by that which [life] requires; `None` if none is, or hours at rest.
+
+    Args:
+        scene: The scene.
+        life: Its life, in NumPy.
+    """
+    with np.errstate(divide="ignore"):
+        revolutions = 1.0 / np.asarray(life.damage)
+    factor = over_required(scene.life, life.life_hours, revolutions)
+    if factor is None or scene.life is None:
+        return None
+    numbers = {name: getattr(life, name) for name in NEEDED}
+    return judge_life(
+        scene.element.bearing,
+        scene.life,
+        factor,
+        factor * float(life.basic_rating_life / revolutions),
+        float(life.ratings.dynamic_capacity),
+        {k: np.asarray(v)[None] for k, v in numbers.items() if v is not None},
+    )
+
+
+def over_required(
+    conditions: LifeConditions | None, hours: Any, revolutions: Any
+) -> float | None:
+    """Return a life over the required one [1]; `None` if none is required, or hours at
+    rest.
+
+    Args:
+        conditions: Of the life, if any.
+        hours: The life [h]; `None` at rest.
+        revolutions: The life [rev].
+    """
+    if conditions is None or conditions.required is None:
+        turns = None if conditions is None else conditions.required_revolutions
+        return None if turns is None else float(revolutions) / float(turns)
+    return None if hours is None else float(hours) / float(conditions.required)
+
+
+def verdict_as_dict(
+    conditions: LifeConditions | None, verdict: RequiredLife | None
+) -> dict[str, Any]:
+    """Return a verdict: `required_hours` or `required_revolutions`, `kept`, `factor`,
+    and under `needed` the other fields of `RequiredLife`, in SI; empty without one."""
+    if conditions is None or verdict is None:
+        return {}
+    asked = conditions.required, conditions.required_revolutions
+    names = "required_hours", "required_revolutions"
+    found = {k: float(v) for k, v in zip(names, asked, strict=True) if v is not None}
+    needed = to_json(dataclasses.asdict(verdict))
+    return found | {
+        "kept": verdict.kept,
+        "factor": needed.pop("factor"),
+        "needed": needed,
+    }
+
+
+def verdict_in_words(
+    conditions: LifeConditions | None, verdict: RequiredLife | None
+) -> list[str]:
+    """Say whether the required life is kept, and what it would take.
+
+    Args: as `verdict_as_dict`.
+    """
+    if conditions is None or verdict is None:
+        return []
+    hours, turns = conditions.required, conditions.required_revolutions
+    asked = f"{float(hours or turns or 0.0):.5g} {'rev' if hours is None else 'h'}"
+    oiled = conditions.viscosity is not None
+    lines = [
+        f"required {asked}: {'kept' if verdict.kept else 'NOT kept'}; the"
+        f" {'modified' if oiled else 'reference'} life is {life_number(verdict.factor)}"
+        " times that"
+    ]
+    if verdict.dynamic_capacity is not None:
+        words = f"C {_kilo(verdict.dynamic_capacity)} kN with Cu in proportion (for the"
+        words += f" basic life {_kilo(verdict.basic_capacity)} kN)"
+        size, clean = verdict.viscosity, verdict.contamination_factor
+        if oiled:
+            words += "; no viscosity" if size is None else f"; {1e6 * size:.4g} mm²/s"
+            words += "; no cleanliness" if clean is None else f"; e_C {clean:.3g}"
+            words += "".join(f", {name}" for name in verdict.cleanliness)
+        lines.append(f"it takes, each by itself, at least {words}")
+    return lines
 
 
 def ratings_as_dict(ratings: Any, origins: Mapping[str, str]) -> dict[str, Any]:
@@ -109,7 +200,10 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
         f"static safety C0/P0 {life_number(life.static_safety)}, P0"
         f" {_kilo(life.static_equivalent_load)} kN (ISO 76)",
         *limits(solution, life),
+        f"minimum load {minimum_load(scene.element.bearing, r):.4g} N"
+        f" ({LEAST_LOAD[scene.element.bearing.noun]:g} C)",
         describe_turning(life.turns_against_load, solution.speed is None),
+        *verdict_in_words(scene.life, life_verdict(scene, life)),
     ]
 
 

@@ -41,6 +41,9 @@ def read_life(
     if given["viscosity"] is not None and not _turns(speed) and "cases" not in top:
         problem = "needs a speed of one ring against the other, for its film"
         raise table.error("contamination", problem)
+    if given["required"] is not None and not _turns(speed) and "cases" not in top:
+        problem = "is in hours, and the rings do not turn; write required_revolutions"
+        raise table.error("required", problem)
     _check_points(top, bearing, points)
     table.finish()
     with table.building():

@@ -19,7 +19,7 @@ def add(commands: Commands) -> ArgumentParser:
         epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
     )
     add_scene(command)
-    add_table(command, "case")
+    add_table(command, "case, of one load one row")
     add_plot(command)
     add_report(command, "pictures")
     return command
@@ -35,18 +35,16 @@ def run(options: Namespace, tools: Tools) -> Outcome:
 
 
 def _life_of_load(options) -> Outcome:
-    from ...files import SceneError
     from ...life import LifeConditions
     from ..bearing.read_scene import read_scene
     from ..solve.output import solved_life_as_dict
+    from .life_run import life_row
 
-    if options.table is not None:
-        raise SceneError("--table is for a scene with [cases]; this one has one load")
     scene = read_scene(options.scene, options.set)
     if scene.life is None:
         scene = dataclasses.replace(scene, life=LifeConditions())
     brief = "Bearing", "Rating life", "Fits and clearance"
-    return solution_outcome(scene, solved_life_as_dict, brief)
+    return solution_outcome(scene, solved_life_as_dict, brief, life_row)
 
 
 def _life_of_cases(options, tools: Tools) -> Outcome:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...cases import Cases
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ...cases.sweep import Sweep
@@ -16,8 +17,10 @@ from ...design.published import with_published
 from ...files.quantity import SceneError
 from ...files.scene_errors import scene_errors
 from ...life.life import LIFE_OUTPUTS, turns_against_load
+from ...life.life_warning import minimum_load
 from ...life.rating import Ratings, ratings
 from ...life.reference_life import exponents_of
+from ...life.required_life import NEEDED, RequiredLife, judge_life
 from ...numerics import Result, Warning
 from ...numerics.units import shown_count
 from ...report.json_output import run_json
@@ -27,13 +30,17 @@ from ..bearing.life_report import (
     describe_turning,
     life_number,
     lives_grid,
+    over_required,
     ratings_as_dict,
     ratings_in_words,
+    verdict_as_dict,
+    verdict_in_words,
 )
+from ..bearing.solved import SolvedScene
 from ..solve.report import design_sections
 from .case_words import case_words, varied_settings
 from .read_cases import CaseTable
-from .sweep_run import all_warnings, design_columns, run_cases
+from .sweep_run import add_hours, all_warnings, design_columns, run_cases
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
@@ -49,6 +56,7 @@ class LifeRun:
         asked: Life at the requested reliability: modified, or without a lubricant the
             reference life times a1.
         ratings: Ratings of the bearing; for several designs those of the scene.
+        verdict: Verdict on the required life; `None` without one.
     """
 
     table: CaseTable
@@ -56,6 +64,7 @@ class LifeRun:
     lives: dict[str, SpectrumLife]
     asked: SpectrumLife
     ratings: Ratings
+    verdict: RequiredLife | None = None
 
     @property
     def converged(self) -> bool:
@@ -154,6 +163,16 @@ def run_life(
             "a_iso",
         }
     outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
+    required = None if scene.life is None else scene.life.required
+    if required is not None and not turning:
+        raise SceneError(
+            f"{scene.name}: `life.required`: is in hours and needs a speed, in"
+            " [operating] or in the cases; or write `required_revolutions`"
+        )
+    judged = scene.life is not None and scene.life.requires
+    parts = ["damage_share", "limit_ratio"]
+    if judged and table.cases.design is None:
+        outputs += parts
     bearing = scene.element.bearing
     if (
         scene.catalogue is not None
@@ -175,7 +194,17 @@ def run_life(
         if name in outputs
     }
     asked_for = spectrum_life(table.cases, np.asarray(solved.damage))
-    return LifeRun(table, solved, lives, asked_for, rated)
+    numbers = {k: v for k, v in solved.outputs.items() if k in NEEDED}
+    kept = {k: v for k, v in solved.outputs.items() if k not in parts}
+    solved = dataclasses.replace(solved, outputs=kept)
+    turns = float(asked_for.rating_life)
+    factor = over_required(scene.life, asked_for.life_hours, turns)
+    verdict = None
+    if factor is not None and scene.life is not None:
+        basic = factor * float(lives["basic_rating_life"].rating_life) / turns
+        found = bearing, scene.life, factor, basic, float(rated.dynamic_capacity)
+        verdict = judge_life(*found, numbers, asked_for.damage_share)
+    return LifeRun(table, solved, lives, asked_for, rated, verdict)
 
 
 def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
@@ -188,6 +217,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         inputs, version. Infinite is null; no lives if a case was not solved.
     """
     found = ratings_as_dict(run.ratings, run.origins)
+    found["minimum_load"] = minimum_load(run.table.scene.element.bearing, run.ratings)
     if run.converged:
         for name, life in run.lives.items():
             found[name] = life.rating_life
@@ -196,6 +226,7 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["static_safety"] = np.min(run.solved.static_safety)
         found["life_hours"] = run.asked.life_hours
         found["damage_share"] = run.asked.damage_share
+        found |= verdict_as_dict(run.table.scene.life, run.verdict)
     found["columns"] = life_columns(run, exact=True)
     found["counts"] = run.solved.counts()
     return run_json(found, run.warnings, run.table.inputs)
@@ -206,9 +237,24 @@ def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
 
     Args:
         run: From `run_life`.
-        exact: As in `sweep_table.columns`.
+        exact: As in `sweep_table.columns`, and without the columns of `add_hours`.
     """
-    return columns(run.solved, design_columns(run.table), exact=exact)
+    found = columns(run.solved, design_columns(run.table), exact=exact)
+    return found if exact else add_hours(found, run.solved.cases, run.table.scene.life)
+
+
+def life_row(found: SolvedScene) -> dict[str, np.ndarray]:
+    """Return load, speeds, life and verdict of a solved scene as one row, in SI."""
+    scene, life = found.scene, found.life
+    speeds = {} if scene.speed is None else vars(scene.speed)
+    speeds = {f"{ring}_speed": float(speed) for ring, speed in speeds.items()}
+    cases = Cases([scene.load], prescribed=scene.prescribed, **speeds)
+    lives = {name: getattr(life, name) for name in LIFE_OUTPUTS}
+    outputs = {k: np.asarray(v)[None] for k, v in lives.items() if v is not None}
+    del outputs["damage_share"]
+    outputs["result"] = np.asarray(found.numbers.result)[None]
+    one = columns(Sweep(cases, outputs, scene.moving_ring))
+    return add_hours(one, cases, scene.life)
 
 
 def equivalent_load(run: LifeRun) -> float:
@@ -265,7 +311,9 @@ def _lives(run) -> list[Part]:
         "",
         lives_grid(revolutions, None if at_rest else hours),
         f"equivalent load of the spectrum {1e-3 * equivalent_load(run):.5g} kN; least"
-        f" static safety {run.least_safety()}",
+        f" static safety {run.least_safety()}; minimum load"
+        f" {minimum_load(table.scene.element.bearing, run.ratings):.4g} N",
+        *verdict_in_words(table.scene.life, run.verdict),
     ]
     if at_rest:
         fixed_to = life_conditions(table.scene).load_fixed_to

@@ -51,6 +51,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     from .read_cases import read_cases
     from .resume import resume_cases
     from .sweep_run import (
+        add_hours,
         cases_with_set_preload,
         design_columns,
         run_cases,
@@ -94,7 +95,9 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         table.inputs,
         lambda: sweep_as_dict(table, solved),
         sweep_report(table, solved, seconds),
-        lambda: sweep_table.columns(*drawn[:2]),
+        lambda: add_hours(
+            sweep_table.columns(*drawn[:2]), solved.cases, table.scene.life
+        ),
         pictures if solved.converged.any() else {},
         table_on_page=True,
         problems=[words] if lost else [],

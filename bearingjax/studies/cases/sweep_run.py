@@ -9,6 +9,7 @@ import numpy as np
 
 from ...cases import Batches, Cases, Sweep, sweep
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
+from ...cases.spectrum import revolutions_per_hour
 from ...cases.sweep_program import not_run
 from ...cases.sweep_table import columns
 from ...design import rows_of
@@ -30,10 +31,25 @@ from ..solve.run import with_set_preload
 from .read_cases import CaseTable, DesignGroup, turns_of
 
 
-def default_outputs(element: BearingElement) -> tuple[str, ...]:
-    """Return the outputs that are kept of each case unless the scene names some."""
+def default_outputs(
+    element: BearingElement, life: LifeConditions | None, turning: bool
+) -> tuple[str, ...]:
+    """Return the outputs that are kept of each case unless the scene names some.
+
+    Args:
+        element: The bearing.
+        life: Conditions of lives, if they are kept too.
+        turning: Whether the rings have a relative speed.
+    """
     largest = summaries(solution_kind(element.choices))
-    return "displacement", *largest, "n_loaded", "iterations", "residual"
+    lives: tuple[str, ...] = ()
+    if life is not None:
+        oiled = life.viscosity is not None
+        lives = ("equivalent_load", "static_safety", "basic_rating_life")
+        lives += ("reference_rating_life", "damage")
+        lives += ("modified_rating_life", "viscosity_ratio", "a_iso") if oiled else ()
+        lives += ("life_hours",) if turning else ()
+    return "displacement", *largest, *lives, "n_loaded", "iterations", "residual"
 
 
 def run_cases(
@@ -71,16 +87,19 @@ def _run(table, part, mine, progress, stop) -> Sweep:
         cases = jax.tree.map(lambda a: np.asarray(a)[mine], cases)
         number = np.searchsorted(part.designs, np.asarray(cases.design))
         cases = dataclasses.replace(cases, design=number)
+    life = _life(table, part)
     with scene_errors(f"{scene.name}: [cases]"):
         solved = sweep(
             part.element,
             cases,
-            outputs=default_outputs(part.element)
+            outputs=default_outputs(
+                part.element, life, revolutions_per_hour(cases, np) is not None
+            )
             if table.outputs is None
             else table.outputs,
             support=Support(scene.free, fixed_ring=scene.fixed_ring),
             options=scene.solve_options,
-            life=_life(table, part),
+            life=life,
             batches=Batches(progress=progress, stop=stop),
         )
     return _on_seats(part, solved)
@@ -255,6 +274,37 @@ def design_columns(table: CaseTable) -> dict[str, np.ndarray]:
         for key in table.settings[0]
     }
     return {k: v for k, v in found.items() if v.dtype.kind not in "fi" or v.any()}
+
+
+def add_hours(
+    found: dict[str, np.ndarray], cases: Cases, conditions: LifeConditions | None
+) -> dict[str, np.ndarray]:
+    """Add the columns of a table that follow from its lives: each in hours beside the
+    revolutions, and the verdict on the life that is required of each case.
+
+    Args:
+        found: From `columns`.
+        cases: The cases.
+        conditions: Conditions of the lives, if any.
+    """
+    turns = revolutions_per_hour(cases, np)
+    made = {}
+    for header, column in found.items():
+        made[header] = column
+        name = header.removesuffix("_life [rev]")
+        if turns is not None and name != header:
+            with np.errstate(divide="ignore"):
+                made[f"{name}_life [h]"] = column / turns
+    used, asked = found.get("damage [1/rev]"), None
+    if conditions is not None and used is not None:
+        asked = conditions.required_revolutions
+        if conditions.required is not None and turns is not None:
+            asked = float(conditions.required) * turns
+    if asked is None or used is None:
+        return made
+    with np.errstate(divide="ignore"):
+        factor = 1.0 / (used * np.asarray(asked))
+    return made | {"life_factor": factor, "life_kept": factor >= 1.0 - 1e-9}
 
 
 def sweep_as_dict(table: CaseTable, solved: Sweep) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
 from ..bearing.fit_report import fit_as_dict
-from ..bearing.life_report import life_as_dict
+from ..bearing.life_report import life_as_dict, life_verdict, verdict_as_dict
 from .motion import RotorResponse, RotorTransient
 from .read import RotorScene
 from .run import RotorRun
@@ -61,6 +61,7 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
                 "bearing": mount.name,
                 "station": mount.station,
                 **life_as_dict(life, mount.scene),
+                **verdict_as_dict(mount.scene.life, life_verdict(mount.scene, life)),
             }
             for mount, life in run.lives
             if mount.scene is not None

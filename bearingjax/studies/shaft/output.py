@@ -16,7 +16,7 @@ from ...shafts.duty import LIVES
 from ...shafts.warning import axial_load
 from ...statics.solution import BallSolution, Solution
 from ..bearing.fit_report import fit_as_dict
-from ..bearing.life_report import life_as_dict
+from ..bearing.life_report import life_as_dict, verdict_as_dict
 from ..bearing.oil import oil_as_dict
 from .run import ShaftRun, bearing_loss
 
@@ -110,6 +110,7 @@ def _bearing(run: ShaftRun, k: int) -> dict[str, Any]:
     numbers |= {name: getattr(solution, name) for name in names}
     numbers |= _largest_numbers(solution)
     numbers |= life_as_dict(life, scene)
+    numbers |= verdict_as_dict(scene.life, run.verdicts[k])
     numbers["life_hours"] = run.hours[k]
     if scene.oil is not None:
         numbers |= oil_as_dict(bearing.oil)
@@ -216,6 +217,9 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
             ]
             for key in (*LIVES[:-1], "life_hours")
         }
+        if any(run.verdicts):
+            over = [np.nan if v is None else v.factor for v in run.verdicts]
+            most["life_factor"] = over
     else:
         count = len(run.task.cases)
         found = {

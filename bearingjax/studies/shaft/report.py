@@ -14,7 +14,7 @@ from ...report.report_model import (
     Report,
     Section,
 )
-from ..bearing.life_report import life_number, life_section
+from ..bearing.life_report import life_number, life_section, verdict_in_words
 from ..bearing.oil import oil_report, series_words
 from ..solve.report import fits_section
 from .run import ShaftRun, bearing_loss
@@ -281,7 +281,14 @@ def _lives(run: ShaftRun) -> Section:
             kappa = [None if b is None else b.viscosity_ratio for b in known]
             rows.append(Column("κ", kappa, "1", ".3g", (1.0, "")))
         title = "rating lives" if any(turning) else "at rest: no lives in hours"
+    if any(run.verdicts):
+        over = [None if v is None else v.factor for v in run.verdicts]
+        rows.append(Column("over required", over, "1", ".3g", (1.0, "")))
     parts: list[Part] = [Grid(rows, title)]
+    for bearing, verdict in zip(run.bearings, run.verdicts, strict=True):
+        if bearing.scene is not None and verdict is not None and not verdict.kept:
+            words = verdict_in_words(bearing.scene.life, verdict)
+            parts += [f"{bearing.name}: {line}" for line in words]
     together = run.system_hours
     if together is not None:
         parts.append(

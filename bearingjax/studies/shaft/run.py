@@ -16,6 +16,7 @@ from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
+from ...life.required_life import RequiredLife
 from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
 from ...numerics.types import in_numpy
@@ -27,6 +28,7 @@ from ...shafts.seats import speed_of, with_preload_offsets
 from ...shafts.state import moving_part
 from ...shafts.warning import load_doubts
 from ...statics.solution import Solution
+from ..bearing.life_report import life_verdict
 from ..bearing.oil import OilFacts, oil_facts
 from ..bearing.read_scene import Scene, with_speed_warnings
 from ..bearing.solved import solved_warnings
@@ -139,6 +141,20 @@ class ShaftRun:
             life = None if bearing.life is None else bearing.life.life_hours
             found.append(np.nan if life is None else float(life))
         return np.array(found)
+
+    @functools.cached_property
+    def verdicts(self) -> list[RequiredLife | None]:
+        """Verdict on the life required of each bearing, under all cases; `None` without
+        one, and of revolutions under cases, whose bearings turn at several speeds."""
+        found = []
+        for place, hours in zip(self.bearings, self.hours, strict=True):
+            scene, life, verdict = place.scene, place.life, None
+            if scene is not None and life is not None and self.duty is None:
+                verdict = life_verdict(scene, life)
+            elif scene is not None and scene.life is not None and scene.life.required:
+                verdict = RequiredLife(float(hours) / float(scene.life.required))
+            found.append(verdict)
+        return found
 
     @functools.cached_property
     def worst_cases(self) -> list[int | None]:

@@ -2,11 +2,13 @@
 
 from typing import Any
 
-from ...numerics.labels import array_fields
+import numpy as np
+
+from ...numerics.labels import array_fields, labelled_fields
 from ...numerics.result import Result
 from ...report.json_output import run_json, to_json
 from ..bearing.fit_report import fit_as_dict, preload_as_dict
-from ..bearing.life_report import life_as_dict
+from ..bearing.life_report import life_as_dict, life_verdict, verdict_as_dict
 from ..bearing.oil import oil_as_dict
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
@@ -58,7 +60,29 @@ def solution_json(found: SolvedScene) -> dict[str, Any]:
 
 def _life(found: SolvedScene) -> dict[str, Any]:
     life = found.life
-    return {} if life is None else life_as_dict(life, found.scene)
+    if life is None:
+        return {}
+    verdict = life_verdict(found.scene, life)
+    return life_as_dict(life, found.scene) | verdict_as_dict(found.scene.life, verdict)
+
+
+def element_columns(found: SolvedScene) -> dict[str, np.ndarray]:
+    """Return a row for each rolling element: columns by header, in SI.
+
+    They are its azimuth, loads, pressures and what else it has one number of, or one
+    of each contact; what lies along the contacts is in the JSON.
+    """
+    solution = found.numbers
+    parts = ["kinematics"] if getattr(solution, "kinematics", None) is not None else []
+    columns = {}
+    for name, array in labelled_fields(solution, *parts).items():
+        if array.axes[:1] != ("element",) or "point" in array.axes:
+            continue
+        for header, _, column in array.columns(name):
+            columns[header] = column
+    count = len(columns["azimuth [rad]"])
+    first = {"element": np.arange(count), "azimuth [rad]": columns["azimuth [rad]"]}
+    return first | columns
 
 
 def solved_json(found: SolvedScene) -> dict[str, Any]:

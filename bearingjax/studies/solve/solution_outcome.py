@@ -7,7 +7,10 @@ from ..outcome import Outcome, picture
 
 
 def solution_outcome(
-    scene: Any, numbers: Callable | None = None, brief: Any = None
+    scene: Any,
+    numbers: Callable | None = None,
+    brief: Any = None,
+    columns: Callable | None = None,
 ) -> Outcome:
     """Solve the bearing of a scene for its load.
 
@@ -15,8 +18,9 @@ def solution_outcome(
         scene: From `read_scene`.
         numbers: Returns the JSON of the solved scene; default: `solution_json`.
         brief: Sections of the report shown on the terminal; default: all.
+        columns: Returns the table of the solved scene; default: `element_columns`.
     """
-    from .output import solution_json
+    from .output import element_columns, solution_json
     from .report import report
     from .run import solve_scene
 
@@ -34,6 +38,7 @@ def solution_outcome(
         full_report
         if brief is None or full_report is None
         else full_report.with_sections(brief),
+        (lambda: (columns or element_columns)(found)) if found.converged else None,
         page=None if full_report is None else lambda: full_report,
         pictures={"Section, load zone, contacts": draw} if found.converged else {},
         drawing=picture("drawing", bearing, scene.name),
