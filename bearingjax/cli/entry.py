@@ -18,7 +18,7 @@ from ..studies.catalogue import new_command as new
 from ..studies.contact import command as contact
 from ..studies.noise import command as noise
 from ..studies.optimise import command as optimise
-from ..studies.options import add_quiet, add_si
+from ..studies.options import add_quiet
 from ..studies.programs import cache_command as cache
 from ..studies.programs import warm_command as warm
 from ..studies.rotor import command as rotor
@@ -119,7 +119,8 @@ def parser() -> argparse.ArgumentParser:
         call = command.run
         if command in _SOLVING:
             call = functools.partial(execute, command)
-            add_si(added)
+            units = "tables, and inputs of a report, in SI"
+            added.add_argument("--si", action="store_true", help=units)
             add_quiet(added)
         added.set_defaults(execute=call, refuse=added.error)
     return top

@@ -122,19 +122,19 @@ def write_table(found: Mapping[str, np.ndarray], path: str | Path) -> None:
     with pandas.ExcelWriter(path, engine="openpyxl") as book:
         frame.to_excel(book, sheet_name="cases", index=False, freeze_panes=(1, 0))
         sheet = book.sheets["cases"]
-        for (head, *cells), column in zip(
-            sheet.iter_cols(), arrays.values(), strict=True
-        ):
+        cells_of = zip(sheet.iter_cols(), arrays.values(), strict=True)
+        for (head, *cells), values in cells_of:
             width = max(12, len(str(head.value)) + 2)
             sheet.column_dimensions[head.column_letter].width = width
-            if column.dtype.kind == "f":
-                shown = _number_format(column)
-                for cell in cells:
-                    cell.number_format = shown
+            shown = _number_format(values)
+            for cell in cells:
+                cell.number_format = shown
 
 
 def _number_format(column: np.ndarray) -> str:
     """Return Excel's format of a column: five digits of its largest number."""
+    if column.dtype.kind != "f":
+        return "General"
     most = np.abs(column[np.isfinite(column)]).max(initial=0.0)
     if most and not 1e-3 <= most < 1e9:
         return "0.0000E+00"

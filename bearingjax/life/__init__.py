@@ -10,6 +10,7 @@ Names
 -----
 
 - Rating life: `rating_life`, `Life`, `LifeConditions`, `LIFE_OUTPUTS`, `life_warnings`.
+- A required life: `judge_life`, `RequiredLife`.
 - Load ratings: `ratings`, `Ratings`, `dynamic_capacity`, `static_capacity`,
   `fatigue_load_limit`, `given_rating_warnings`.
 - Equivalent loads: `equivalent_load`, `EquivalentLoad`.
@@ -34,10 +35,12 @@ from .rating import (
     ratings,
     static_capacity,
 )
+from .required_life import RequiredLife, judge_life
 
 __all__ = [
     "rating_life", "Life", "LifeConditions", "LIFE_OUTPUTS", "life_warnings", "ratings",
     "Ratings", "dynamic_capacity", "static_capacity", "fatigue_load_limit",
     "given_rating_warnings", "equivalent_load", "EquivalentLoad", "life_factor",
     "reliability_factor", "viscosity_ratio", "Cleanliness", "CLEANLINESS",
+    "judge_life", "RequiredLife",
 ]  # fmt: skip

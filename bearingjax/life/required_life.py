@@ -151,4 +151,5 @@ def _least(used: Callable[[float], float], low: float, high: float) -> float | N
     if used(high) > 1.0:
         return None
     ends = math.log(low), math.log(high)
-    return math.exp(brentq(lambda x: math.log(used(math.exp(x))), *ends, xtol=1e-12))
+    root: Any = brentq(lambda x: math.log(used(math.exp(x))), *ends, xtol=1e-12)
+    return math.exp(root)

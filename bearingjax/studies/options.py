@@ -61,12 +61,5 @@ def add_quiet(command: ArgumentParser) -> None:
     )
 
 
-def add_si(command: ArgumentParser) -> None:
-    """Add `--si`, tables and the inputs of a report in SI."""
-    command.add_argument(
-        "--si", action="store_true", help="tables and reported inputs in SI"
-    )
-
-
 def _add_output(command, name: str, text: str) -> None:
     command.add_argument(name, metavar="OUT", type=Path, help=text)

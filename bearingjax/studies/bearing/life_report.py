@@ -47,9 +47,10 @@ def life_verdict(scene: Scene, life: Life) -> RequiredLife | None:
         scene: The scene.
         life: Its life, in NumPy.
     """
-    with np.errstate(divide="ignore"):
-        revolutions = 1.0 / np.asarray(life.damage)
-    factor = over_required(scene.life, life.life_hours, revolutions)
+    damage = float(life.damage)
+    factor = over_required(
+        scene.life, life.life_hours, 1 / damage if damage else np.inf
+    )
     if factor is None or scene.life is None:
         return None
     numbers = {name: getattr(life, name) for name in NEEDED}
@@ -57,7 +58,7 @@ def life_verdict(scene: Scene, life: Life) -> RequiredLife | None:
         scene.element.bearing,
         scene.life,
         factor,
-        factor * float(life.basic_rating_life / revolutions),
+        factor * float(life.basic_rating_life) * damage,
         float(life.ratings.dynamic_capacity),
         {k: np.asarray(v)[None] for k, v in numbers.items() if v is not None},
     )

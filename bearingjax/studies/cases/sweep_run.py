@@ -41,15 +41,22 @@ def default_outputs(
         life: Conditions of lives, if they are kept too.
         turning: Whether the rings have a relative speed.
     """
+    lives = list(_LIVES if life is not None else ())
+    if life is not None and life.viscosity is not None:
+        lives += ["modified_rating_life", "viscosity_ratio", "a_iso"]
+    lives += ["life_hours"] if lives and turning else []
     largest = summaries(solution_kind(element.choices))
-    lives: tuple[str, ...] = ()
-    if life is not None:
-        oiled = life.viscosity is not None
-        lives = ("equivalent_load", "static_safety", "basic_rating_life")
-        lives += ("reference_rating_life", "damage")
-        lives += ("modified_rating_life", "viscosity_ratio", "a_iso") if oiled else ()
-        lives += ("life_hours",) if turning else ()
     return "displacement", *largest, *lives, "n_loaded", "iterations", "residual"
+
+
+_LIVES = (
+    "equivalent_load",
+    "static_safety",
+    "basic_rating_life",
+    "reference_rating_life",
+    "damage",
+)
+"""Numbers of every life that are kept of each case."""
 
 
 def run_cases(

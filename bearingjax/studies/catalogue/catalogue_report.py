@@ -222,6 +222,8 @@ def new_scene(entry: CatalogueEntry) -> str:
         lines += _comment(f"Assumed, as usual: {', '.join(entry.assumed)}.")
     for note in entry.notes:
         lines += _comment(f"{note[0].upper()}{note[1:].rstrip('.')}.")
+    between_ribs = entry.design.get("arrangement", "NU") not in ("NU", "N")
+    middle = 'uz = "0 um", ' if between_ribs else ""
     lines += [
         "",
         "[bearing]",
@@ -232,7 +234,8 @@ def new_scene(entry: CatalogueEntry) -> str:
         *_load(entry),
         f'inner_speed = "{_speed(entry)}"',
         "# Shaft and housing hold the ring straight; without this line it tilts.",
-        'prescribed = { gx = "0 mrad", gy = "0 mrad" }',
+        # Between ribs nothing else holds a ring that bears no axial load.
+        f'prescribed = {{ {middle}gx = "0 mrad", gy = "0 mrad" }}',
         "",
         *_ratings(entry),
         "# What may be added; a # less at the beginning of its lines:",

@@ -67,22 +67,18 @@ def _life(found: SolvedScene) -> dict[str, Any]:
 
 
 def element_columns(found: SolvedScene) -> dict[str, np.ndarray]:
-    """Return a row for each rolling element: columns by header, in SI.
-
-    They are its azimuth, loads, pressures and what else it has one number of, or one
-    of each contact; what lies along the contacts is in the JSON.
-    """
+    """Return a row for each rolling element, columns by header, in SI: what is of it or
+    of its contacts, but for what lies along them."""
     solution = found.numbers
     parts = ["kinematics"] if getattr(solution, "kinematics", None) is not None else []
-    columns = {}
-    for name, array in labelled_fields(solution, *parts).items():
-        if array.axes[:1] != ("element",) or "point" in array.axes:
-            continue
-        for header, _, column in array.columns(name):
-            columns[header] = column
-    count = len(columns["azimuth [rad]"])
-    first = {"element": np.arange(count), "azimuth [rad]": columns["azimuth [rad]"]}
-    return first | columns
+    columns = {
+        header: column
+        for name, array in labelled_fields(solution, *parts).items()
+        if array.axes[:1] == ("element",) and "point" not in array.axes
+        for header, _, column in array.columns(name)
+    }
+    azimuth = {k: v for k, v in columns.items() if k.startswith("azimuth")}
+    return {"element": np.arange(len(solution.azimuth))} | azimuth | columns
 
 
 def solved_json(found: SolvedScene) -> dict[str, Any]:
