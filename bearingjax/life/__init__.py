@@ -38,9 +38,9 @@ from .rating import (
 from .required_life import RequiredLife, judge_life
 
 __all__ = [
-    "rating_life", "Life", "LifeConditions", "LIFE_OUTPUTS", "life_warnings", "ratings",
-    "Ratings", "dynamic_capacity", "static_capacity", "fatigue_load_limit",
-    "given_rating_warnings", "equivalent_load", "EquivalentLoad", "life_factor",
-    "reliability_factor", "viscosity_ratio", "Cleanliness", "CLEANLINESS",
-    "judge_life", "RequiredLife",
+    "rating_life", "Life", "LifeConditions", "LIFE_OUTPUTS", "life_warnings",
+    "judge_life", "RequiredLife", "ratings", "Ratings", "dynamic_capacity",
+    "static_capacity", "fatigue_load_limit", "given_rating_warnings", "equivalent_load",
+    "EquivalentLoad", "life_factor", "reliability_factor", "viscosity_ratio",
+    "Cleanliness", "CLEANLINESS",
 ]  # fmt: skip

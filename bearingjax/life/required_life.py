@@ -14,7 +14,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
-from scipy.optimize import brentq
 
 from ..design import AbstractBearing, BearingSet, rows_of
 from ..design.bearing_set import bearings_of, pitch_radius
@@ -146,6 +145,8 @@ def _life_factors(bearing, lives, oil, clean, times) -> Float[Array, " case"]:
 def _least(used: Callable[[float], float], low: float, high: float) -> float | None:
     """The least argument from `low` to `high` with which no more than the required life
     is used; `None` if there is none."""
+    from scipy.optimize import brentq
+
     if used(low) <= 1.0:
         return low
     if used(high) > 1.0:

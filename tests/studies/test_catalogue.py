@@ -182,8 +182,9 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
     force = json.loads(out.read_text(encoding="utf-8"))["force"]
     entry = bj.catalogue_entry(name)
     assert entry.dynamic_capacity is not None
+    share = 0.05 if name[:2] in ("22", "C ") else 0.1
     assert max(map(abs, force[6:9])) == pytest.approx(
-        0.1 * entry.dynamic_capacity, rel=0.06
+        share * entry.dynamic_capacity, rel=0.06
     )
 
 
@@ -207,8 +208,10 @@ def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
             steep = np.tan(float(row.axis_angle + row.half_angle))
             assert scene.load[2] > 1.2 * steep * abs(scene.load[1])
         if entry.dynamic_capacity is not None:
+            barrels = "spherical_roller", "toroidal_roller"
+            share = 0.05 if kind in barrels else 0.1
             assert np.abs(scene.load).max() == pytest.approx(
-                0.1 * entry.dynamic_capacity,
+                share * entry.dynamic_capacity,
                 rel=0.06,  # two digits
             )
 

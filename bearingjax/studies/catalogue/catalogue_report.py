@@ -16,8 +16,9 @@ from ...files.table import not_among
 from ...friction import thermal_speed
 from ..bearing.catalogue_keys import as_keys
 
-_SHARE = 0.1
-"""Load of a new scene over the dynamic capacity."""
+_SHARE = dict.fromkeys(("spherical_roller", "toroidal_roller"), (0.05, "C/20"))
+"""Load of a new scene over the dynamic capacity, if not a tenth, in words too; under a
+tenth the contacts of some barrels reach their ends."""
 
 _SPEED = 1500.0
 """Speed of a new scene, or half of the reference or limiting speed if that is less
@@ -207,7 +208,7 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
 
 
 def new_scene(entry: CatalogueEntry) -> str:
-    """Write a scene of a bearing under a tenth of its capacity, to be edited.
+    """Write a scene of a bearing under a part of its capacity, to be edited.
 
     Args:
         entry: The bearing, of the catalogue or from `estimated_entry`; every key of its
@@ -351,11 +352,11 @@ def _seats(entry: CatalogueEntry) -> list[str]:
 def _load(entry: CatalogueEntry) -> list[str]:
     """Return the lines of a load within the capacity, known or estimated."""
     capacity = entry.dynamic_capacity
-    share = "a tenth of C"
+    part, share = _SHARE.get(entry.type, (0.1, "a tenth of C"))
     if capacity is None:
         capacity, share = _rough_capacity(_row(entry)), "moderate"
-    load = f"{_round(_SHARE * capacity):g} N"
-    half = f"{_round(0.5 * _SHARE * capacity):g} N"
+    load = f"{_round(part * capacity):g} N"
+    half = f"{_round(0.5 * part * capacity):g} N"
     if _row(entry).is_thrust:
         comment = f"# axial, {share}, from the shaft washer at -z"
         return [f'load = {{ Fz = "{load}" }}  {comment}']
@@ -366,7 +367,7 @@ def _load(entry: CatalogueEntry) -> list[str]:
         row = _row(entry)
         # More for steep contact angles, so that about half of the rollers are loaded.
         needed = 1.3 * np.tan(float(row.axis_angle + row.half_angle))
-        axial = f"{_round(max(0.5, needed) * _SHARE * capacity):g} N"
+        axial = f"{_round(max(0.5, needed) * part * capacity):g} N"
         words = "half of it" if axial == half else "as its steep rollers need"
         comment = f"# radial {share}, axial {words}; +z closes the bearing"
         return [comment, f'load = {{ Fy = "-{load}", Fz = "{axial}" }}']

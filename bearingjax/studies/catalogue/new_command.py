@@ -11,7 +11,7 @@ def add(commands: Commands) -> ArgumentParser:
     command = commands.add_parser(
         "new",
         help="a scene of a bearing of the catalogue or another, or of shafts",
-        description="Print a scene of a bearing under a tenth of its capacity:"
+        description="Print a scene of a bearing under a part of its capacity:"
         " bearingjax new 6205 > my.toml. Of a bearing that the catalogue does not list"
         " give type, sizes and ratings; its inner geometry is then an estimate."
         " `bearingjax new shaft` prints a commented scene of a gearbox.",
