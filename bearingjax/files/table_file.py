@@ -52,9 +52,8 @@ def in_shown_units(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
             most = np.abs(column[np.isfinite(column)]).max(initial=0.0)
             factor, other = (1.0, "°C") if zero else display_unit(unit, most)
             if other != unit:  # 15 digits: 2e-5 m are 20 µm, no 20.000000000000004
-                column = np.array(
-                    [float(f"{(x - zero) * factor:.15g}") for x in column]
-                )
+                made = ((column - zero) * factor).tolist()
+                column = np.array([float(f"{x:.15g}") for x in made])
                 header = column_header(name, other)
         shown[header] = column
     return shown

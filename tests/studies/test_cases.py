@@ -11,14 +11,20 @@ import pyarrow.csv
 import pytest
 from pages import missing_on_page
 
-from bearingjax.cases import Sweep, sweep_table
+from bearingjax.cases import Cases, Sweep, sweep_table
 from bearingjax.files import SceneError, table_file
 from bearingjax.files import column_list as cases_list
+from bearingjax.life import LifeConditions
 from bearingjax.numerics.warning import Warning
 from bearingjax.studies.bearing.read_scene import read_scene
 from bearingjax.studies.cases import read_cases as cases_table
 from bearingjax.studies.cases.read_cases import read_cases
-from bearingjax.studies.cases.sweep_run import design_columns, sweep_report
+from bearingjax.studies.cases.sweep_run import (
+    add_hours,
+    default_outputs,
+    design_columns,
+    sweep_report,
+)
 from bearingjax.studies.solve.run import run_scene
 
 HEAD = """
@@ -522,3 +528,26 @@ def test_cases_of_one_design_are_of_the_preloaded_pair():
     (group,) = table.design_groups
     assert eqx.tree_equal(group.element, table.scene.running())
     assert not eqx.tree_equal(group.element, table.scene.element)
+
+
+def test_sweep_tells_lives_of_a_scene_with_life():
+    """In hours beside the revolutions, and whether the required one is kept."""
+    element = read_scene("cylindrical_rig").element
+    kept = default_outputs(element, None, True)
+    assert not any("life" in name for name in kept)
+    oiled = LifeConditions(viscosity=1e-5, contamination=0.5, required=100.0)
+    kept = default_outputs(element, oiled, True)
+    assert {"modified_rating_life", "life_hours", "a_iso"} < set(kept)
+    assert "life_hours" not in default_outputs(element, LifeConditions(), False)
+    cases = Cases(np.zeros((3, 6)), inner_speed=np.array([100.0, 50.0, 0.0]))
+    turns = np.array([100.0, 50.0, 0.0]) * 3600 / (2 * np.pi)
+    life = np.array([2e7, 2e6, np.inf])
+    found = {"basic_rating_life [rev]": life, "damage [1/rev]": 1 / life}
+    made = add_hours(found, cases, oiled)
+    hours = made["basic_rating_life [h]"]
+    np.testing.assert_allclose(hours[:2], life[:2] / turns[:2], rtol=1e-12)
+    np.testing.assert_allclose(made["life_factor"], hours / 100.0, rtol=1e-12)
+    assert made["life_kept"].tolist() == [True, False, True]
+    assert list(add_hours(found, Cases(np.zeros((3, 6))), oiled)) == list(found)
+    counted = add_hours(found, cases, LifeConditions(required_revolutions=1e7))
+    np.testing.assert_allclose(counted["life_factor"], life / 1e7)

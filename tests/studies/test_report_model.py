@@ -1,5 +1,7 @@
 """Reports as data: text and page show the same cells."""
 
+import re
+
 import numpy as np
 import pytest
 from pages import missing_on_page
@@ -78,6 +80,24 @@ def test_inputs_are_rounded_but_for_integers():
         ("on", "true"),
         ("b.c", "0.1"),
     ]
+
+
+def test_inputs_of_a_page_have_the_units_of_the_scene():
+    """As written there; what it leaves out in the units of the reports."""
+    inputs = {
+        "bearing": {"ball_diameter": "0.00794 m", "clearance": "1.25e-05 m"},
+        "operating": {"inner_speed": "157.07963267948966 rad/s", "fixed_ring": "outer"},
+        "temperature": {"shaft": "333.15 K"},
+        "cases": {"grid": {"operating.load.Fy": ["1 kN", "2 kN"]}},
+    }
+    written = {"bearing.clearance": "0.0125 mm"}
+    cells = ["7.94 mm", "0.0125 mm", "1500 rpm", "outer", "60 °C", "1 kN, 2 kN"]
+    origin = "bearingjax", "", (), "now"
+    page = report_page("t", Report({}), inputs, Origin(*origin, written))
+    assert re.findall(r'<td class="number">(.*?)</td>', page) == cells
+    assert "in the units of the scene" in page
+    page = report_page("t", Report({}), inputs, Origin(*origin))
+    assert "0.00794 m" in page and "in SI, [cases] as written" in page
 
 
 def test_report_only_selects_sections():

@@ -26,7 +26,7 @@ from bearingjax.studies.solve.run import run_scene
 POINTS = 21
 TAPER = f"output.points={POINTS}"
 
-FILES = {"--json": "a.json", "--plot": "a.png"}
+FILES = {"--json": "a.json", "--plot": "a.png", "--table": "a.csv"}
 STUDIES = {
     "rig": Study(
         ("solve", "cylindrical_rig"),
@@ -115,6 +115,15 @@ def test_solve_command_writes_and_prints_the_solution(request, written, name):
     width, height = struct.unpack(">II", paths["--plot"].read_bytes()[16:24])
     assert width > 800 and height > 500
     assert paths["--plot"].stat().st_size > 50_000
+    # A row for each rolling element.
+    loads = np.transpose(wanted["roller_load"])
+    for header, column in (
+        ("element", np.arange(loads.shape[1])),
+        ("azimuth [rad]", wanted["azimuth"]),
+        ("roller_load_outer [N]", loads[0]),
+        ("roller_load_inner [N]", loads[1]),
+    ):
+        assert np.array_equal(written(name).column(header), column)
 
 
 def test_residual_is_that_of_the_solver(solved):

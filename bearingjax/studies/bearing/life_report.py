@@ -85,18 +85,16 @@ def verdict_as_dict(
     conditions: LifeConditions | None, verdict: RequiredLife | None
 ) -> dict[str, Any]:
     """Return a verdict: `required_hours` or `required_revolutions`, `kept`, `factor`,
-    and under `needed` the other fields of `RequiredLife`, in SI; empty without one."""
+    and where they are known `needed`, the other fields of `RequiredLife`, in SI; empty
+    without one."""
     if conditions is None or verdict is None:
         return {}
     asked = conditions.required, conditions.required_revolutions
     names = "required_hours", "required_revolutions"
     found = {k: float(v) for k, v in zip(names, asked, strict=True) if v is not None}
     needed = to_json(dataclasses.asdict(verdict))
-    return found | {
-        "kept": verdict.kept,
-        "factor": needed.pop("factor"),
-        "needed": needed,
-    }
+    found |= {"kept": verdict.kept, "factor": needed.pop("factor")}
+    return found if verdict.dynamic_capacity is None else {**found, "needed": needed}
 
 
 def verdict_in_words(
