@@ -45,6 +45,7 @@ def test_needed_conditions_of_one_part_invert_iso_281(factor):
     assert 0.4 < kappa < 1.0
     assert found.viscosity == pytest.approx(12e-6 * kappa / KAPPA, rel=1e-9)
     # L ~ C³ a_ISO, C_u in proportion.
+    assert found.dynamic_capacity is not None
     times = found.dynamic_capacity / 2e4
     more = times**3 * a_iso(KAPPA, 0.4 * times * RATIO) / now
     assert more == pytest.approx(1.0 / factor, rel=1e-9)
@@ -61,6 +62,7 @@ def test_needed_conditions_that_do_not_exist():
     found = judge_life(BALLS, CLEAN, 0.1, 0.1, 2e4, numbers)
     assert found.viscosity is None and found.contamination_factor is None
     assert found.cleanliness == () and not found.kept
+    assert found.dynamic_capacity is not None
     assert 2e4 < found.dynamic_capacity < 2e4 * 10 ** (1 / 3)
     # Of one kept by far, the least viscosity is that of κ = 0.1, and any dirt will do.
     found = judge_life(BALLS, CLEAN, 1e3, 1e3, 2e4, one_part())
@@ -84,6 +86,7 @@ def test_needed_conditions_of_a_spectrum():
     numbers = one_part(kappa, ratio)
     found = judge_life(BALLS, CLEAN, 0.8, 0.8, 2e4, numbers, np.array(share))
     clean = found.contamination_factor
+    assert clean is not None
     less = [
         s * a_iso(k, 0.4 * x) / a_iso(k, clean * x)
         for s, k, x in zip(share[:2], kappa[:2], ratio[:2], strict=True)

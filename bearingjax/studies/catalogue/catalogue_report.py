@@ -16,7 +16,10 @@ from ...files.table import not_among
 from ...friction import thermal_speed
 from ..bearing.catalogue_keys import as_keys
 
-_SHARE = dict.fromkeys(("spherical_roller", "toroidal_roller"), (0.05, "C/20"))
+_SHARE: dict[str, tuple[float, str]] = {
+    "spherical_roller": (0.05, "a twentieth of C"),
+    "toroidal_roller": (0.05, "a twentieth of C"),
+}
 """Load of a new scene over the dynamic capacity, if not a tenth, in words too; under a
 tenth the contacts of some barrels reach their ends."""
 

@@ -8,7 +8,6 @@ from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
 from ...rotor import STATION_FREEDOMS
 from ...rotor.nonlinear import BranchEnd
 from ..bearing.fit_report import fit_report
-from ..bearing.life_report import life_verdict, verdict_in_words
 from ..solve.report import without_round_off
 from .motion import RotorResponse, RotorTransient
 from .output import STATION_UNITS, mode_numbers
@@ -83,14 +82,7 @@ def _lives(run) -> Section:
         columns.append(Column("modified", modified, "rev"))
     if any(life.life_hours is not None for life in lives):
         columns.append(Column("life", [life.life_hours for life in lives], "h"))
-    told = [
-        f"{mount.name}: {line}"
-        for mount, life in run.lives
-        if mount.scene is not None
-        for line in verdict_in_words(mount.scene.life, life_verdict(mount.scene, life))
-    ]
-    title = "rating lives under the loads of the static equilibrium"
-    return [Grid(columns, title), *told]
+    return [Grid(columns, "rating lives under the loads of the static equilibrium")]
 
 
 def _fit_sections(task):

@@ -219,7 +219,7 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         }
         if any(run.verdicts):
             over = [np.nan if v is None else v.factor for v in run.verdicts]
-            most["life_factor"] = over
+            lives["life_factor"] = over
     else:
         count = len(run.task.cases)
         found = {
