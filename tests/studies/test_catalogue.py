@@ -179,6 +179,7 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
     path.write_text(run("new", name).out, encoding="utf-8")
     done = run("solve", path, "--json", out)
     assert done.status == 0, done.err
+    assert "warning: " not in done.out
     force = json.loads(out.read_text(encoding="utf-8"))["force"]
     entry = bj.catalogue_entry(name)
     assert entry.dynamic_capacity is not None
