@@ -104,6 +104,24 @@ def test_page_prints_what_it_shows(page, tmp_path, monkeypatch, capsys):
                     Path(file).write_text(done.out, encoding="utf-8")
 
 
+@pytest.mark.parametrize(
+    ("shown", "printed", "agree"),
+    [
+        ("C 29.6 kN", "C  29.61 kN", True),
+        ("C 29.6 kN", "C  29.61 kN (given)", False),
+        ("C 29.6 kN …", "C  29.61 kN (given) 3", True),
+        ("C 29.6 …", "C", False),
+        ("life 1000 h", "life 1020 h", False),
+        ("life 1e+06 h", "life 1.005e+06 h", True),
+        ("tilt -0.078 mrad", "tilt -0.079 mrad", True),
+        ("tilt -0.078 mrad", "tilt 0.078 mrad", False),
+        ("NU 308", "NJ 308", False),
+    ],
+)
+def test_excerpt_agrees_within_one_per_cent(shown, printed, agree):
+    assert same(shown, printed) == agree
+
+
 def test_pages_hold_blocks_that_run_and_links_that_lead_somewhere():
     assert len(PAGES) == 6
     for page in PAGES:
