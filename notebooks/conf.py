@@ -35,8 +35,6 @@ exclude_patterns = [
     "jupyter_execute",
     "**/.ipynb_checkpoints",
 ]
-# Guides and theory come from elsewhere: take this line out when all of them are here.
-suppress_warnings = ["toc.not_readable"]
 default_role = "literal"  # backticks of docstrings; `site_links` links them
 
 nb_execution_mode = "off"
