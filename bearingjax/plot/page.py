@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..catalogue.entry import CatalogueEntry
 from ..design import AbstractBearing, BearingSet
 from ..design.abstract import nearest_entry
 from ..numerics.result import Result
@@ -27,7 +28,10 @@ from .style import (
 
 
 def overview(
-    bearing: AbstractBearing | BearingSet, solution: Solution, title: str = ""
+    bearing: AbstractBearing | BearingSet,
+    solution: Solution,
+    title: str = "",
+    catalogue: CatalogueEntry | None = None,
 ) -> Figure:
     """Plot section, load zone, contacts and the main results on one page.
 
@@ -35,6 +39,7 @@ def overview(
         bearing: The design.
         solution: Its single solution.
         title: Head of the page; the kind of bearing if empty.
+        catalogue: Its catalogue entry, whose boundary dimensions are drawn too.
 
     Returns:
         The figure, 13.5 inches wide: a line of pictures for each row of a set.
@@ -53,7 +58,7 @@ def overview(
     axes = lower.subplot_mosaic(
         [[f"along{along[k]}", f"outer{k}", f"inner{k}"] for k in range(n)]
     )
-    cross_section(bearing, section)
+    cross_section(bearing, section, catalogue)
     load_zone(solution, zone)
     nearest_entry(_CONTACTS, solution)(bearing, solution, axes, rows)
     write_foot(foot, "\n".join(_results(solution)))

@@ -282,3 +282,27 @@ def test_labels_spread_to_where_there_is_room():
     at = spread_labels([0.0, 0.9, 1.0], [0.2, 0.2, 0.2])
     np.testing.assert_allclose(at, [0.1, 0.7, 0.9], rtol=ROUNDING)
     assert np.diff(spread_labels([0.1] * 9, [0.2] * 9)).min() > 0.1  # reduced
+
+
+@pytest.mark.parametrize("name, letter", [("6208", "B"), ("22220", "B"), ("7208B", "")])
+def test_boundary_dimensions_of_the_catalogue_are_drawn(name, letter):
+    """Lines at d, D and, where the catalogue places them, at the side faces."""
+    entry = bj.catalogue_entry(name)
+    d, big, wide = 1e3 * np.array([entry.bore, entry.outside_diameter, entry.width])
+    for ax in (
+        plot.cross_section(entry.bearing, catalogue=entry),
+        plot.drawing(entry.bearing, catalogue=entry).axes[0],
+    ):
+        lines = [li.get_xydata() for li in ax.lines if li.get_label() == "_boundary"]
+        low, high = (line[:, 1] for line in lines[:2])
+        np.testing.assert_allclose(high - low, 0.5 * (big - d))
+        assert len(lines) == (4 if letter else 2)
+        if letter:
+            np.testing.assert_allclose(lines[0][:, 0], [-0.5 * wide, 0.5 * wide])
+        words = " ".join(text.get_text() for text in ax.texts)
+        assert f"D = {big:g} mm" in words
+        assert f"d = {d:g} mm, B = {wide:g} mm" in words
+        top = ax.get_ylim()[1]
+        assert all(line[:, 1].max() < top for line in lines)
+    bare = plot.cross_section(entry.bearing)
+    assert not any(line.get_label() == "_boundary" for line in bare.lines)

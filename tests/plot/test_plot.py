@@ -361,7 +361,11 @@ def test_sections_of_balls_name_dimensions():
     for design in (balls(5), bj.BearingSet.back_to_back(balls(5), 0.02)):
         ax = plot.cross_section(design)
         words = [text.get_text() for text in ax.texts]
-        for word in ("D = 9.5 mm", "pitch Ø 52 mm", "free contact angle α = 25°"):
+        for word in (
+            "$D_\\mathrm{w}$ = 9.5 mm",
+            "pitch Ø 52 mm",
+            "free contact angle α = 25°",
+        ):
             assert words.count(word) == 1
 
 

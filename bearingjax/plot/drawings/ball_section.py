@@ -16,7 +16,7 @@ from ..style import (
     faded,
     write_beside,
 )
-from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
+from .dimension import AXIS, D_W, between, contact_angle, pitch_arrow, quantity
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
@@ -74,7 +74,7 @@ def _dimensions(ax, row, low, high, alone):
     half = np.array([0.0, 0.5 * diameter])
     aside = np.array([low[0] - 0.18 * diameter - centre[0], 0.0])
     at = between(ax, centre - half, centre + half, aside)
-    text, upright = f"D = {quantity(part.ball_diameter, 'm')}", {"rotation": 90}
+    text, upright = f"{D_W} = {quantity(part.ball_diameter, 'm')}", {"rotation": 90}
     write_beside(ax, at, (-3, 0), text, ha="right", va="center", **upright)
     beyond = np.array([high[0] + 0.2 * diameter, centre[1]])
     ax.plot([low[0], beyond[0] + 0.1 * diameter], [centre[1]] * 2, **AXIS)

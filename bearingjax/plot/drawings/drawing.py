@@ -6,6 +6,7 @@ from typing import Annotated, Any, NamedTuple
 
 import equinox as eqx
 
+from ...catalogue.entry import CatalogueEntry
 from ...design import (
     RIB_NAMES,
     AbstractBallBearing,
@@ -19,6 +20,7 @@ from ...design.abstract import nearest_entry
 from ...numerics.units import unit
 from ..style import Figure, head, pyplot, write
 from .ball_drawing import ball_clearance_view, dimensioned_balls
+from .boundary import draw_boundary
 from .dimension import label
 from .face_drawing import DEVIATIONS, deviation_view, face_view
 from .outline import section
@@ -77,7 +79,11 @@ class _Strip(NamedTuple):
     bold: bool = False
 
 
-def drawing(bearing: AbstractBearing | BearingSet, title: str = "") -> Figure:
+def drawing(
+    bearing: AbstractBearing | BearingSet,
+    title: str = "",
+    catalogue: CatalogueEntry | None = None,
+) -> Figure:
     """Draw a design, with every parameter at the place where it is measured.
 
     Labels are the names of the Python interface, with values. Sections and the view
@@ -88,12 +94,17 @@ def drawing(bearing: AbstractBearing | BearingSet, title: str = "") -> Figure:
     Args:
         bearing: A bearing, or a set: its arrangement, then every different bearing.
         title: Head of the page; the kind of bearing if empty.
+        catalogue: Its catalogue entry, whose boundary dimensions are drawn too.
 
     Returns:
         The figure, 13.2 inches wide.
     """
     whole = isinstance(bearing, BearingSet)
     figure = _page(_set_strips(bearing) if whole else _strips(bearing))
+    alone: Any = bearing
+    apart = bearing.is_ball and not whole  # drawn about the centre of a ball
+    centre = 500.0 * float(alone.pitch_diameter) if apart else 0.0
+    draw_boundary(figure.axes[0], bearing, catalogue, centre)
     place = 1.0 - 0.1 / figure.get_figheight()
     head(figure, title or type(bearing).__name__, y=place)
     return figure

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...catalogue.entry import CatalogueEntry
 from ...design import (
     AbstractBearing,
     AbstractRollerBearing,
@@ -21,12 +22,25 @@ from ..style import (
     write,
 )
 from .ball_section import STEEP, ball_section, row_position
-from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
+from .boundary import draw_boundary
+from .dimension import (
+    AXIS,
+    D_W,
+    between,
+    contact_angle,
+    on_line,
+    pitch_arrow,
+    quantity,
+)
 from .outline import section
 from .roller_section import roller_row
 
 
-def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
+def cross_section(
+    bearing: AbstractBearing | BearingSet,
+    ax: Ax = None,
+    catalogue: CatalogueEntry | None = None,
+) -> Axes:
     """Draw the axial section of the bearing above its axis, to scale [mm].
 
     Dimensions of the rings beyond raceways and ribs are not part of the design: they
@@ -34,17 +48,24 @@ def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
 
     Args:
         bearing: The design; of a set all rows, with the dimensions of the first one.
+        catalogue: Its catalogue entry, whose boundary dimensions are drawn too.
 
     Returns:
         The axes: z to the right, radius upwards.
     """
+    rows = rows_of(bearing)
     if bearing.is_ball:
-        return ball_section(bearing, ax)
-    ax = axes_or_new(ax, (7.0, 6.0))
-    first, *others = rows_of(bearing)
-    if others:
-        return _set_section(ax, [first, *others])
-    bearing = first.bearing
+        ax = ball_section(bearing, ax)
+    else:
+        ax = axes_or_new(ax, (7.0, 6.0))
+        (_set_section if len(rows) > 1 else _roller_section)(ax, rows)
+    draw_boundary(ax, bearing, catalogue)
+    return ax
+
+
+def _roller_section(ax, rows):
+    """Draw a row of rollers with its dimensions."""
+    bearing = rows[0].bearing
     assert isinstance(bearing, AbstractRollerBearing)
     parts = section(bearing)
     low = min(ring[:, 1].min() for ring in parts.rings)
@@ -97,7 +118,6 @@ def cross_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
     ax.set_xlabel(f"z [mm]{note}")
     ax.set_ylabel("radius [mm]")
     ax.set_title("Axial section, to scale; ring bodies schematic")
-    return ax
 
 
 def _name_rings(ax, bearing, parts):
@@ -134,12 +154,12 @@ def _dimensions(ax, bearing, parts, left, right, high, height):
     spot = centre + at * along
     wide = radius - at * np.sin(half)
     between(ax, spot - wide * across, spot + wide * across)
-    text = f"D = {quantity(bearing.roller_diameter, 'm')}"
+    text = f"{D_W} = {quantity(bearing.roller_diameter, 'm')}"
     place = spot + 0.5 * radius * across + 0.06 * parts.length * along
     on_line(ax, place, text, turn, "left")
     below = -0.5 * radius * across
     between(ax, parts.axis[0] + below, parts.axis[1] + below)
-    text = f"L = {quantity(bearing.roller_length, 'm')}"
+    text = f"$L_\\mathrm{{we}}$ = {quantity(bearing.roller_length, 'm')}"
     on_line(ax, centre + below + 0.05 * parts.length * along, text, turn)
     pitch_arrow(ax, (beyond, centre[1]), bearing.pitch_diameter)
     if 0.0 < angle + half < STEEP:
@@ -180,4 +200,3 @@ def _set_section(ax, rows):
     ax.set_xlabel("z [mm]")
     ax.set_ylabel("radius [mm]")
     ax.set_title("Axial section, to scale; ring bodies schematic")
-    return ax

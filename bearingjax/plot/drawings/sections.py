@@ -2,19 +2,23 @@
 
 from collections.abc import Sequence
 
+from ...catalogue.entry import CatalogueEntry
 from ...design import AbstractBearing, BearingSet
 from ..style import Figure, pyplot
 from .section import cross_section
 
 
 def cross_sections(
-    bearings: Sequence[AbstractBearing | BearingSet], titles: Sequence[str]
+    bearings: Sequence[AbstractBearing | BearingSet],
+    titles: Sequence[str],
+    catalogue: Sequence[CatalogueEntry] = (),
 ) -> Figure:
     """Draw axial sections of bearings, each to its own scale [mm].
 
     Args:
         bearings: At least one.
         titles: Head of each.
+        catalogue: Catalogue entry of each, whose boundary dimensions are drawn too.
 
     Returns:
         The figure, 7 by 6 inches a bearing, at most three in a row.
@@ -31,6 +35,7 @@ def cross_sections(
     down = -(-len(bearings) // across)
     figure = pyplot().figure(figsize=(7.0 * across, 6.0 * down), layout="constrained")
     for k, (bearing, title) in enumerate(zip(bearings, titles, strict=True)):
-        ax = cross_section(bearing, figure.add_subplot(down, across, k + 1))
+        entry = catalogue[k] if catalogue else None
+        ax = cross_section(bearing, figure.add_subplot(down, across, k + 1), entry)
         ax.set_title(title)
     return figure

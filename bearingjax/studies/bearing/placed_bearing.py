@@ -108,8 +108,7 @@ def seat_misfits(scene: Scene, shaft: Shaft, station: int) -> list[Warning]:
     """Return a warning if the shaft of a bearing or of its fit differs from that at its
     station.
     """
-    entry = None if scene.catalogue is None else scene.catalogue.entry
-    seat = scene.installed.mounting or entry
+    seat = scene.installed.mounting or scene.entry
     if seat is not None:
         return seat_size_warnings(shaft, station, seat)
     return []

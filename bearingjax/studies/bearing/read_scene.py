@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...catalogue.entry import bearing_of_entry, catalogue_entry
+from ...catalogue.entry import CatalogueEntry, bearing_of_entry, catalogue_entry
 from ...design import AbstractBearing, BearingSet, rows_of
 from ...element import RINGS, BearingElement, ConstantAngle, Speed
 from ...files import SceneError, shipped_scenes
@@ -71,6 +71,11 @@ class Scene:
     catalogue: FromCatalogue | None = None
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
     preload_of_set: SetPreload | None = None
+
+    @property
+    def entry(self) -> CatalogueEntry | None:
+        """Catalogue entry of its `designation`, or `None` without one."""
+        return None if self.catalogue is None else self.catalogue.entry
 
     @property
     def moving_ring(self) -> str:

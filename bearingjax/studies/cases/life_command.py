@@ -75,7 +75,7 @@ def _life_of_cases(options, tools: Tools) -> Outcome:
         spectrum_report(done) if solved else None,
         lambda: life_columns(done),
         pictures if solved else {},
-        lambda: picture("drawing", scene.running().bearing, scene.name)(),
+        lambda: picture("drawing", scene.running().bearing, scene.name, scene.entry)(),
         page=lambda: spectrum_page(done),
         table_on_page=True,
         problems=[] if solved else [done.failure_message],

@@ -71,12 +71,14 @@ def run(options: Namespace) -> int:
             f"{e.designation}, inner geometry {e.geometry}; ring bodies schematic"
             for e in chosen
         ]
-        save(cross_sections(list(map(bearing_of_entry, chosen)), titles), path)
+        bearings = list(map(bearing_of_entry, chosen))
+        save(cross_sections(bearings, titles, chosen), path)
 
     def draw_all_of_it(path):
         from ...plot import drawing
 
-        save(drawing(bearing_of_entry(chosen[0]), catalogue_title(chosen[0])), path)
+        one = chosen[0]
+        save(drawing(bearing_of_entry(one), catalogue_title(one), one), path)
 
     outputs = [
         (options.json, lambda path: write_numbers(path, catalogue_as_dict(chosen))),

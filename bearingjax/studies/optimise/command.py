@@ -60,6 +60,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         lambda: optimisation_as_dict(task, found, best),
         optimisation_report(task, found, best) if solved else None,
         pictures=pictures if solved else {},
-        drawing=picture("drawing", bearing, f"{name}, optimised") if alone else None,
+        drawing=picture("drawing", bearing, f"{name}, optimised", best.entry)
+        if alone
+        else None,
         problems=[] if solved else [f"{found.result}: {found.message}"],
     )

@@ -30,7 +30,7 @@ def solution_outcome(
 
     # Mounted and preloaded if given in the scene.
     bearing = (solution if found.converged else scene).element.bearing
-    draw = picture("overview", bearing, solution, title=scene.name)
+    draw = picture("overview", bearing, solution, scene.name, scene.entry)
     return Outcome(
         scene.name,
         scene.inputs,
@@ -41,7 +41,7 @@ def solution_outcome(
         (lambda: (columns or element_columns)(found)) if found.converged else None,
         page=None if full_report is None else lambda: full_report,
         pictures={"Section, load zone, contacts": draw} if found.converged else {},
-        drawing=picture("drawing", bearing, scene.name),
+        drawing=picture("drawing", bearing, scene.name, scene.entry),
         problems=[] if found.converged else [why_unsolved(found)],
     )
 
