@@ -1,6 +1,6 @@
 """Plots of the results of a sweep over its inputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,10 @@ from .style import CURVES, SMALL, Figure, head, new_page, power_of_ten, without_
 _MOST_RESULTS = 9
 _NO_RESULTS = ("design", "iterations", "residual", "hours [h]")
 _NUMBER = "case"
+_MOST_NAMES, _LETTERS = 30, 40
+"""Most names along an axis, and most letters of them before they stand upright."""
+Names = Mapping[str, Sequence[str]]
+"""Names that an input takes, by its header: its numbers count them."""
 
 
 class _Curve(NamedTuple):
@@ -34,8 +38,8 @@ def sweep_overview(
 
     For a grid, results are over the input with most values, a curve for each setting
     of the others; its colour marks the first of them with at most six values. Other
-    cases are over their number. Cases that were not solved are left out, and so are
-    prescribed quantities.
+    cases are over the names that tell them apart, else over their number. Cases that
+    were not solved are left out, and so are prescribed quantities.
 
     Args:
         solved: From `sweep`, with a case solved.
@@ -49,7 +53,8 @@ def sweep_overview(
     names = list(found)
     split = names.index("result")
     good = solved.converged
-    inputs = _varying_columns({name: found[name] for name in names[:split]}, good)
+    given, named = _counted({name: found[name] for name in names[:split]})
+    inputs = _varying_columns(given, good)
     results = _varying_columns({name: found[name] for name in names[split + 1 :]}, good)
     results = {
         name: values
@@ -62,19 +67,25 @@ def sweep_overview(
     across = 2 if len(shown) == 4 else max(1, min(3, len(shown)))
     down = max(1, -(-len(shown) // across))
     figure = new_page(5.0 * across, 0.8 + 3.4 * down, 0.1)
-    label, note, curves = _curves(inputs, good)
+    label, note, curves = _curves(inputs, good, named)
+    ticks = named.get(label, ())
+    upright = 90 * (sum(map(len, ticks)) > _LETTERS)
     for k, (header, values) in enumerate(shown):
         ax = without_offset(figure.add_subplot(down, across, k + 1))
         words, scale = _display(header, values)
         number, many = label == _NUMBER, len(good) > 60
         look: Any = {"linewidth": 1.0, "markersize": 3.0 if many else 7.0}
         for curve in curves:
-            y, style = scale * values[curve.cases], "." if number else ".-"
+            y, style = scale * values[curve.cases], "." if number or ticks else ".-"
             colour = CURVES[curve.colour]
             ax.plot(curve.along, y, style, color=colour, label=curve.name, **look)
         finish(ax, words, label)
         ax.title.set_fontsize(11)
-        if number:
+        if ticks:
+            every = slice(None, None, -(-len(ticks) // _MOST_NAMES))
+            places = np.arange(len(ticks))[every]
+            ax.set_xticks(places, ticks[every], rotation=upright, fontsize=SMALL)
+        elif number:
             ax.locator_params(axis="x", integer=True)
         if k == 0 and any(curve.name for curve in curves):
             # Curves of one colour are listed once.
@@ -94,6 +105,21 @@ def sweep_overview(
         figure.text(0.5, 0.5, "no result differs from case to case", ha="center")
     head(figure, title or "Sweep")
     return figure
+
+
+def _counted(given) -> tuple[dict[str, np.ndarray], Names]:
+    """Inputs with names counted from 0 in their order, and these names by header."""
+    named = {
+        header: tuple(dict.fromkeys(map(str, column)))
+        for header, column in given.items()
+        if np.asarray(column).dtype.kind not in "biuf"
+    }
+    counted = {
+        header: np.array([named[header].index(str(one)) for one in column])
+        for header, column in given.items()
+        if header in named
+    }
+    return {**given, **counted}, named
 
 
 def _varying_columns(found, good) -> dict[str, np.ndarray]:
@@ -117,16 +143,22 @@ def _varying_columns(found, good) -> dict[str, np.ndarray]:
     }
 
 
-def _curves(inputs, good) -> tuple[str, str, list[_Curve]]:
+def _curves(inputs, good, named: Names) -> tuple[str, str, list[_Curve]]:
     """Return the label of the abscissa, a note on inputs that neither it nor colours
     tell, and the curves."""
     solved = np.flatnonzero(good)
     by_number = _NUMBER, "", [_Curve(solved, solved, 0, "")]
     if not inputs:
         return by_number
-    along = max(inputs, key=lambda name: len(np.unique(inputs[name][solved])))
+    counts = {name: len(np.unique(x[solved])) for name, x in inputs.items()}
+    along = max(counts, key=lambda name: counts[name])
+    apart = [name for name in named if counts.get(name) == len(solved)]
+    along = (apart or [along])[0]
     x = inputs[along]
     others = [pair for pair in inputs.items() if pair[0] != along]
+    if apart:
+        rest = ", ".join(_span(*pair, named) for pair in others)
+        return along, rest, [_Curve(x[solved], solved, 0, "")]
     kind = np.zeros(len(solved), int)
     if others:
         settings = np.array([values[solved] for _, values in others])
@@ -142,14 +174,18 @@ def _curves(inputs, good) -> tuple[str, str, list[_Curve]]:
         rising = mine[np.argsort(x[mine])]
         colour = int(np.searchsorted(kinds, values[mine[0]])) if name else 0
         text, factor = _display(name, values) if name else ("", 0.0)
-        name_and_value = f"{text}: {factor * values[mine[0]]:.4g}" if name else ""
+        value = factor * values[mine[0]] if name else 0.0
+        told = named[name][int(value)] if name in named else f"{value:.4g}"
+        name_and_value = f"{text}: {told}" if name else ""
         curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
-    rest = ", ".join(_span(*pair) for pair in others if pair[0] != name)
+    rest = ", ".join(_span(*pair, named) for pair in others if pair[0] != name)
     return words, rest, curves
 
 
-def _span(header, values):
+def _span(header, values, named: Names):
     """Return the name of an input, and its least and largest value, as text."""
+    if header in named:
+        return f"{header} from {named[header][0]} to {named[header][-1]}"
     words, scale = _display(header, values)
     low, high = scale * np.nanmin(values), scale * np.nanmax(values)
     name = words.partition(" [")[0]

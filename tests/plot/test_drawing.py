@@ -293,7 +293,8 @@ def test_boundary_dimensions_of_the_catalogue_are_drawn(name, letter):
         plot.cross_section(entry.bearing, catalogue=entry),
         plot.drawing(entry.bearing, catalogue=entry).axes[0],
     ):
-        lines = [li.get_xydata() for li in ax.lines if li.get_label() == "_boundary"]
+        drawn = [line for line in ax.lines if line.get_label() == "_boundary"]
+        lines = [np.transpose(np.asarray(line.get_data(), float)) for line in drawn]
         low, high = (line[:, 1] for line in lines[:2])
         np.testing.assert_allclose(high - low, 0.5 * (big - d))
         assert len(lines) == (4 if letter else 2)

@@ -133,3 +133,35 @@ def test_large_and_small_numbers_are_counted_in_powers_of_ten():
         assert ax.yaxis.get_offset_text().get_text() == ""
     assert power_of_ten(2e-8) == (1e9, "10⁻⁹")
     assert power_of_ten(0.0) == power_of_ten(np.inf) == (1.0, "")
+
+
+def ticks(ax):
+    return [label.get_text() for label in ax.get_xticklabels()]
+
+
+def test_axes_over_names_show_the_names():
+    """A grid of eight bearings and two loads: along the axis, or the colours."""
+    bearings = np.tile([f"62{k:02d}" for k in range(4, 12)], 2)
+    oils = np.repeat(["VG 32", "VG 100"], 8)
+    figure = bj.plot.sweep_overview(
+        swept(np.repeat([-1e3, -2e3], 8)), {"bearing": bearings}
+    )
+    ax = figure.axes[0]
+    assert ax.get_xlabel() == "bearing" and ticks(ax) == list(bearings[:8])
+    figure.draw_without_rendering()
+    figure = bj.plot.sweep_overview(swept(), {"oil": oils})
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert names == ["oil: VG 32", "oil: VG 100"]
+    assert figure.axes[0].get_xlabel() == "Fy [kN]"
+
+
+def test_cases_with_names_of_their_own_are_drawn_over_them():
+    """Each with its own load too, and one of them not solved."""
+    names = np.array([f"case {k} of a long list" for k in range(16)], dtype=object)
+    figure = bj.plot.sweep_overview(swept(lost=(3,)), {"case": names})
+    ax = figure.axes[0]
+    assert ticks(ax) == list(names) and ax.get_xticklabels()[0].get_rotation() == 90
+    (line,) = ax.get_lines()
+    drawn = np.asarray(line.get_xdata())
+    np.testing.assert_array_equal(drawn, np.delete(np.arange(16), 3))
