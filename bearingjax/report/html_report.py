@@ -37,14 +37,17 @@ figure { margin: 0 } figure img { width: 100%; height: auto }
   margin: 1rem 0 }
 .warnings h2 { margin: 0; padding: 0; border: none }
 .warnings ul { margin: .2rem 0; padding-left: 1.2rem }
-.scroll { overflow-x: auto }
+.scroll { overflow: auto; max-height: 85vh }
+.scroll thead th { position: sticky; top: 0; background: #fff }
+.grid td:first-child { white-space: nowrap }
+.grid td:last-child:not(.value):not(:first-child) { min-width: 10rem }
 table { border-collapse: collapse; font-size: 13px; width: 100% }
 th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
   border-bottom: 1px solid #e3e6ea }
 th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
 td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
 table.grid { width: auto; margin: .5rem 0 }
-.grid caption { text-align: left; padding: .3rem 0 }
+.grid caption { text-align: left; padding: .3rem 0; position: sticky; left: 0 }
 .grid th, .grid td { padding-right: 1.1rem }
 .grid .value { text-align: right; font-variant-numeric: tabular-nums }
 .grid td.value { white-space: nowrap } .grid th { vertical-align: bottom }
@@ -53,6 +56,9 @@ table.grid { width: auto; margin: .5rem 0 }
 .cases th { white-space: normal; vertical-align: bottom }
 @media screen {
   figure { width: min(96vw, 80rem); margin-left: 50%; transform: translateX(-50%) }
+}
+@media screen and (max-width: 40rem) {
+  body { padding: .8rem } figure { overflow-x: auto } figure img { width: 60rem }
 }
 @page { size: A4; margin: 14mm 12mm;
   @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif } }
@@ -64,7 +70,7 @@ table.grid { width: auto; margin: .5rem 0 }
   table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
   figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
   tr:has(th[scope=colgroup]) { break-after: avoid }
-  .wide { page: wide; break-after: page } .scroll { overflow: visible }
+  .wide { page: wide; break-after: page } .scroll { overflow: visible; max-height: none }
   .cases th, .cases td { font-size: 6pt; padding-right: 1.5mm; white-space: normal }
 }
 """
