@@ -11,6 +11,7 @@ from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
 from .rotors.rotor import rotor_section
+from .shaft_views import placed_shafts, system_views
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white, write
 
 _ACROSS = 4
@@ -22,8 +23,9 @@ _COLOURS = (INNER, OUTER)
 def shaft_overview(run: Any, title: str = "") -> Figure:
     """Plot each shaft to scale with its lines, and the load zone of each bearing.
 
-    Under load cases they are those of the first, as the head says. Where the warming up
-    is followed, temperatures over time come last.
+    Several shafts whose places are known come first, in one frame. Under load cases
+    all is of the first, as the head says. Temperatures, of the nodes and over the time
+    of warming up, come last.
 
     Args:
         run: Result of the scene of a system of shafts, solved.
@@ -35,16 +37,21 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
     system = run.task.system
     shown = [b for b in run.bearings if b.solution is not None]
     across = max(1, min(_ACROSS, len(shown)))
-    n_shafts, rows = len(system.shafts), -(-len(shown) // across)
-    warm = int(run.warming is not None)
-    figure = pyplot().figure(figsize=(18.0, 1.0 + 4.6 * n_shafts + 4.4 * (rows + warm)))
+    whole = int(len(placed_shafts(system)) > 1)
+    n_shafts, rows = whole + len(system.shafts), -(-len(shown) // across)
+    warm = int(run.thermal is not None)
+    tall = 1.5 + 4.6 * n_shafts + 4.4 * (rows + warm)
+    figure = pyplot().figure(figsize=(18.0, tall))
     grid = figure.add_gridspec(
         n_shafts + rows + warm, 15, left=0.05, right=0.95, wspace=1.6, hspace=0.42,
-        top=1.0 - 0.9 / figure.get_figheight(), bottom=0.6 / figure.get_figheight(),
+        top=1.0 - 1.4 / tall, bottom=0.6 / tall,
     )  # fmt: skip
+    if whole:
+        ends = (figure.add_subplot(grid[0, :6]), figure.add_subplot(grid[0, 6:]))
+        system_views(run, *ends)
     for k, line in enumerate(system.shafts):
-        state = run.solution.shafts[k]
-        ax = figure.add_subplot(grid[k, :6])
+        row, state = whole + k, run.solution.shafts[k]
+        ax = figure.add_subplot(grid[row, :6])
         _drawing(ax, run, k)
         ax.set_title(f"Shaft {line.name}, to scale; forces on it (x, y, z) in kN")
         # The moment that bends in the plane of x is about y.
@@ -52,11 +59,13 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         lines = {
             "Deflection [µm]": 1e6 * state.displacement[:, :2],
             "Shear force [kN]": 1e-3 * state.shear[:, :2],
-            "Bending moment [N m]": bent,
+            "Bending moment [kN m]": 1e-3 * bent,
         }
         for place, (label, values) in enumerate(lines.items()):
-            ax = figure.add_subplot(grid[k, 6 + 3 * place : 9 + 3 * place])
+            ax = figure.add_subplot(grid[row, 6 + 3 * place : 9 + 3 * place])
             _line(ax, state.position, values, label)
+            if k == place == 0:  # of all lines
+                ax.legend(fontsize="small")
     named: dict[str, Any] = {}
     for k, bearing in enumerate(shown):
         row, place = divmod(k, across)
@@ -74,8 +83,12 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         if place + 1 == across or k + 1 == len(shown):
             zone_legend(ax, list(named.values()), list(named))
     if warm:
-        _draw_warm_up(figure.add_subplot(grid[n_shafts + rows, :]), run)
-    head(figure, ", ".join(filter(None, (title or "Shafts", run.shown_case))))
+        _draw_nodes(figure.add_subplot(grid[n_shafts + rows, 9:]), run)
+    if run.warming is not None:
+        _draw_warm_up(figure.add_subplot(grid[n_shafts + rows, :8]), run)
+    case = f"{run.shown_case}: {run.case_words(0)}" if run.shown_case else ""
+    place = 1.0 - 0.3 / tall
+    head(figure, ", ".join(filter(None, (title or "Shafts", case))), y=place)
     return figure
 
 
@@ -91,13 +104,34 @@ def _draw_warm_up(ax, run):
     ax.legend(fontsize="small")
 
 
+def _draw_nodes(ax, run):
+    """Plot the temperatures of rings, and of the housing, in equilibrium."""
+    warm = run.thermal
+    known = [
+        k for k, seat in enumerate(run.task.system.seats) if seat.installed is not None
+    ]
+    for away, name, values, colour in (
+        (-0.2, "outer ring", warm.outer_ring, OUTER),
+        (0.2, "inner ring", warm.inner_ring, INNER),
+    ):
+        high = np.asarray(values)[known] - CELSIUS
+        bars = ax.bar(np.arange(len(known)) + away, high, 0.4, color=colour, label=name)
+        ax.bar_label(bars, fmt="%.0f", fontsize="small")
+    housing = float(warm.housing) - CELSIUS
+    ax.axhline(housing, color=GREY, ls="--", label=f"housing, {housing:.0f}")
+    ax.set_xticks(range(len(known)), [run.task.system.seats[k].name for k in known])
+    ax.margins(y=0.3)
+    ax.set_ylabel("temperature [°C]")
+    ax.set_title("Temperatures in equilibrium")
+    ax.legend(fontsize="small", ncols=3, loc="upper left")
+
+
 def _line(ax, position, values, label):
     for k, axis in enumerate(_AXES):
         ax.plot(1e3 * position, values[:, k], color=_COLOURS[k], label=axis)
     ax.axhline(0.0, color=GREY, lw=0.7)
     ax.set_xlabel("z [mm]")
     ax.set_title(label)
-    ax.legend(fontsize="small")
 
 
 def _drawing(ax, run, index):

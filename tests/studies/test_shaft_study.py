@@ -9,14 +9,16 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Rectangle
 from runs import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
 from bearingjax.files import SceneError
 from bearingjax.numerics.result import Result
-from bearingjax.plot.shafts import _draw_warm_up
+from bearingjax.plot.shaft_views import system_views
+from bearingjax.plot.shafts import _draw_nodes, _draw_warm_up
 from bearingjax.report.report_model import Grid
-from bearingjax.shafts import DutyResult
+from bearingjax.shafts import DutyResult, power_flow
 from bearingjax.studies.shaft.output import shaft_columns
 from bearingjax.studies.shaft.read import read_shafts
 from bearingjax.studies.shaft.report import _temperatures
@@ -263,6 +265,7 @@ def test_worst_case_of_a_spectrum(tmp_path):
     run = solved(scene, duty=duty)
     assert run.worst_cases == [0, 1, 0, None]
     assert run.shown_case == "case 0 of 3"
+    assert run.case_words(1) == "drive.power -20 kW"
     np.testing.assert_allclose(
         run.hours[:2], 110 / (100 + 10 * np.array([5, 20])) / 10 / 3600 * 2 * np.pi
     )
@@ -354,6 +357,37 @@ def test_warming_up_is_shown(tmp_path):
     drawn = np.asarray(ax.lines[1].get_xydata())
     np.testing.assert_allclose(drawn[:, 1], warming[:, 1] - 273.15)
     np.testing.assert_allclose(drawn[-1, 0], 60.0)
+    state.housing = 300.15
+    _, ax = plt.subplots()
+    _draw_nodes(ax, run)
+    bars = [bar.get_height() for bar in ax.patches if isinstance(bar, Rectangle)]
+    np.testing.assert_allclose(bars, warming[-1, [1, 3, 0, 2]] - 273.15)
+    assert [t.get_text() for t in ax.get_xticklabels()] == ["A", "B"]
+    assert ax.lines[0].get_label() == "housing, 27"
+    plt.close("all")
+
+
+def test_all_shafts_are_drawn_in_one_frame_with_meshes_and_hands():
+    """The output shaft lies below the input, its wheel meets the pinion between."""
+    scene = read_shafts("shaft_gearbox")
+    power = power_flow(scene.system)
+    run = solved(scene, solution=SimpleNamespace(power=power))
+    _, (end, side) = plt.subplots(1, 2)
+    system_views(run, end, side)
+    assert end.get_title() == "All shafts, seen against z, to scale"
+    for ax, across in ((end, "x [mm]"), (side, "z [mm]")):
+        assert (ax.get_xlabel(), ax.get_ylabel()) == (across, "y [mm]")
+        words = [text.get_text() for text in ax.texts]
+        assert {"pinion, right 15°", "wheel, left 15°"} <= {*words}
+        assert ("A" in words) is (ax is side)
+        dots = [line for line in ax.lines if line.get_label() == "_mesh"]
+        places = np.array([np.ravel(dot.get_data()) for dot in dots], float)
+        # Where the centre distance of 190 mm is shared by 23 and 68 teeth.
+        np.testing.assert_allclose(places[:, 1], -190.0 * 23.0 / 91.0)
+    # The pinion to scale: 23 teeth of 4 mm at 15 degrees, 45 mm wide.
+    radius = 2.0 * 23 / np.cos(np.deg2rad(15.0))
+    sizes = [np.ptp(np.asarray(p.get_path().vertices), axis=0) for p in side.patches]
+    assert any(np.allclose(size, [45.0, 2.0 * radius]) for size in sizes)
     plt.close("all")
 
 

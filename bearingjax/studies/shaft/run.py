@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import textwrap
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -191,6 +192,17 @@ class ShaftRun:
         """Case of which a picture or a table is, in words; empty without cases."""
         count = len(self.task.cases)
         return f"case 0 of {count}" if self.duty is not None else ""
+
+    def case_words(self, case: int) -> str:
+        """Return the settings of a case in words, "hub.Fy -95 kN, drive.speed 26 rpm".
+
+        Args:
+            case: Number of the case.
+        """
+        given = self.task.settings[case].items()
+        ends = (".".join(key.split(".")[-2:]) for key, _ in given)
+        words = ", ".join(f"{k} {v}" for k, (_, v) in zip(ends, given, strict=True))
+        return textwrap.shorten(words, 90, placeholder=" …")
 
     @property
     def result(self) -> Result:
