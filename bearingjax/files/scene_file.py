@@ -128,10 +128,11 @@ def bearing_files(data: Mapping[str, Any], path: Path) -> list[Path]:
 
 
 def profile_files(data: Mapping[str, Any], path: Path) -> list[Path]:
-    """Return the files of form errors that a scene names; see `bearing_files`."""
-    table = data.get("deviations")
-    listed = table.get("profile") if isinstance(table, Mapping) else None
-    entries = listed if isinstance(listed, list) else []
+    """Return the files of form errors, and of a measurement, that a scene names; see
+    `bearing_files`."""
+    tables = (data.get("deviations"), "profile"), (data.get("vibration"), "measured")
+    found = [one.get(key) for one, key in tables if isinstance(one, Mapping)]
+    entries = [x for one in found for x in (one if isinstance(one, list) else [one])]
     names = [one.get("file") for one in entries if isinstance(one, Mapping)]
     return [path.parent / name for name in names if isinstance(name, str)]
 

@@ -31,7 +31,8 @@ Names
   `bandwidth`, `contact_states`, `ContactStates`.
 - Small and slow motion: `natural_modes`, `NaturalModes`, `ring_modes`, `linear_model`,
   `LinearModel`, `transfer`, `Transfer`, `excitation`, `Excitation`.
-- Spectra: `spectrum`, `Spectrum`, `Hann`, `Rectangular`, `AbstractWindow`.
+- Spectra: `spectrum`, `Spectrum`, `Hann`, `Rectangular`, `AbstractWindow`,
+  `envelope_spectrum`, `HIGH_BAND`.
 - Levels and bands: `level`, `acceleration_of`, `combine_levels`,
   `REFERENCE_ACCELERATION`, `octave_bands`, `third_octave_bands`, `Bands`,
   `band_levels`, `band_root_mean_square`, `band_shift`, `total_root_mean_square`.
@@ -58,6 +59,7 @@ from .contact_width import contact_half_width, with_bridged_waves
 from .dynamics.cage import GuidedCage
 from .dynamics.cage_contact import CageContact
 from .dynamics.contact_states import ContactStates, contact_states
+from .envelope import HIGH_BAND, envelope_spectrum
 from .level import REFERENCE_ACCELERATION, acceleration_of, combine_levels, level
 from .linear import LinearModel, Transfer, linear_model, transfer
 from .lines import Line, NameRule, PeakRule, name_lines
@@ -96,7 +98,8 @@ __all__ = [
     "needed_steps", "bandwidth", "contact_states", "ContactStates", "natural_modes",
     "NaturalModes", "ring_modes", "linear_model", "LinearModel", "transfer", "Transfer",
     "excitation", "Excitation", "spectrum", "Spectrum", "Hann", "Rectangular",
-    "AbstractWindow", "level", "acceleration_of", "combine_levels",
+    "AbstractWindow", "envelope_spectrum", "HIGH_BAND", "level", "acceleration_of",
+    "combine_levels",
     "REFERENCE_ACCELERATION", "octave_bands", "third_octave_bands", "Bands",
     "band_levels", "band_root_mean_square", "band_shift", "total_root_mean_square",
     "kinematic_frequencies", "KinematicFrequencies", "waviness_force", "WavinessForce",

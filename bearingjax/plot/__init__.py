@@ -14,8 +14,8 @@ Names
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
 - Half-space contacts: `contact_map`, `contact_surface`, `contact_stress`,
   `contact_line_load`, `centre_pressure`.
-- Noise: `acceleration_over_time`, `noise_spectrum`, `band_bars`, `contact_state_map`,
-  `level_distribution`, `source_bars`.
+- Noise: `acceleration_over_time`, `noise_spectrum`, `noise_envelope`, `band_bars`,
+  `contact_state_map`, `level_distribution`, `source_bars`.
 - Rotors: `campbell_diagram`, `mode_shapes`, `linear_curve`, `speed_curve`,
   `response_curve`, `orbits`, `waveforms`, `waterfall`.
 - Skidding over the orbit: `load_over_orbit`, `sliding_over_orbit`, `spin_over_orbit`,
@@ -40,6 +40,7 @@ from .noise import (
     band_bars,
     contact_state_map,
     level_distribution,
+    noise_envelope,
     noise_spectrum,
     source_bars,
 )
@@ -82,7 +83,8 @@ __all__ = [
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",
     "contact_stress", "contact_line_load", "centre_pressure", "acceleration_over_time",
-    "noise_spectrum", "band_bars", "contact_state_map", "level_distribution",
+    "noise_spectrum", "noise_envelope", "band_bars", "contact_state_map",
+    "level_distribution",
     "source_bars", "campbell_diagram", "mode_shapes", "linear_curve", "speed_curve",
     "response_curve", "orbits", "waveforms", "waterfall", "load_over_orbit",
     "sliding_over_orbit", "spin_over_orbit", "heat_over_orbit", "cage_force_over_orbit",

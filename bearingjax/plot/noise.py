@@ -55,6 +55,8 @@ def noise_spectrum(
     ax: Ax = None,
     *,
     reference: float = noise.REFERENCE_ACCELERATION,
+    measured: noise.Spectrum | None = None,
+    has_unit: bool = True,
 ) -> Axes:
     """Plot the level of every line of a spectrum, summed over directions.
 
@@ -62,11 +64,12 @@ def noise_spectrum(
         spectrum: Spectrum of the acceleration, amplitudes (line, ...) [m/s²].
         lines: From `name_lines`; the largest have their names.
         reference: Acceleration of 0 dB [m/s²]; levels are of root mean squares.
+        measured: Spectrum of a measured acceleration, on lines of its own.
+        has_unit: Whether its amplitudes are in m/s²; if not, its largest line is put at
+            the level of the largest calculated one.
     """
     ax = axes_or_new(ax)
-    frequency = np.asarray(spectrum.frequency)[1:]
-    amplitude = np.abs(np.asarray(spectrum.amplitude))[1:].reshape(len(frequency), -1)
-    size = np.sqrt((amplitude**2).sum(axis=1))
+    frequency, size = _sizes(spectrum)
 
     def decibel(peak):
         least = 1e-12 * size.max(initial=reference)
@@ -81,6 +84,16 @@ def noise_spectrum(
         decibel(np.array([line.amplitude for line in named])),
         "o", color=CURVES[1], ms=3.5, ls="none", label="_named",
     )  # fmt: skip
+    if measured is not None:
+        lines_there, there = _sizes(measured)
+        scale, word = 1.0, "measured"
+        if not has_unit:
+            scale, word = size.max() / there.max(), "measured, without unit"
+        others = decibel(scale * there)
+        ax.plot(lines_there, others, color=CURVES[1], lw=0.6, zorder=1.9, label=word)
+        ax.lines[0].set_label("calculated")
+        ax.legend(fontsize=SMALL, loc="upper left")
+        values = np.concatenate([values, others])
     top = float(values.max())
     bottom = max(float(np.percentile(values, 1)), top - 100.0)
     ax.set_ylim(bottom - 5.0, top + 0.5 * (top - bottom))
@@ -88,6 +101,46 @@ def noise_spectrum(
     ax.set_xlim(frequency[0], frequency[-1])
     _names(ax, named, decibel)
     finish(ax, "Spectrum", "frequency [Hz]", _level("level of lines", reference).label)
+    return ax
+
+
+def _sizes(spectrum):
+    """Return frequencies [Hz] and amplitudes over all directions, without the mean."""
+    there = np.asarray(spectrum.frequency) > 0.0
+    amplitude = np.abs(np.asarray(spectrum.amplitude))[there]
+    size = np.linalg.norm(amplitude.reshape(len(amplitude), -1), axis=1)
+    return np.asarray(spectrum.frequency)[there], size
+
+
+def noise_envelope(
+    spectrum: noise.Spectrum,
+    lines: Sequence[noise.Line] = (),
+    ax: Ax = None,
+    *,
+    band: Sequence[float] | None = None,
+) -> Axes:
+    """Plot the spectrum of an envelope, over all directions [m/s²].
+
+    Args:
+        spectrum: From `envelope_spectrum`.
+        lines: From `name_lines`; the largest have their names.
+        band: Lower and upper frequency of the band, for the title [Hz].
+    """
+    ax = axes_or_new(ax)
+    frequency, size = _sizes(spectrum)
+    ax.plot(frequency, size, color=CURVES[0], lw=0.6, label="_envelope")
+    named = sorted(lines, key=lambda line: -line.amplitude)
+    named = [line for line in named if line.name != UNNAMED][:_NAMED]
+    at = [line.frequency for line in named], [line.amplitude for line in named]
+    ax.plot(*at, "o", color=CURVES[1], ms=3.5, label="_named")
+    ends = (line.frequency for line in lines)
+    ax.set_xlim(0.0, 1.1 * max(ends, default=frequency[-1] / 1.1))
+    ax.set_ylim(0.0, 1.6 * size[frequency <= ax.get_xlim()[1]].max() or 1.0)
+    _names(ax, named, lambda amplitude: amplitude)
+    title = "Spectrum of the envelope"
+    if band is not None:
+        title += f" of {band[0]:.5g} to {band[1]:.5g} Hz"
+    finish(ax, title, "frequency [Hz]", "amplitude of lines [m/s²]")
     return ax
 
 
@@ -100,8 +153,10 @@ def _names(ax, lines, decibel):
     if not lines:
         return
     lines = sorted(lines, key=lambda line: line.frequency)
-    low, high = np.log(ax.get_xlim())
-    place = np.array([(np.log(line.frequency) - low) / (high - low) for line in lines])
+    along = ax.transScale.transform  # on a logarithmic axis or another
+    (low, _), (high, _) = along([(x, 1.0) for x in ax.get_xlim()])
+    at = along([(line.frequency, 1.0) for line in lines])[:, 0]
+    place = (at - low) / (high - low)
     apart = 0.045
     shown = place.copy()
     for k in range(1, len(shown)):
@@ -109,13 +164,11 @@ def _names(ax, lines, decibel):
     shown -= max(0.0, shown[-1] - 0.97)
     for k in range(len(shown) - 2, -1, -1):
         shown[k] = min(shown[k], shown[k + 1] - apart)
-    floor, ceiling = ax.get_ylim()
-    height = floor + 0.72 * (ceiling - floor)
     for line, x in zip(lines, shown, strict=True):
         ax.annotate(
             line.name,
             (line.frequency, float(decibel(line.amplitude))),
-            (np.exp(low + x * (high - low)), height),
+            (x, 0.72), textcoords="axes fraction",
             rotation=90, fontsize=SMALL - 1.0, ha="center", va="bottom",
             arrowprops={"arrowstyle": "-", "color": "0.6", "lw": 0.6},
         )  # fmt: skip

@@ -7,6 +7,7 @@ from .noise import (
     band_bars,
     contact_state_map,
     level_distribution,
+    noise_envelope,
     noise_spectrum,
     source_bars,
 )
@@ -14,9 +15,10 @@ from .style import Figure, head, new_page
 
 
 def noise_overview(run: Any, title: str = "") -> Figure:
-    """Plot record, spectrum with named lines, bands and contact states on one page.
+    """Plot record, spectrum, bands, contact states and envelope on one page.
 
-    Of random bearings also the distribution of their levels, and what makes it.
+    A measured spectrum stands beside the calculated one along the sensor. Of random
+    bearings also the distribution of their levels, and what makes it.
 
     Args:
         run: Results of a scene of noise, with a record.
@@ -25,22 +27,30 @@ def noise_overview(run: Any, title: str = "") -> Figure:
     Returns:
         The figure, 15 inches wide.
     """
-    task, analysis = run.task, run.analysis
-    rows = 2 if run.many is None else 3
+    task, analysis, many = run.task, run.analysis, run.many
+    rows = 3 if many is None else 4
     figure = new_page(15.0, 4.8 * rows)
-    axes = figure.subplots(rows, 2)
-    acceleration_over_time(analysis.record, axes[0, 0])
-    reference = task.reference
-    noise_spectrum(analysis.spectrum, analysis.lines, axes[0, 1], reference=reference)
-    band_bars(
-        task.bands, analysis.band_level, axes[1, 0], norm=task.norm, reference=reference
+    across: Any = [figure.add_subplot(rows, 2, k) for k in (1, 2, 3, 4)]
+    given = {"reference": task.reference}
+    acceleration_over_time(analysis.record, across[0])
+    noise_spectrum(analysis.spectrum, analysis.lines, across[1], **given)
+    band_bars(task.bands, analysis.band_level, across[2], norm=task.norm, **given)
+    contact_state_map(analysis.record, analysis.states, across[3])
+    measured, sensor = task.measured, task.model.sensor
+    ax = figure.add_subplot(rows, 1 if measured is None else 2, 3 + 2 * bool(measured))
+    noise_envelope(
+        analysis.envelope, analysis.envelope_lines, ax, band=analysis.envelope_band
     )
-    contact_state_map(analysis.record, analysis.states, axes[1, 1])
-    if run.many is not None:
-        level_distribution(run.many.levels.level, axes[2, 0], reference=reference)
-        if run.many.contributions is None:
-            axes[2, 1].set_axis_off()
-        else:
-            source_bars(run.many.contributions, axes[2, 1])
+    if measured is not None:
+        ax = figure.add_subplot(rows, 2, 6)
+        beside = {"measured": measured.spectrum, "has_unit": measured.has_unit}
+        noise_spectrum(run.heard, (), ax, **beside, **given)
+        along = "the loudest axis" if sensor is None else "the sensor"
+        ax.set_title(f"Calculated along {along}, and {measured.name}", parse_math=False)
+    if many is not None:
+        level = many.levels.level
+        level_distribution(level, figure.add_subplot(rows, 2, 7), **given)
+        if many.contributions is not None:
+            source_bars(many.contributions, figure.add_subplot(rows, 2, 8))
     head(figure, title or "Noise")
     return figure

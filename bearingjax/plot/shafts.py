@@ -83,7 +83,8 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         if place + 1 == across or k + 1 == len(shown):
             zone_legend(ax, list(named.values()), list(named))
     if warm:
-        _draw_nodes(figure.add_subplot(grid[n_shafts + rows, 9:]), run)
+        left = 0 if run.warming is None else 9
+        _draw_nodes(figure.add_subplot(grid[n_shafts + rows, left:]), run)
     if run.warming is not None:
         _draw_warm_up(figure.add_subplot(grid[n_shafts + rows, :8]), run)
     case = f"{run.shown_case}: {run.case_words(0)}" if run.shown_case else ""

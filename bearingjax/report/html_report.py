@@ -70,7 +70,8 @@ table.grid { width: auto; margin: .5rem 0 }
   table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
   figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
   tr:has(th[scope=colgroup]) { break-after: avoid }
-  .wide { page: wide; break-after: page } .scroll { overflow: visible; max-height: none }
+  .wide { page: wide; break-after: page }
+  .scroll { overflow: visible; max-height: none }
   .cases th, .cases td { font-size: 6pt; padding-right: 1.5mm; white-space: normal }
 }
 """

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tolerances import DIFFERENCE, ROUNDING
 
-from bearingjax.noise import Hann, Rectangular, spectrum
+from bearingjax.noise import Hann, Rectangular, envelope_spectrum, spectrum
 
 N, TURNS, SHAFT = 64, 4, 25.0
 DURATION = TURNS / SHAFT
@@ -184,3 +184,32 @@ def test_spectrum_rejects_invalid_records():
 def test_spectrum_rejects_unknown_window(untyped):
     with pytest.raises(TypeError, match="`window` is 'hann'"):
         spectrum(record(), DURATION, SHAFT, window="hann")  # type: ignore
+
+
+def test_envelope_of_a_modulated_carrier_has_the_line_of_its_modulation():
+    """Of a (1 + m cos) times a carrier, beside a strong line outside of the band."""
+    count, duration, carrier, strikes = 512, 2.0, 60.0, 7.0
+    time = duration * np.arange(count) / count
+    swell = np.stack([1 + 0.4 * np.cos(2 * np.pi * strikes * time), 1 + 0 * time], 1)
+    ringing = np.array([3.0, 0.5]) * swell * np.cos(2 * np.pi * carrier * time)[:, None]
+    signal = ringing + 9.0 * np.cos(2 * np.pi * 20.0 * time)[:, None] + 5.0
+    found = envelope_spectrum(signal, duration, SHAFT, (50.0, 70.0))
+    size = np.abs(np.asarray(found.amplitude))
+    expected = np.zeros_like(size)
+    expected[0], expected[round(strikes * duration), 0] = [3.0, 0.5], 1.2
+    np.testing.assert_allclose(size, expected, atol=1e-12)
+    # Between the lines of the record, with Hann's window away from the ends.
+    duration = 2.03
+    time = duration * np.arange(count) / count
+    signal = (1 + 0.4 * np.cos(2 * np.pi * strikes * time)) * np.cos(377.0 * time)
+    given = signal, duration, SHAFT, (45.0, 75.0)
+    size = np.abs(np.asarray(envelope_spectrum(*given, window=Hann()).amplitude))
+    near = round(strikes * duration)
+    _, gain = Hann().peak(*size[near - 1 : near + 2])
+    assert gain * size[near] == pytest.approx(0.4, rel=0.01)
+
+
+@pytest.mark.parametrize("band", [(70.0, 50.0), (0.0, 50.0), (50.0, 129.0)])
+def test_envelope_spectrum_rejects_bands_outside_of_the_record(band):
+    with pytest.raises(ValueError, match="`band` is .* rising .* up to 128 Hz"):
+        envelope_spectrum(np.ones(512), 2.0, SHAFT, band)

@@ -12,6 +12,7 @@ from bearingjax.noise import (
     Line,
     Vibration,
     contact_states,
+    envelope_spectrum,
     octave_bands,
     spectrum,
 )
@@ -67,6 +68,39 @@ def test_noise_spectrum_shows_levels_and_line_names():
     assert [text.get_text() for text in ax.texts] == ["cage", "2 BPFO"]
     assert ax.get_ylabel() == "level of lines [dB over 1e-06 m/s²]"
     assert ax.get_xscale() == "log" and ax.get_xlabel() == "frequency [Hz]"
+
+
+@pytest.mark.parametrize("has_unit", [True, False])
+def test_noise_spectrum_shows_a_measured_one_on_its_own_lines(has_unit):
+    """At its level, or without unit at that of the largest calculated line."""
+    found = record()
+    own = np.asarray(found.acceleration)
+    lines = spectrum(own, found.duration, 25.0, window=Hann())
+    there = spectrum(0.1 * own[:250], 0.05, 25.0, window=Hann())
+    ax = plot.noise_spectrum(lines, measured=there, has_unit=has_unit)
+    curves = {line.get_label(): line for line in ax.lines}
+    word = "measured" if has_unit else "measured, without unit"
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == ["calculated", word]
+    above = (np.asarray(curves[w].get_ydata()).max() for w in ("calculated", word))
+    (apart,) = np.diff([*above])
+    assert apart == pytest.approx(-20.0 if has_unit else 0.0, abs=1.5 * has_unit)
+    assert np.asarray(curves[word].get_xdata())[0] == pytest.approx(20.0)
+
+
+def test_noise_envelope_names_its_lines():
+    count = 512
+    time = np.arange(count) / count
+    signal = (1 + 0.5 * np.cos(2 * np.pi * 9 * time)) * np.cos(2 * np.pi * 99 * time)
+    found = envelope_spectrum(signal, 1.0, 4.0, (80.0, 120.0))
+    ax = plot.noise_envelope(found, [Line(2.25, 9.0, 0.5, "BPFO")], band=(80.0, 120.0))
+    assert [text.get_text() for text in ax.texts] == ["BPFO"]
+    assert ax.get_title() == "Spectrum of the envelope of 80 to 120 Hz"
+    assert ax.get_xlim() == pytest.approx((0.0, 9.9))
+    (curve,) = (line for line in ax.lines if line.get_label() == "_envelope")
+    assert np.asarray(curve.get_ydata())[8] == pytest.approx(0.5)
+    silent = envelope_spectrum(0.0 * signal, 1.0, 4.0, (80.0, 120.0))
+    assert not plot.noise_envelope(silent).texts
 
 
 def test_names_of_near_lines_do_not_lie_on_each_other():

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import re
 import wave
 
 import jax
@@ -257,6 +258,94 @@ def test_a_profile_from_a_file(tmp_path):
         read_noise(path)
 
 
+def write_wav(path, samples, rate=6400):
+    from scipy.io import wavfile
+
+    wavfile.write(path, rate, samples)
+
+
+SAMPLES = 2.0 * np.cos(2 * np.pi * 50.0 * np.arange(640) / 6400)
+"""Of 5 periods of 50 Hz [m/s²]."""
+
+
+def columns(head, *values):
+    rows = "\n".join(
+        ",".join(f"{x:.10g}" for x in row) for row in zip(*values, strict=True)
+    )
+    return f"{head}\n{rows}\n"
+
+
+@pytest.mark.parametrize(
+    "kind", ["csv", "spectrum", "16 bit", "8 bit", "float", "bare"]
+)
+def test_measured_line_has_its_frequency_and_amplitude(kind, tmp_path):
+    path, told = tmp_path / "run.wav", {"full_scale": "'4 m/s^2'"}
+    if kind == "csv":
+        path, told = tmp_path / "run.csv", {}
+        time = 0.3 + np.arange(641) / 6400  # one more than an even number
+        values = np.append(SAMPLES, 2.0)
+        path.write_text(columns("time [ms],acceleration [m/s^2]", 1e3 * time, values))
+    elif kind == "spectrum":
+        path, told = tmp_path / "run.csv", {}
+        lines = [0.0, 40.0, 50.0, 60.0], [0.0, 0.0, 200.0, 0.0]
+        path.write_text(columns("frequency [Hz],amplitude [cm/s^2]", *lines))
+    elif kind == "float":
+        write_wav(path, np.stack([0 * SAMPLES, SAMPLES / 4.0], 1).astype(np.float32))
+        told["channel"] = "1"
+    elif kind == "8 bit":
+        write_wav(path, np.round(128 + 32 * SAMPLES).astype(np.uint8))
+    else:
+        write_wav(path, np.round(8192 * SAMPLES).astype(np.int16))
+        told = {} if kind == "bare" else told
+    settings = [f"vibration.measured.{key}={value}" for key, value in told.items()]
+    given = [f"vibration.measured.file='{path}'", "vibration.window=hann", *settings]
+    scene = read_noise("noise_deep_groove", given)
+    found = scene.measured
+    assert found is not None and found.name == path.name
+    size = np.abs(np.asarray(found.spectrum.amplitude))
+    k = int(np.argmax(size))
+    assert found.spectrum.frequency[k] == pytest.approx(50.0)
+    assert found.has_unit is (kind != "bare")
+    assert size[k] == pytest.approx(2.0 if found.has_unit else 0.5, rel=2e-3)
+    assert scene.inputs["vibration"]["measured"]["file"] == str(path)
+    assert path in scene_files("noise_deep_groove", given)
+
+
+BAD_RECORDS = {
+    "few": (columns("time [s],acceleration [m/s^2]", [0, 1], [1, 2]), "has 2 samples"),
+    "uneven": (
+        columns("time [s],acceleration [m/s^2]", np.arange(99) ** 1.1, np.arange(99)),
+        "time steps are uneven, as at row",
+    ),
+    "no number": ("time [s],acceleration [m/s^2]\n0,nan\n", "is not a finite number"),
+    "unknown unit": ("time [s],acceleration [V]\n0,1\n", "the unit of acceleration"),
+    "no unit": ("time,acceleration [m/s^2]\n0,1\n", "time has no unit"),
+    "other columns": ("time [s],level [dB]\n0,1\n", "must have the columns"),
+    "falling": ("frequency [Hz],amplitude [m/s^2]\n9,1\n5,1\n", "frequencies must"),
+}
+
+
+@pytest.mark.parametrize("name", [*BAD_RECORDS, "no WAV", "stereo", "nan", "none"])
+def test_read_noise_rejects_measured_file(name, tmp_path):
+    path = tmp_path / "run.csv"
+    if name in BAD_RECORDS:
+        text, told = BAD_RECORDS[name]
+        path.write_text(text, encoding="utf-8")
+    else:
+        path = tmp_path / "run.wav"
+        told = "is no WAV file that can be read"
+        if name == "stereo":
+            write_wav(path, np.zeros((99, 2), np.int16))
+            told = "`vibration.measured.channel`: must be one of 0 to 1, the channels"
+        elif name == "nan":
+            write_wav(path, np.full(99, np.nan, np.float32))
+            told = "has samples that are no numbers"
+        elif name == "no WAV":
+            path.write_text("no sound")
+    with pytest.raises(SceneError, match=re.escape(told)):
+        read_noise("noise_deep_groove", [f"vibration.measured.file='{path}'"])
+
+
 # Of the command.
 
 # Seven balls, one turn: what all tests here share is compiled once.
@@ -503,6 +592,29 @@ def test_noise_model_warnings(scene):
     assert len(list(_short_waves(task.model, load, task.tolerances))) == 2
     *_, outer, inner = model_warnings(task.model, 64, 99, task.tolerances)
     assert "order 900 of the outer raceway" in outer and "inner raceway" in inner
+
+
+@pytest.mark.slow
+def test_measured_record_beside_the_calculated_one(run, scene, tmp_path):
+    (tmp_path / "run.csv").write_text(
+        columns("time [s],acceleration [m/s^2]", np.arange(640) / 6400, SAMPLES)
+    )
+    out, page, plot = (tmp_path / name for name in ("a.json", "a.html", "a.png"))
+    given = (
+        "vibration.measured.file='run.csv'",
+        "vibration.envelope_band=['9e2 Hz','1 kHz']",
+    )
+    files = "--json", out, "--report", page, "--plot", plot
+    done = run("noise", scene, *(x for one in given for x in ("--set", one)), *files)
+    assert done.status == 0, done.err
+    found = read(out)
+    assert found["envelope"]["band"] == pytest.approx([900.0, 1000.0])
+    level = 20.0 * np.log10(np.sqrt(2.0) / 0.31e-4)  # of a sine of 2 m/s²
+    assert found["measured"]["level"] == pytest.approx(level)
+    assert len(found["measured"]["band_level"]) == 12
+    words = "run.csv: a record at 6400 Hz, of the same window and reference; its lines"
+    assert words in done.out and words in page.read_text(encoding="utf-8")
+    assert plot.stat().st_size > 0
 
 
 def test_noise_of_a_mass_in_words(run, scene):

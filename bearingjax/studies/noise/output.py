@@ -24,7 +24,9 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         direction), null where the record does not cover the band; `lines`: each with
         `order`, `frequency`, `amplitude`, `name`, and `causes`, the form errors that
         excite it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
-        with that many, of all elements together, `switches_per_turn`; `reference`.
+        with that many, of all elements together, `switches_per_turn`; `reference`;
+        `envelope`: `band` [Hz], `mean` of the envelope and its `lines`, without causes.
+        Of a measured record in m/s² `measured`: `level` and `band_level` [dB].
         Of random bearings `monte_carlo`: `level` (bearing, direction), `band_level`
         (bearing, band, direction), null of unsolved ones; `percentile`: `share` [%]
         and `level` (share, direction); `sources` of the scatter with the `part` of the
@@ -51,7 +53,7 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
 def _analysis(run: NoiseRun) -> dict[str, Any]:
     analysis = run.analysis
     assert analysis is not None  # checked by the caller
-    states = analysis.states
+    states, measured = analysis.states, analysis.measured_level
     return {
         "direction": DIRECTIONS,
         "time": analysis.record.time,
@@ -69,6 +71,16 @@ def _analysis(run: NoiseRun) -> dict[str, Any]:
             "switches_per_turn": states.switches_per_turn,
         },
         "reference": run.task.reference,
+        "envelope": {
+            "band": analysis.envelope_band,
+            "mean": np.linalg.norm(analysis.envelope.amplitude[0]),
+            "lines": [line._asdict() for line in analysis.envelope_lines],
+        },
+        **(
+            {}
+            if measured is None
+            else {"measured": dict(level=measured[0], band_level=measured[1:])}
+        ),
     }
 
 
@@ -123,22 +135,8 @@ def noise_columns(run: NoiseRun) -> dict[str, np.ndarray]:
     return columns
 
 
-def loudest_direction(run: NoiseRun) -> np.ndarray:
-    """Return the unit vector of the measurement: of the sensor, or the loudest axis.
-
-    Args:
-        run: From `run_noise`, converged.
-    """
-    sensor = run.task.model.sensor
-    if sensor is not None:
-        direction = np.asarray(sensor.direction)
-        return direction / np.linalg.norm(direction)
-    assert run.analysis is not None
-    return np.eye(len(DIRECTIONS))[int(np.argmax(run.analysis.level))]
-
-
 def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
-    """Write the acceleration along `loudest_direction` as sound.
+    """Write the acceleration along `NoiseRun.direction` as sound.
 
     Args:
         path: Path of the WAV file.
@@ -151,5 +149,5 @@ def write_noise_sound(path: str | Path, run: NoiseRun) -> float:
         OSError: If the file cannot be written.
     """
     assert run.analysis is not None
-    along = run.analysis.acceleration @ loudest_direction(run)
+    along = run.analysis.acceleration @ run.direction
     return write_sound(path, along, float(run.analysis.record.duration))

@@ -19,6 +19,7 @@ from ...noise.level import NORM
 from ...numerics.warning import Warning
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
 from .read_deviations import read_deviations
+from .read_measured import MeasuredKeys, Measurement, read_measured
 from .read_tolerance import Tighter, ToleranceKeys, read_tolerance
 
 BANDS = {"octave": noise.octave_bands, "third_octave": noise.third_octave_bands}
@@ -79,6 +80,15 @@ class VibrationKeys(Keys):
     window: str = scene_key(
         "window of the spectrum", choices=tuple(WINDOWS), default="hann"
     )
+    envelope_band: tuple[float, ...] | None = scene_key(
+        "lower and upper frequency of the band whose envelope is shown",
+        "frequency",
+        above=0,
+        otherwise="1.8 to 10 kHz, the high band of ISO 15242, within the record",
+    )
+    measured: MeasuredKeys | None = scene_key(
+        "measured acceleration along the sensor, shown beside the calculated one"
+    )
     tolerance: ToleranceKeys | None = scene_key(
         "how bearings off the line scatter, for `--monte-carlo`"
     )
@@ -92,6 +102,10 @@ class VibrationKeys(Keys):
             number = f"{turns} turns of {self.samples} are too many"
             problem = f"{number}; at most {MOST_SAMPLES} samples"
             raise self.table.error("samples", problem)
+        band = self.envelope_band
+        if band is not None and not (len(band) == 2 and band[0] < band[1]):
+            problem = "must be two rising frequencies"
+            raise self.table.error("envelope_band", problem)
         if self.norm is None:
             return
         if self.bands != "octave":
@@ -126,6 +140,7 @@ class NoiseScene:
             sources [1].
         seed: Seed of the random bearings.
         bearings: Number of random bearings.
+        measured: Measured acceleration, or `None`.
         warnings: Warnings of suspicious but possible values.
         inputs: The scene as it was read, all quantities in SI (`Scene.inputs`).
     """
@@ -138,6 +153,7 @@ class NoiseScene:
     tighter: Tighter
     seed: int
     bearings: int
+    measured: Measurement | None
     warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict)
 
@@ -166,6 +182,18 @@ class NoiseScene:
     def window(self) -> noise.AbstractWindow:
         """Window of the spectrum."""
         return WINDOWS[self.vibration.window]()
+
+    def envelope_band(self, highest: float) -> tuple[float, float]:
+        """Return the band whose envelope is shown [Hz].
+
+        Args:
+            highest: Frequency up to which the record is true [Hz].
+        """
+        if self.vibration.envelope_band is not None:
+            low, high = np.array(self.vibration.envelope_band) / (2.0 * np.pi)
+            return float(low), float(high)
+        low, high = noise.HIGH_BAND
+        return min(low, 0.5 * highest), min(high, highest)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -228,6 +256,16 @@ def read_noise(
     tolerances, tighter = (
         (None, ()) if random is None else read_tolerance(random, bearing)
     )
+    shaft = float(model.shaft_speed) / (2.0 * np.pi)
+    most = noise.bandwidth(vibration.samples, shaft)
+    band = vibration.envelope_band
+    if band is not None and band[1] > 2.0 * np.pi * most:
+        problem = f"ends above {most:.5g} Hz, the highest of `samples` = "
+        problem += f"{vibration.samples} a turn"
+        raise vibration.table.error("envelope_band", problem)
+    measured = vibration.measured and read_measured(
+        vibration.measured, path.parent, shaft, WINDOWS[vibration.window]()
+    )
     vibration.table.finish()
     inertia = model.inertia
     vibration = vibration.with_defaults(
@@ -244,6 +282,7 @@ def read_noise(
         tighter=tighter,
         seed=0 if random is None else random.seed,
         bearings=bearings,
+        measured=measured,
         warnings=scene.warnings,
     )
     own = {"deviations": deviations.echo(), "vibration": vibration.table.echo()}

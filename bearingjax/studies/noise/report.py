@@ -27,6 +27,8 @@ def noise_report(run: NoiseRun) -> Report:
         "Natural modes": [_modes(run)],
         "Levels": [_levels(run)],
         "Lines": _lines(run),
+        "Envelope": [_envelope(run.analysis)],
+        "Measured": [] if run.task.measured is None else [_measured(run)],
         "Contacts": [_states(run)],
         "Random bearings": [] if run.many is None else _random_bearings(run),
     }
@@ -77,6 +79,8 @@ def _levels(run):
     bands = [f"{centre:g} Hz" for centre in task.bands.centre]
     levels = np.vstack([analysis.level, analysis.band_level])
     columns = [Column("band", ["all", *bands]), *_by_direction(levels)]
+    if analysis.measured_level is not None:
+        columns.append(Column("measured", analysis.measured_level, "dB", ".1f"))
     if task.norm is not None:
         columns.append(Column("norm", [None, *task.norm], "dB", ".1f"))
     return Grid(columns, f"level over {task.reference:.3g} m/s²")
@@ -103,10 +107,7 @@ def _lines(run):
     lines = [line for line, _ in largest]
     made = ["; ".join(c[:2]) + ("; …" if len(c) > 2 else "") for _, c in largest]
     columns = [
-        Column("frequency", [line.frequency for line in lines], "Hz"),
-        Column("order", [line.order for line in lines], "", ".4g"),
-        Column("amplitude", [line.amplitude for line in lines], "m/s²", ".4g"),
-        Column("line", [line.name for line in lines]),
+        *_columns_of(lines),
         Column("made by, to first order", [words or "-" for words in made]),
     ]
     title = (
@@ -114,6 +115,41 @@ def _lines(run):
         " of the mean square in all directions"
     )
     return [Grid(columns, title)]
+
+
+def _columns_of(lines):
+    return [
+        Column("frequency", [line.frequency for line in lines], "Hz"),
+        Column("order", [line.order for line in lines], "", ".4g"),
+        Column("amplitude", [line.amplitude for line in lines], "m/s²", ".4g"),
+        Column("line", [line.name for line in lines]),
+    ]
+
+
+def _envelope(analysis):
+    """Tabulate the largest lines of the envelope."""
+    low, high = analysis.envelope_band
+    words = f"envelope of {low:.5g} to {high:.5g} Hz"
+    lines = sorted(analysis.envelope_lines, key=lambda line: -line.amplitude)
+    if not lines:
+        return f"{words}: no line stands out"
+    mean = np.linalg.norm(analysis.envelope.amplitude[0])
+    title = f"{words}, mean {mean:.4g} m/s²: largest lines"
+    return Grid(_columns_of(lines[: LARGEST_LINES // 2]), title)
+
+
+def _measured(run):
+    """Say what the measured spectrum is of."""
+    measured, found = run.task.measured, run.analysis.spectrum
+    words = f"a spectrum of {len(measured.spectrum.frequency)} lines"
+    if measured.rate:
+        wide, own = (float(x.noise_bandwidth) for x in (measured.spectrum, found))
+        words = f"a record at {measured.rate:.5g} Hz, of the same window and reference;"
+        words += f" its lines are {wide:.3g} Hz wide, the calculated ones {own:.3g} Hz"
+    if not measured.has_unit:
+        words += "; without `full_scale` it has no unit: its largest line is drawn at"
+        words += " the level of the largest calculated one"
+    return f"{measured.name}: {words}"
 
 
 def _states(run):

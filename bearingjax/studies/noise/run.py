@@ -5,6 +5,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
+import equinox as eqx
 import jax
 import numpy as np
 from jaxtyping import Float
@@ -27,6 +28,7 @@ from ...noise import (
     band_levels,
     contact_states,
     contribution_warnings,
+    envelope_spectrum,
     level,
     line_causes,
     model_warnings,
@@ -69,6 +71,12 @@ class NoiseAnalysis:
         lines: Prominent spectral lines.
         causes: Possible causes of each line.
         states: Contact states of the rolling elements.
+        envelope: Spectrum of the envelope of the acceleration in a band, amplitudes
+            (line, direction) [m/s²].
+        envelope_band: Lower and upper frequency of the band [Hz].
+        envelope_lines: Its prominent lines, up to the order of names.
+        measured_level: Level of a measured record in m/s², then of each band of it
+            (1 + band,) [dB]; `None` without one.
     """
 
     record: Vibration
@@ -78,6 +86,10 @@ class NoiseAnalysis:
     lines: tuple[Line, ...]
     causes: tuple[tuple[str, ...], ...]
     states: ContactStates
+    envelope: Spectrum
+    envelope_band: tuple[float, float]
+    envelope_lines: tuple[Line, ...]
+    measured_level: Float[np.ndarray, " level"] | None
 
     @property
     def acceleration(self) -> np.ndarray:
@@ -127,6 +139,24 @@ class NoiseRun:
     def converged(self) -> bool:
         """Whether all parts were solved."""
         return self.result is Result.CONVERGED
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector of the measurement: of the sensor, or the loudest axis."""
+        sensor = self.task.model.sensor
+        if sensor is not None:
+            direction = np.asarray(sensor.direction)
+            return direction / np.linalg.norm(direction)
+        assert self.analysis is not None
+        return np.eye(len(DIRECTIONS))[int(np.argmax(self.analysis.level))]
+
+    @property
+    def heard(self) -> Spectrum:
+        """Spectrum of the acceleration along `direction` (line,) [m/s²]."""
+        assert self.analysis is not None
+        found = self.analysis.spectrum
+        along = found.amplitude @ self.direction
+        return eqx.tree_at(lambda one: one.amplitude, found, along)
 
     def to_xarray(self) -> Any:
         """Return spectrum and levels of the record and the natural modes, with "mode"
@@ -270,18 +300,22 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     # Unequal rolling elements excite many harmonics of the cage rotation.
     largest = max(row.bearing.n_elements for row in rows_of(bearing))
     harmonics = max(10, 6 * largest)
+    names = NameRule(harmonics)
+    peaks = PeakRule(floor=rounding(task.model, record), largest=LARGEST_LINES)
+    rules: Any = {"names": names, "peaks": peaks}
     natural = dict(ring_modes(modes, task.model))
-    lines = name_lines(
-        found,
-        bearing,
-        speed,
-        natural=natural,
-        names=NameRule(harmonics),
-        peaks=PeakRule(floor=rounding(task.model, record), largest=LARGEST_LINES),
-    )
+    lines = name_lines(found, bearing, speed, natural=natural, **rules)
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
     highest = float(record.bandwidth)
     of_bands = band_levels(found, task.bands, task.reference, highest)
+    band = task.envelope_band(highest)
+    envelope = in_numpy(envelope_spectrum(*given, band, window=task.window))
+    struck = name_lines(envelope, bearing, speed, **rules)
+    known, levels = task.measured, None
+    if known is not None and known.rate and known.has_unit:
+        total = level(total_root_mean_square(known.spectrum), task.reference)
+        bands = band_levels(known.spectrum, task.bands, task.reference)
+        levels = np.append(total, bands)
     return NoiseAnalysis(
         record=record,
         spectrum=found,
@@ -290,4 +324,8 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         lines=lines,
         causes=causes,
         states=contact_states(record),
+        envelope=envelope,
+        envelope_band=band,
+        envelope_lines=tuple(line for line in struck if line.order <= harmonics),
+        measured_level=levels,
     )
