@@ -59,7 +59,6 @@ from .contact_width import contact_half_width, with_bridged_waves
 from .dynamics.cage import GuidedCage
 from .dynamics.cage_contact import CageContact
 from .dynamics.contact_states import ContactStates, contact_states
-from .envelope import HIGH_BAND, envelope_spectrum
 from .level import REFERENCE_ACCELERATION, acceleration_of, combine_levels, level
 from .linear import LinearModel, Transfer, linear_model, transfer
 from .lines import Line, NameRule, PeakRule, name_lines
@@ -87,7 +86,15 @@ from .source_contributions import (
     SourceContributions,
     source_contributions,
 )
-from .spectrum import AbstractWindow, Hann, Rectangular, Spectrum, spectrum
+from .spectrum import (
+    HIGH_BAND,
+    AbstractWindow,
+    Hann,
+    Rectangular,
+    Spectrum,
+    envelope_spectrum,
+    spectrum,
+)
 from .static_start import static_start
 from .vibration import CageMotion, Vibration, bandwidth, needed_steps, vibration
 from .warning import contribution_warnings, model_warnings, record_warnings

@@ -11,7 +11,7 @@ from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
 from .rotors.rotor import rotor_section
-from .shaft_views import placed_shafts, system_views
+from .rotors.shaft_views import placed_shafts, system_views
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white, write
 
 _ACROSS = 4

@@ -15,7 +15,7 @@ from runs import SEARCH, WORDS, Runs, Study
 import bearingjax as bj
 from bearingjax.files import SceneError
 from bearingjax.numerics.result import Result
-from bearingjax.plot.shaft_views import system_views
+from bearingjax.plot.rotors.shaft_views import system_views
 from bearingjax.plot.shafts import _draw_nodes, _draw_warm_up
 from bearingjax.report.report_model import Grid
 from bearingjax.shafts import DutyResult, power_flow

@@ -1,1 +1,1 @@
-"""Pictures of rotors."""
+"""Pictures of rotors, and of whole systems of shafts."""

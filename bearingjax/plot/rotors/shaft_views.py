@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from .style import GREY, INNER, OUTER, Axes, faded, write_beside
+from ..style import GREY, INNER, OUTER, Axes, faded, write_beside
 
 _AXES = "xyz"
 
