@@ -10,6 +10,7 @@ from ..numerics.gravity import GRAVITY
 from ..numerics.units import CELSIUS
 from ..rotor import BearingSupport, LinearSupport, Rotor
 from .load import load_zone, zone_legend
+from .panel import Axis, Bars, Panel
 from .rotors.rotor import rotor_section
 from .rotors.shaft_views import placed_shafts, system_views
 from .style import GREY, INNER, OUTER, Figure, head, pyplot, towards_white, write
@@ -107,24 +108,21 @@ def _draw_warm_up(ax, run):
 
 def _draw_nodes(ax, run):
     """Plot the temperatures of rings, and of the housing, in equilibrium."""
-    warm = run.thermal
-    known = [
-        k for k, seat in enumerate(run.task.system.seats) if seat.installed is not None
+    warm, seats = run.thermal, run.task.system.seats
+    known = [k for k, seat in enumerate(seats) if seat.installed is not None]
+    outer, inner = (
+        np.asarray(x)[known] - CELSIUS for x in (warm.outer_ring, warm.inner_ring)
+    )
+    marks = [
+        Bars(outer, "outer ring", OUTER, -0.2, 0.4, "%.0f"),
+        Bars(inner, "inner ring", INNER, 0.2, 0.4, "%.0f"),
     ]
-    for away, name, values, colour in (
-        (-0.2, "outer ring", warm.outer_ring, OUTER),
-        (0.2, "inner ring", warm.inner_ring, INNER),
-    ):
-        high = np.asarray(values)[known] - CELSIUS
-        bars = ax.bar(np.arange(len(known)) + away, high, 0.4, color=colour, label=name)
-        ax.bar_label(bars, fmt="%.0f", fontsize="small")
     housing = float(warm.housing) - CELSIUS
     ax.axhline(housing, color=GREY, ls="--", label=f"housing, {housing:.0f}")
-    ax.set_xticks(range(len(known)), [run.task.system.seats[k].name for k in known])
-    ax.margins(y=0.3)
-    ax.set_ylabel("temperature [°C]")
-    ax.set_title("Temperatures in equilibrium")
-    ax.legend(fontsize="small", ncols=3, loc="upper left")
+    across, up = Axis("bearing"), Axis("temperature", "", (1.0, "°C"))
+    names = [seats[k].name for k in known]
+    title, legend = "Temperatures in equilibrium", {"ncols": 3, "loc": "upper left"}
+    Panel(title, across, up, marks, room=0.2, names=names, legend=legend).draw(ax)
 
 
 def _line(ax, position, values, label):

@@ -305,5 +305,7 @@ def test_boundary_dimensions_of_the_catalogue_are_drawn(name, letter):
         assert f"d = {d:g} mm, B = {wide:g} mm" in words
         top = ax.get_ylim()[1]
         assert all(line[:, 1].max() < top for line in lines)
-    bare = plot.cross_section(entry.bearing)
-    assert not any(line.get_label() == "_boundary" for line in bare.lines)
+    smaller = bj.catalogue_entry("6205")  # into which its elements do not fit
+    for other in (None, smaller):
+        bare = plot.cross_section(entry.bearing, catalogue=other)
+        assert not any(line.get_label() == "_boundary" for line in bare.lines)

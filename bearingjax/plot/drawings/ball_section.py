@@ -16,12 +16,14 @@ from ..style import (
     faded,
     write_beside,
 )
-from .dimension import AXIS, D_W, between, contact_angle, pitch_arrow, quantity
+from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
 STEEP = np.deg2rad(75.0)
 """Contact angle above which there is no room for it above a section [rad]."""
+D_W = "$D_\\mathrm{w}$"
+"""Symbol of the diameter of rolling elements; D is the outside diameter."""
 SHOULDER = 0.2
 """Schematic height of an unspecified shoulder, ball diameters."""
 

@@ -1,5 +1,7 @@
 """Boundary dimensions d, D, B of the catalogue, on the axial section of a bearing."""
 
+from typing import Any
+
 import numpy as np
 
 from ...catalogue.entry import CatalogueEntry
@@ -21,15 +23,20 @@ def draw_boundary(
 
     The side faces are left out where the catalogue does not tell their place: of types
     that are not symmetric, and of sets of several bearings. Schematic ring bodies end
-    at the lines.
+    at the lines. Where the elements of the design do not lie between d and D, as the
+    design is another, nothing is drawn.
 
     Args:
         ax: Axes with the rings drawn, z to the right, radius upwards [mm].
         bearing: The design.
-        entry: Its catalogue entry; `None`: nothing is drawn.
+        entry: Its catalogue entry, or `None`.
         centre: Radius at which the vertical axis is 0 [mm].
     """
-    if entry is None:
+    row: Any = rows_of(bearing)[0].bearing
+    pitch, element = float(row.pitch_diameter), float(row.element_diameter)
+    if entry is None or not (
+        entry.bore < pitch - element and pitch + element < entry.outside_diameter
+    ):
         return
     from matplotlib.patches import Rectangle
 

@@ -17,8 +17,6 @@ ARROW: dict[str, Any] = {
 }
 THIN: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 5}
 AXIS: dict[str, Any] = THIN | {"linestyle": (0, (9, 3, 2, 3))}
-D_W = "$D_\\mathrm{w}$"
-"""Symbol of the diameter of rolling elements; D is the outside diameter."""
 LINE = 0.16
 """Height of a line of a label [inch]."""
 _FREE = 0.1  # between labels below one another [inch]

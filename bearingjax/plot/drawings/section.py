@@ -21,17 +21,9 @@ from ..style import (
     faded,
     write,
 )
-from .ball_section import STEEP, ball_section, row_position
+from .ball_section import D_W, STEEP, ball_section, row_position
 from .boundary import draw_boundary
-from .dimension import (
-    AXIS,
-    D_W,
-    between,
-    contact_angle,
-    on_line,
-    pitch_arrow,
-    quantity,
-)
+from .dimension import AXIS, between, contact_angle, on_line, pitch_arrow, quantity
 from .outline import section
 from .roller_section import roller_row
 
