@@ -82,6 +82,7 @@ def shaft_overview(run: Any, title: str = "") -> Figure:
         named |= dict(zip(labels, legend.legend_handles, strict=True))
         legend.remove()
         if place + 1 == across or k + 1 == len(shown):
+            named = {n: h for n, h in named.items() if f"{n}, row 0" not in named}
             zone_legend(ax, list(named.values()), list(named))
     if warm:
         left = 0 if run.warming is None else 9
@@ -118,7 +119,9 @@ def _draw_nodes(ax, run):
         Bars(inner, "inner ring", INNER, 0.2, 0.4, "%.0f"),
     ]
     housing = float(warm.housing) - CELSIUS
-    ax.axhline(housing, color=GREY, ls="--", label=f"housing, {housing:.0f}")
+    ax.axhline(
+        housing, color=GREY, ls="--", label=f"housing or surroundings, {housing:.0f}"
+    )
     across, up = Axis("bearing"), Axis("temperature", "", (1.0, "°C"))
     names = [seats[k].name for k in known]
     title, legend = "Temperatures in equilibrium", {"ncols": 3, "loc": "upper left"}

@@ -156,7 +156,7 @@ def of_rotor(path):
 
 def of_drawing(path, monkeypatch):
     """What the report of `life` under [cases] draws."""
-    monkeypatch.setattr("bearingjax.plot.drawing", lambda bearing, title: bearing)
+    monkeypatch.setattr("bearingjax.plot.drawing", lambda bearing, *_: bearing)
     found = run(
         parser().parse_args(["life", str(path)]),
         Tools(False, None, lambda context: None),

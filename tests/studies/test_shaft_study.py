@@ -363,7 +363,7 @@ def test_warming_up_is_shown(tmp_path):
     bars = [bar.get_height() for bar in ax.patches if isinstance(bar, Rectangle)]
     np.testing.assert_allclose(bars, warming[-1, [1, 3, 0, 2]] - 273.15)
     assert [t.get_text() for t in ax.get_xticklabels()] == ["A", "B"]
-    assert ax.lines[0].get_label() == "housing, 27"
+    assert ax.lines[0].get_label() == "housing or surroundings, 27"
     plt.close("all")
 
 
