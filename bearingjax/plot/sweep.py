@@ -157,7 +157,7 @@ def _curves(inputs, good, named: Names) -> tuple[str, str, list[_Curve]]:
     x = inputs[along]
     others = [pair for pair in inputs.items() if pair[0] != along]
     if apart:
-        rest = ", ".join(_span(*pair, named) for pair in others)
+        rest = ", ".join(_span(n, x, named) for n, x in others)
         return along, rest, [_Curve(x[solved], solved, 0, "")]
     kind = np.zeros(len(solved), int)
     if others:
@@ -178,7 +178,7 @@ def _curves(inputs, good, named: Names) -> tuple[str, str, list[_Curve]]:
         told = named[name][int(value)] if name in named else f"{value:.4g}"
         name_and_value = f"{text}: {told}" if name else ""
         curves.append(_Curve(scale * x[rising], rising, colour, name_and_value))
-    rest = ", ".join(_span(*pair, named) for pair in others if pair[0] != name)
+    rest = ", ".join(_span(n, x, named) for n, x in others if n != name)
     return words, rest, curves
 
 
