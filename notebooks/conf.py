@@ -64,6 +64,7 @@ html_math_renderer = "mathml"
 def setup(app):
     app.connect("builder-inited", lambda app: site_pages.write_pages())
     app.connect("autodoc-process-signature", site_docstrings.short_signature)
+    app.connect("source-read", site_pages.lead_to_pages)
     # Before napoleon, which reads the sections of Google's style.
     app.connect("autodoc-process-docstring", site_docstrings.to_rst, priority=400)
     app.connect("autodoc-process-docstring", site_docstrings.short_types, priority=600)

@@ -160,6 +160,13 @@ def included(source):
     return re.sub(r"(!?\[[^\]]*\])\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)", moved, text)
 
 
+def lead_to_pages(app, name, text):
+    """Lead links of a page to a text of the repository to its page here."""
+    up = "../" * name.count("/")
+    for source, page in INCLUDED.items():
+        text[0] = text[0].replace(f"]({up}../{source}", f"]({up}_generated/{page}.md")
+
+
 def draw(kind):
     """Draw the bearing of a type, unless its design and our plots are as they were."""
     place = MADE / "drawings" / f"{kind}.svg"
