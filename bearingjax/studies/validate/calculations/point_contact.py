@@ -3,7 +3,10 @@
 import jax.numpy as jnp
 import numpy as np
 
-from ....contact.hertz import ellipse
+from ....contact.halfspace import even_grid, influence, solve_pressure
+from ....contact.hertz import ellipse, shear_below
+from ....design import Material, contact_modulus
+from ....numerics.elliptic import complete
 
 _MODULUS = 113.2e9
 """Contact modulus; the numbers do not depend on it [Pa]."""
@@ -26,3 +29,104 @@ def hertz_factors(curvature_difference: np.ndarray) -> dict[str, np.ndarray]:
     short, long = (np.asarray(axis) / 1e-3 for axis in contact.semi_axes(load))
     approach = np.asarray(contact.approach(load)) / (0.5e-6 * total)
     return {"a": long, "b": short, "approach": approach, "ratio": long / short}
+
+
+def ellipticity(radius_ratio: np.ndarray) -> dict[str, np.ndarray]:
+    """Return ellipticity and complete elliptic integrals of a point contact.
+
+    Args:
+        radius_ratio: Relative radius across over that in rolling direction (n,) [1].
+    """
+    contact = ellipse(jnp.asarray(radius_ratio), jnp.asarray(1.0), jnp.asarray(1.0))
+    first, b, d = complete(contact.ratio)
+    second = b + contact.ratio**2 * d
+    found = {"ratio": 1.0 / contact.ratio, "first": first, "second": second}
+    return {name: np.asarray(value) for name, value in found.items()}
+
+
+def raceway_contacts(
+    diameter: float,
+    pitch_diameter: float,
+    contact_angle: np.ndarray,
+    raceway_radii: np.ndarray,
+    load: np.ndarray,
+    elastic_modulus: float,
+    poisson_ratio: float,
+    profile_radius: float = 0.0,
+) -> dict[str, np.ndarray]:
+    """Return the Hertz contacts of a ball or barrel with outer and inner raceway.
+
+    Args:
+        diameter: Of the rolling element [m].
+        pitch_diameter: Of the circle of their centres [m].
+        contact_angle: At outer and inner raceway (2,) [rad].
+        raceway_radii: Radii of the grooves (2,) [m].
+        load: Loads (2,) or (n, 2) [N].
+        elastic_modulus, poisson_ratio: Of both bodies [Pa], [1].
+        profile_radius: Radius of a barrel's profile; 0: a ball [m].
+
+    Returns:
+        Sum and difference of curvatures, constants, that of both in series, semi-axes
+        along the groove and across, approaches and peak pressures.
+    """
+    turn = np.array([1.0, -1.0]) * diameter / pitch_diameter * np.cos(contact_angle)
+    rolling = 2.0 / (diameter * (1.0 + turn))
+    across = 1.0 / (profile_radius or 0.5 * diameter) - 1.0 / raceway_radii
+    steel = Material(elastic_modulus, poisson_ratio)
+    contact = ellipse(
+        jnp.asarray(rolling), jnp.asarray(across), contact_modulus(steel, steel)
+    )
+    short, long = contact.semi_axes(jnp.asarray(load))
+    series = float(jnp.sum(contact.constant ** (-2 / 3)) ** (-3 / 2))
+    found = {
+        "curvature_sum": rolling + across,
+        "curvature_difference": (rolling - across) / (rolling + across),
+        "constant": contact.constant,
+        "series": series,
+        "across": long,
+        "along": short,
+        "approach": contact.approach(jnp.asarray(load)),
+        "pressure": contact.peak_pressure(jnp.asarray(load)),
+    }
+    return {name: np.asarray(value) for name, value in found.items()}
+
+
+def shear_stresses(ratio: np.ndarray, poisson_ratio: float) -> dict[str, np.ndarray]:
+    """Return the largest shear stresses below an elliptic contact, and their depths.
+
+    Args:
+        ratio: Semi-axis in rolling direction over the one across (n,) [1].
+        poisson_ratio: [1].
+
+    Returns:
+        Stresses over the peak pressure, depths over the semi-axis in rolling direction.
+    """
+    found = shear_below(jnp.asarray(ratio), jnp.asarray(poisson_ratio))
+    return {name: np.asarray(value) for name, value in found._asdict().items()}
+
+
+def half_space(
+    curvature_x: float, curvature_y: float, load: float, elastic_modulus: float,
+    poisson_ratio: float, half_width: float, half_length: float, cells: int,
+) -> dict[str, float]:
+    """Return peak pressure and approach of a point contact, solved cell by cell.
+
+    Args:
+        curvature_x, curvature_y: Sums of both bodies' curvatures [1/m].
+        load: [N].
+        elastic_modulus, poisson_ratio: Of both bodies [Pa], [1].
+        half_width, half_length: Of the grid along x and y [m].
+        cells: Number of cells each way.
+    """
+    modulus = elastic_modulus / (2.0 * (1.0 - poisson_ratio**2))
+    grid = even_grid(2.0 * half_length, half_width, int(cells), int(cells))
+    x, y = grid.x[:, None], grid.y[None]
+    gap = 0.5 * (curvature_x * x**2 + curvature_y * y**2)
+    solved = solve_pressure(influence(grid, modulus), gap, load=load)
+    hertz = ellipse(*(jnp.asarray(v) for v in (curvature_x, curvature_y, modulus)))
+    return {
+        "pressure": float(solved.peak_pressure),
+        "approach": float(solved.approach),
+        "hertz_pressure": float(hertz.peak_pressure(jnp.asarray(load))),
+        "hertz_approach": float(hertz.approach(jnp.asarray(load))),
+    }
