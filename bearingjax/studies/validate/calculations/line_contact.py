@@ -93,9 +93,10 @@ def roller_on_plane(
     profile: str = "straight",
     parameters: dict[str, float] | None = None,
     half_angle: float | None = None,
-    grid: tuple[float, ...] = (),
+    grid: np.ndarray | None = None,
     places: np.ndarray | None = None,
-    **given: float,
+    tilt: float = 0.0,
+    free_to_tilt: bool = False,
 ) -> dict[str, Any]:
     """Return the contact of a steel roller on a plane, both half-spaces.
 
@@ -108,12 +109,14 @@ def roller_on_plane(
         grid: Half width of the cells [m], numbers across and along, grading; by
             default as the contact needs.
         places: Distances from the small end at which the pressure is wanted (n,) [m].
-        **given: `tilt` [rad] or `moment` [N m].
+        tilt: [rad].
+        free_to_tilt: Whether there is no moment, in place of the tilt.
 
     Returns:
         Approach, tilt, moment, peak pressure, pressures at `places`, and of the cells
-        at small and large end; line loads there; shares of the load beyond a millimetre
-        from either end; least and largest pressure between 2 mm from either end.
+        at small and large end, with their line loads; shares of the load within a
+        millimetre of either end; least and largest pressure 2 mm and more from them;
+        Hertz's pressure in the middle of an endless roller.
     """
     steel = Material(elastic_modulus, 0.3)
     roller = RollerContact(
@@ -125,12 +128,12 @@ def roller_on_plane(
         material=steel,
         raceway_material=steel,
     )
-    width, *counts = grid or (None,)
     cells = None
-    if width is not None:
-        across, along, *grading = counts
-        cells = roller.grid(float(width), int(across), int(along), *map(float, grading))
-    found = roller.solve(load, grid=cells, **given)
+    if grid is not None:
+        width, across, along, grading = map(float, grid)
+        cells = roller.grid(width, int(across), int(along), grading)
+    held = {"moment": 0.0} if free_to_tilt else {"tilt": tilt}
+    found = roller.solve(load, grid=cells, **held)
     edges = np.asarray(found.grid.edges)
     y, pressure = edges[-1] - np.asarray(found.grid.y), found.centre_pressure
     pressure, line_load = np.asarray(pressure), np.asarray(found.line_load)
@@ -140,6 +143,9 @@ def roller_on_plane(
 
     carried = np.cumsum(line_load * np.diff(edges)) / load
     near = np.interp([1e-3, length - 1e-3], edges[1:] - edges[0], carried)
+    hertz = peak_pressure(
+        jnp.asarray(load / length), roller.relative_radius(jnp.zeros(())), roller.modulus
+    )
     between = at(np.linspace(2e-3, length - 2e-3, 1101))
     return {
         "approach": float(found.approach),
@@ -149,8 +155,9 @@ def roller_on_plane(
         "at": at(np.asarray(0.5 * length if places is None else places)),
         "small_end": pressure[-1],
         "large_end": pressure[0],
-        "small_over_large": pressure[-1] / pressure[0],
+        "small_over_large": pressure[-1] / (pressure[0] or np.nan),
         "end_loads": line_load[[-1, 0]],
         "end_shares": np.array([1.0 - near[1], near[0]]),
+        "hertz": float(hertz),
         "between": np.array([between.min(), between.max()]),
     }
