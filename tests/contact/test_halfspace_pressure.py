@@ -1,10 +1,6 @@
-"""Solved contacts of half-spaces: Hertz, published boundary-element runs, derivatives.
+"""Solved contacts of half-spaces: balance, convergence to Hertz, derivatives.
 
-Sources: Hertz (sphere, ellipse); method 004, Mi & Xia (2011), in two independent
-solutions of its case (acceptance facts AF004-2 to 10, cases LC-2b, LC-2c); Lundberg's
-profile at its design load (LC-3). Tolerances are those of the cases: 1e-5 to 5e-5 on
-the same grid, 1e-3 to 2e-3 on another one, away from the ends. End values stand only
-beside the size of their cells.
+Published boundary-element runs are validation cases: `mi_xia_taper`, `half_space_*`.
 """
 
 import jax
@@ -44,31 +40,8 @@ def paper(taper):
     return taper.solve(3000.0, grid=taper.grid(HALF_WIDTH, 35, 35, grading=1.0))
 
 
-def at(solution, *places):
-    """Pressure at x = 0 [MPa] at distances from the small end [mm]."""
-    y = 1e3 * np.asarray(solution.grid.edges[-1] - solution.grid.y)
-    return np.interp(places, y[::-1], 1e-6 * np.asarray(solution.centre_pressure)[::-1])
-
-
-def test_pressure_matches_method_004_on_equal_cells(paper):
-    """AF004-5 to 7: the ends of cells of 0.43 mm, the middle, the least."""
-    assert float(paper.approach) == pytest.approx(6.35510e-6, rel=1e-5)
-    small, middle, large = at(paper, 0.0, 7.5, 15.0)
-    assert (middle, small, large) == pytest.approx(
-        (1108.04, 1500.76, 1403.44), rel=1e-5
-    )
-    assert small / middle == pytest.approx(1.35, abs=0.01)
-    assert large / middle == pytest.approx(1.27, abs=0.01)
-    assert small / large == pytest.approx(1.069, abs=1e-3)
-    assert at(paper, 3.75, 11.25) == pytest.approx((1148.17, 1102.92), rel=1e-5)
-    # Yet the large end carries more per length.
-    line = 1e-3 * np.asarray(paper.line_load)
-    assert (line[-1], line[0]) == pytest.approx((294.9, 305.1), abs=0.06)
-    assert at(paper, 10.07) == pytest.approx(1100.30, rel=2e-5)
-
-
 def test_complementarity(paper):
-    """AF004-4: no gap in contact, none negative, load exact."""
+    """No gap in contact, none negative, load exact."""
     inside, pressure = np.asarray(paper.touching), np.asarray(paper.pressure)
     distance = np.asarray(paper.distance)
     assert np.abs(distance[inside]).max() < 1e-15 and distance.min() > -1e-15
@@ -77,18 +50,15 @@ def test_complementarity(paper):
     assert not paper.truncated and paper.steps < 40
 
 
-def test_same_shape_at_all_loads(taper):
-    """AF004-9; the grid is 1.6 times as wide as Hertz's contact at each load."""
-    ratios, approaches = [], []
-    for load in (1000.0, 2000.0, 3000.0, 4000.0, 5000.0):
-        width = HALF_WIDTH * (load / 3000.0) ** 0.5
-        solution = taper.solve(load, grid=taper.grid(width, 35, 35, grading=1.0))
-        small, large = at(solution, 0.0, 15.0)
-        ratios.append(small / large)
-        approaches.append(1e6 * float(solution.approach))
-    published = [2.32303, 4.38787, 6.35510, 8.25897, 10.11571]
-    assert approaches == pytest.approx(published, rel=1e-5)
-    assert ratios == pytest.approx([1.075, 1.072, 1.069, 1.067, 1.066], abs=1e-3)
+def test_moment_tilt_and_approach_agree(taper):
+    """What moved the roller is what holds it there."""
+    grid = taper.grid(HALF_WIDTH)
+    tilted = taper.solve(3000.0, moment=0.0, grid=grid)
+    assert float(tilted.moment) == pytest.approx(0.0, abs=1e-9)
+    held = taper.solve(3000.0, tilt=tilted.tilt, grid=grid)
+    assert float(held.moment) == pytest.approx(0.0, abs=1e-7)
+    pushed = taper.solve(approach=held.approach, tilt=tilted.tilt, grid=grid)
+    assert float(pushed.load) == pytest.approx(3000.0, rel=1e-7)
 
 
 def test_a_batch_is_single_solves(taper):
@@ -107,94 +77,14 @@ def test_a_batch_is_single_solves(taper):
     )
 
 
-def test_graded_cells_are_as_good_as_many(taper):
-    """Values that converged on 139 x 2239 even cells, from 35 x 64 graded ones."""
-    fine = taper.solve(3000.0, grid=taper.grid(HALF_WIDTH))
-    assert float(fine.approach) == pytest.approx(6.321e-6, rel=1e-4)
-    converged = (1299.30, 1207.06, 1104.20, 1098.25)
-    assert at(fine, 0.5, 14.5, 7.5, 11.25) == pytest.approx(converged, rel=1e-3)
-    # AF004-10: the middle lies below Hertz's endless roller, for the ends carry more.
-    hertz = bj.contact.peak_pressure(
-        jnp.asarray(3000.0 / 0.015),
-        taper.relative_radius(jnp.asarray(0.0)),
-        taper.modulus,
-    )
-    assert float(hertz) == pytest.approx(1154.9e6, rel=1e-4)
-    assert 1e6 * at(fine, 7.5) / float(hertz) == pytest.approx(0.956, abs=1e-3)
-    edges = np.asarray(fine.grid.edges)
-    carried = np.cumsum(np.asarray(fine.line_load) * np.diff(edges)) / 3000.0
-    large, small = np.interp([-6.5e-3, 6.5e-3], edges[1:], carried)
-    assert (1 - small, large) == pytest.approx((0.087, 0.089), abs=2e-3)
-    # AF004-8: nearly even between the ends, least at 10.07 mm.
-    between = at(fine, *np.linspace(2.0, 13.0, 1101))
-    assert (between.min(), between.max()) == pytest.approx((1095.9, 1186.0), rel=1e-3)
-    # Between middles of cells that are 0.45 mm apart there.
-    assert 2.0 + 0.01 * between.argmin() == pytest.approx(10.07, abs=0.3)
-    tilted = taper.solve(3000.0, moment=0.0, grid=taper.grid(HALF_WIDTH))
-    assert float(tilted.tilt) == pytest.approx(7.54e-6, rel=1e-2)
-    assert float(tilted.moment) == pytest.approx(0.0, abs=1e-9)
-    assert at(tilted, 0.5, 14.5) == pytest.approx((1308.9, 1202.2), rel=2e-3)
-    # What moved it is what holds it there.
-    held = taper.solve(3000.0, tilt=tilted.tilt, grid=taper.grid(HALF_WIDTH))
-    assert float(held.moment) == pytest.approx(0.0, abs=1e-7)
-    pushed = taper.solve(
-        approach=held.approach, tilt=tilted.tilt, grid=taper.grid(HALF_WIDTH)
-    )
-    assert float(pushed.load) == pytest.approx(3000.0, rel=1e-7)
-
-
-def test_profiled_cylinder_with_and_without_tilt():
-    """D = 10, L = 15 mm, ISO profile, 3000 N on a plane; the widths are found."""
-    roller = RollerContact(0.015, 0.010, 0.010, roller_profile=bj.Logarithmic(), **PAIR)
-    flat, tilted = roller.solve(3000.0), roller.solve(3000.0, tilt=3e-4)
-    assert float(flat.peak_pressure) == pytest.approx(1410e6, rel=3e-3)
-    assert float(flat.approach) == pytest.approx(8.440e-6, rel=3e-3)
-    assert float(tilted.peak_pressure) == pytest.approx(1450e6, rel=3e-3)
-    assert float(tilted.approach) == pytest.approx(8.373e-6, rel=3e-3)
-    assert float(tilted.moment) == pytest.approx(2.801, rel=3e-3)
-    assert not flat.truncated and not tilted.truncated
-
-
-def test_lundberg_profile_at_design_load():
-    material = bj.Material(elastic_modulus=206e9)
-    pair = {"material": material, "raceway_material": material}
-    roller = RollerContact(
-        0.010, 0.010, 0.010, roller_profile=bj.Lundberg(5000.0), **pair
-    )
-    solution = roller.solve(5000.0)
-    found = at(solution, 5.0, 2.5, 1.0, 0.5)
-    assert found == pytest.approx((1903.05, 1903.93, 1909.44, 1924.6), rel=2e-3)
-    assert found[0] == pytest.approx(1898.12, rel=3e-3)  # of Hertz
-    assert float(solution.approach) == pytest.approx(14.903e-6, rel=2e-3)
-    for load, middle, near, approach in (
-        (2500.0, 1403.7, 1324.2, 8.4142e-6),
-        (10000.0, 2612.6, 2715.5, 26.8e-6),
-    ):
-        solution = roller.solve(load)
-        assert at(solution, 5.0, 1.0) == pytest.approx((middle, near), rel=2e-3)
-        assert float(solution.approach) == pytest.approx(approach, rel=2e-3)
-
-
-def test_square_ends_on_a_longer_plane():
-    """LC-2c."""
-    material = bj.Material(elastic_modulus=208e9)
-    pair = {"material": material, "raceway_material": material}
-    solution = RollerContact(0.010, 0.010, 0.010, **pair).solve(2000.0)
-    assert float(solution.approach) == pytest.approx(5.977e-6, rel=2e-3)
-    assert at(solution, 5.0, 1.0, 0.5, 0.25) == pytest.approx(
-        (1148.2, 1218.4, 1274.4, 1351.7), rel=2e-3
-    )
-
-
 def sphere(n):
-    """AF004-2: errors of peak pressure and approach, n cells each way."""
+    """Errors of peak pressure and approach, n cells each way."""
     load, radius = 100.0, 0.010
     half = (0.75 * load * radius / MODULUS) ** (1.0 / 3.0)
     grid = even_grid(2.5 * half, 1.25 * half, n, n)
     gap = (grid.x[:, None] ** 2 + grid.y[None] ** 2) / (2.0 * radius)
     solution = solve_pressure(influence(grid, MODULUS), gap, load=load)
     peak = 1.5 * load / (np.pi * half**2)
-    assert peak == pytest.approx(1370.879e6, rel=1e-6)
     return (
         float(solution.peak_pressure) / peak - 1.0,
         float(solution.approach) / (half**2 / radius) - 1.0,
@@ -206,22 +96,6 @@ def test_sphere_converges_to_hertz():
     assert fine == pytest.approx((1.4e-5, -1.7e-5), abs=2e-6)
     # Second order, but for how the cells happen to lie at the rim.
     assert abs(coarse[1]) > 8 * abs(fine[1])
-
-
-def test_ellipse():
-    """AF004-3."""
-    half, long = 0.23415e-3 * 0.8, 1.6e-3
-    grid = even_grid(2 * long, 2 * half, 129, 129)
-    gap = grid.x[:, None] ** 2 / (2 * 5.5e-3) + grid.y[None] ** 2 / (2 * 0.1)
-    solution = solve_pressure(influence(grid, MODULUS), gap, load=1000.0)
-    assert not solution.truncated and not solution.touching[:, 0].any()
-    hertz = bj.contact.ellipse(
-        jnp.asarray(1 / 5.5e-3), jnp.asarray(1 / 0.1), jnp.asarray(MODULUS)
-    )
-    peak, approach = hertz.peak_pressure(jnp.asarray(1e3)), 10.94392e-6
-    assert float(peak) == pytest.approx(2032.28e6, rel=1e-5)
-    assert float(solution.peak_pressure) == pytest.approx(float(peak), rel=1e-4)
-    assert float(solution.approach) == pytest.approx(approach, rel=1e-4)
 
 
 @pytest.mark.parametrize("preconditioned", [True, False])

@@ -1,4 +1,7 @@
-"""Elliptic Hertz contact: exact tables, limits, derivatives, brute-force stresses."""
+"""Elliptic Hertz contact: limits, derivatives, brute-force stresses.
+
+Tables are validation cases: `hertz_tables`, `brewe_hamrock_ratios`.
+"""
 
 import functools
 
@@ -16,83 +19,16 @@ from bearingjax.contact import (
     sphere_peak_pressure,
 )
 
-# F(ρ), a*, b*, δ*, κ: exact columns to nine decimals, computed with SciPy's integrals;
-# the table itself is 6.1 of Harris & Kotzalas, Essential Concepts (2006).
-EXACT = np.array(
-    [
-        [0.0, 1.0, 1.0, 1.0, 1.0],
-        [0.1075, 1.075967508, 0.931799060, 0.997419492, 1.154720535],
-        [0.3204, 1.262318840, 0.811434216, 0.976146427, 1.555663805],
-        [0.4795, 1.455518248, 0.727808621, 0.943197870, 1.999863984],
-        [0.5916, 1.643970620, 0.668648399, 0.907673730, 2.458647358],
-        [0.6716, 1.825782678, 0.624468567, 0.873287205, 2.923738318],
-        [0.7332, 2.011441657, 0.588065652, 0.839411393, 3.420437243],
-        [0.7948, 2.265459948, 0.547984324, 0.796052272, 4.134169260],
-        [0.83495, 2.494344271, 0.518604456, 0.760205630, 4.809723947],
-        [0.87366, 2.800317230, 0.486269448, 0.716885953, 5.758776834],
-        [0.90999, 3.232727882, 0.449902995, 0.663629203, 7.185388674],
-        [0.93657, 3.737768514, 0.416644474, 0.611174649, 8.971122250],
-        [0.95738, 4.394429221, 0.383020176, 0.555095767, 11.473101157],
-        [0.9729, 5.266708418, 0.349046210, 0.496035264, 15.088857187],
-        [0.983797, 6.447488185, 0.314959731, 0.435176163, 20.470833417],
-        [0.990902, 8.062339765, 0.281364883, 0.374497087, 28.654392359],
-        [0.995112, 10.221504308, 0.249735638, 0.317562505, 40.929297799],
-        [0.9973, 12.788797101, 0.223197002, 0.270546646, 57.298247667],
-        [0.9981847, 14.838749826, 0.207181298, 0.242739219, 71.622052469],
-        [0.9989156, 17.974224441, 0.188226085, 0.210579891, 95.492739241],
-        [0.9994785, 23.552169716, 0.164420346, 0.171666251, 143.243645175],
-        [0.9998527, 37.383163018, 0.130500056, 0.119954950, 286.460896852],
-    ]
-)
-# Radius ratio Ry/Rx and exact κ: Brewe & Hamrock's cases, computed with SciPy.
-RADII = np.array(
-    [
-        [1.0001, 1.00006667],
-        [1.5, 1.31010296],
-        [2.0, 1.58580212],
-        [3.0, 2.07199013],
-        [5.0, 2.89018104],
-        [8.0, 3.90652895],
-        [10.0, 4.49944730],
-        [15.0, 5.79964974],
-        [20.0, 6.92868096],
-        [30.0, 8.87618309],
-        [50.0, 12.07114678],
-        [70.0, 14.74297369],
-        [100.0, 18.18710300],
-    ]
-)
 MODULUS = jnp.asarray(113.2e9)
 
 
-@pytest.mark.parametrize("swapped", [False, True])
-def test_exact_table(swapped):
-    """Table 6.1 with its exact columns, whichever axis is the long one."""
-    difference, long, short, approach, kappa = EXACT.T
-    total = 120.0
-    curvatures = 0.5 * total * np.stack([1.0 + difference, 1.0 - difference])
-    if swapped:
-        curvatures = curvatures[::-1]
-    contact = ellipse(*jnp.asarray(curvatures), MODULUS)
-    load = jnp.asarray(2.0 / 3.0 * MODULUS * total * 1e-9)  # 3Q/(2 E* Σρ) = 1 mm³
-    axes = contact.semi_axes(load)
-    a, b = axes if swapped else axes[::-1]
-    # Nine printed decimals.
-    np.testing.assert_allclose(a / 1e-3, long, rtol=1e-8)
-    np.testing.assert_allclose(b / 1e-3, short, rtol=1e-8)
-    got = contact.approach(load) / (0.5e-6 * total)
-    np.testing.assert_allclose(got, approach, rtol=1e-8)
-    np.testing.assert_allclose(a / b, kappa, rtol=1e-8)
+def test_peak_pressure():
+    """That of an ellipsoid over the contact ellipse, whichever axis is the long one."""
+    curvatures = jnp.asarray([[118.0, 90.0, 2.0], [2.0, 30.0, 118.0]])
+    contact, load = ellipse(*curvatures, MODULUS), jnp.asarray(1e3)
+    a, b = contact.semi_axes(load)
     peak = contact.peak_pressure(load)
     np.testing.assert_allclose(peak, 1.5 * load / (np.pi * a * b), rtol=ROUNDING)
-
-
-def test_radius_ratios():
-    """Ellipticity for Brewe & Hamrock's ratios of radii."""
-    ratio, kappa = RADII.T
-    got = 1.0 / ellipse(jnp.asarray(ratio), jnp.asarray(1.0), MODULUS).ratio
-    # Eight printed decimals.
-    np.testing.assert_allclose(got, kappa, atol=6e-9, rtol=0)
 
 
 def test_sphere():
@@ -238,10 +174,7 @@ def test_axis_stress_surface():
 
 
 def test_greatest_shear():
-    """0.310 p0 at 0.481 a below a circle, 0.300 p0 at 0.786 b below a line, and a scan.
-
-    Johnson (1985), ν = 0.3.
-    """
+    """Against a scan of the depth."""
     ratio = jnp.asarray([1e-5, 0.05, 0.2, 0.5, 0.8, 1.0, 1.6, 12.0])
     for poisson in (0.25, 0.3, 0.5):
         shear = shear_below(ratio, jnp.asarray(poisson))
@@ -257,11 +190,6 @@ def test_greatest_shear():
             # A maximum: quadratic in the spacing of the scan.
             np.testing.assert_allclose(shear.greatest[k], tau[best], rtol=1e-7)
             assert abs(shear.depth[k] - depth[best]) < 1.1e-4
-    shear = shear_below(ratio, jnp.asarray(0.3))
-    np.testing.assert_allclose(shear.greatest[5], 0.310, atol=5e-4)
-    np.testing.assert_allclose(shear.depth[5], 0.481, atol=5e-4)
-    np.testing.assert_allclose(shear.greatest[0], 0.300, atol=5e-4)
-    np.testing.assert_allclose(shear.depth[0], 0.786, atol=5e-4)
 
 
 @functools.cache
@@ -300,13 +228,6 @@ def test_orthogonal_shear(ratio):
     np.testing.assert_allclose(shear.orthogonal, -found.fun, rtol=1e-8)
     # A maximum is flat: its place is good to the root of its value.
     np.testing.assert_allclose(shear.orthogonal_depth, found.x[1], rtol=1e-3)
-
-
-def test_orthogonal_shear_by_hand():
-    """0.25 p0 at b/2 below a line, 0.214 p0 at 0.35 b below a circle."""
-    shear = shear_below(jnp.asarray([1e-7, 1.0]), jnp.asarray(0.3))
-    np.testing.assert_allclose(shear.orthogonal, [0.25, 0.2139], atol=5e-5)
-    np.testing.assert_allclose(shear.orthogonal_depth, [0.5, 0.3509], atol=5e-5)
 
 
 @pytest.mark.slow

@@ -2,10 +2,9 @@
 
 Source: Sorokin, Zhang, Ivannikov (2018) and the surrogate bearing worked out from it:
 12 rollers 14 x 13.72 mm between raceways of 29.25 and 43.25 mm radius, zero clearance,
-no ribs, straight middle of 9 mm, crown radius 1 m, 20 equal slices. Numbers carry the
-digits that were printed; tolerances are half a unit of the last one. (Facts 1, 2 and 5,
-the slice law and the inverse update, are tests of `contact` and `numerics`; 9 to 11 and
-the whole table run through a scene file in `scene`.)
+no ribs, straight middle of 9 mm, crown radius 1 m, 20 equal slices. Facts of numbers
+(9 to 13) are validation cases, `sorokin_*`; 1, 2 and 5, the slice law and the inverse
+update, are tests of `contact` and `numerics`.
 """
 
 import equinox as eqx
@@ -145,46 +144,10 @@ def test_fact_7_kernel_of_the_whole_bearing():
 def test_fact_8_orbit_of_the_rollers():
     element = surrogate(first_azimuth=0.0)
     turned = azimuths(element.bearing, jnp.zeros(12).at[11].set(1.0))
-    assert abs(float(turned[0]) - 0.403448) < 5e-7
     harris = 0.5 * (1.0 - 14.0 / 72.5)
     assert abs(float(turned[0]) - harris) < ROUNDING
     both = azimuths(element.bearing, jnp.zeros(12).at[jnp.array([5, 11])].set(0.3))
     assert abs(float(both[0]) - 0.3) < ROUNDING
-
-
-def test_facts_10_and_11_moment_turns_but_hardly_moves():
-    element = surrogate()
-    cases = [loaded(element, 20600.0, m) for m in (0.440, -4.0, -12.53)]
-    u = np.array([c[0] for c in cases])
-    tilt = np.array([c[1] for c in cases])
-    assert u.min() == pytest.approx(-28.139, abs=6e-4)
-    assert u.max() == pytest.approx(-28.108, abs=6e-4)
-    assert np.ptp(u) / abs(u.mean()) == pytest.approx(0.0011, abs=6e-5)
-    assert tilt == pytest.approx([0.0338, -0.3073, -0.9634], abs=6e-5)
-    assert abs(loaded(element, 600.0, 0.0)[1]) < 1e-6
-
-
-def test_fact_12_twenty_slices():
-    printed = {20: (-15.8122, -0.16507), 40: (-15.8234, -0.16484)}
-    found = {n: loaded(surrogate(n), 10600.0, -2.0)[:2] for n in (5, 20, 40)}
-    for n, (u, g) in printed.items():
-        assert found[n][0] == pytest.approx(u, abs=6e-5)
-        assert found[n][1] == pytest.approx(g, abs=6e-6)
-    error = np.abs(np.array(found[5]) / np.array(found[40]) - 1.0)
-    assert error == pytest.approx([0.018, 0.034], abs=1e-3)  # two printed digits
-
-
-def test_fact_13_top_roller():
-    _, _, s = loaded(surrogate(), 20600.0, -12.53)
-    slices = slice(1, None, 2)  # the middles of 20 slices among 41 positions
-    q = 1e-3 * np.asarray(s.line_load)[0, 1, slices]
-    pressure = 1e-6 * np.asarray(s.contact_pressure)[0, 1, slices]
-    assert float(s.roller_load[0, 1]) == pytest.approx(7049.9, abs=0.06)
-    ends = sorted([q[0], q[-1]], reverse=True)
-    assert ends == pytest.approx([572.3, 315.9], abs=0.06)
-    assert q.max() == pytest.approx(621.4, abs=0.06)
-    assert min(q.argmax(), 19 - q.argmax()) == 2
-    assert pressure.max() == pytest.approx(1991.0, abs=0.6)
 
 
 def test_fact_14_free_roller():

@@ -1,8 +1,6 @@
-"""Barrel, thrust and crossed rollers against closed forms and independent programs.
+"""Barrel rollers against closed forms and brute force (`barrel_oracle`).
 
-Cases: two-row spherical bearing 22317 with free contact angle, eccentric thrust, rigid
-crossed roller bearing and barrel rollers of exact arcs, each computed by a program that
-shares no code with the package; brute force by `barrel_oracle`.
+Numbers of independent programs are validation cases: `srb_*`, `toroidal_exact_arcs`.
 """
 
 import dataclasses
@@ -28,7 +26,6 @@ from bearingjax.contact.line_contact import response
 from bearingjax.contact.slices import slices
 from bearingjax.element.constants import contact_constants
 from bearingjax.element.inertia import inertia_force, mass_and_inertia
-from bearingjax.statics.rollers import distribution
 from bearingjax.statics.warning_sizes import travel_error
 
 DEG = np.pi / 180
@@ -334,9 +331,11 @@ def test_rollers_go_with_a_tilted_inner_ring():
 
 def test_axial_clearance_of_a_spherical_bearing():
     """Ga = 2 (sqrt(A² - (A cos α - Gr/2)²) - A sin α), 22317 with Gr = 60 µm."""
-    aligning = two_rows(60e-6)
+    aligning, angle, arm = two_rows(60e-6), 12 * DEG, 2 * 0.081585 - 0.025
+    radial = arm * np.cos(angle) - 30e-6
+    half = np.sqrt(arm**2 - radial**2) - arm * np.sin(angle)
     for side, touches in ((0.99, False), (1.01, True)):
-        q = jnp.zeros(12).at[8].set(0.5 * 0.281556589e-3 * side)
+        q = jnp.zeros(12).at[8].set(half * side)
         got, _ = evaluate(element(aligning, line_law=LAW), q)
         assert (float(got.force[8]) > 0.1) is touches
 
@@ -477,12 +476,7 @@ def test_infinite_radii_are_the_straight_roller(kind, kinematics):
         assert np.abs(a - b).max() < ROUNDING * np.abs(b).max()
 
 
-# Independent programs.
-
-
-def line_of_two(length):
-    """Line constant of one contact, two of which yield 3.84e-5 Q^0.9/L^0.8 (mm, N)."""
-    return 3.84e-5 ** (-10 / 9) * (1e3 * length) ** (8 / 9) * 1e3 ** (10 / 9) / length
+# Bearings of the cases.
 
 
 def two_rows(clearance):
@@ -501,84 +495,6 @@ def two_rows(clearance):
     return bj.BearingSet.self_aligning(row, staggered=False)
 
 
-def test_22317_with_one_number_per_contact():
-    """Constant angle against free angle: 1e-3 radially, 2e-3 of combined loads."""
-    per_pair = 553002.138 * 1e3 ** (10 / 9)  # Q of both contacts over δ^(10/9)
-    law = bj.contact.LineConstant(per_pair * 2 ** (10 / 9) / 0.020762)
-    cases = [
-        (0.0, [50000.0, 0.0], 0.0212098002, [7458.695, 6642.754, 4412.98, 1405.011]),
-        (60e-6, [89000.0, 22250.0], 0.0664324195, [25746.623, 22855.828, 14961.879]),
-    ]
-    for clearance, (radial, axial), travel, loads in cases:
-        found = bj.solve_load(
-            element(two_rows(clearance), "linearised", line_law=law),
-            [radial, 0.0, axial, 0.0, 0.0, 0.0],
-            support=bj.Support(free=("ux", "uy", "uz")),
-        )
-        tolerance = 1e-3 if axial == 0.0 else 3e-3
-        got = np.asarray(found.roller_load)[: len(loads), 0]
-        np.testing.assert_allclose(got, loads, atol=tolerance * loads[0])
-        ux = 1e3 * float(found.displacement[6])
-        assert ux == pytest.approx(travel, rel=tolerance)
-
-
-@pytest.mark.parametrize(
-    "eccentricity, tilt, most",
-    [(0, 0, 952.38095), (10e-3, 0.0764141215e-3, 1450.13642)],
-)
-def test_eccentric_thrust(eccentricity, tilt, most):
-    """81212-like washer, free to tilt, one number per contact."""
-    bearing = bj.CylindricalThrustRollerBearing(21, 0.0775, 0.009, 0.009)
-    law = bj.contact.LineConstant(line_of_two(0.009))
-    found = bj.solve_load(
-        bj.BearingElement(bearing, line_law=law, quadrature=bj.numerics.Midpoint(1)),
-        [0.0, 0.0, 20000.0, 0.0, -20000.0 * eccentricity, 0.0],
-        support=bj.Support(free=("uz", "gx", "gy")),
-    )
-    travel = 0.0063518004e-3 if tilt == 0 else 0.0063122715e-3
-    assert float(found.displacement[8]) == pytest.approx(travel, rel=1e-5)
-    assert abs(float(found.displacement[10])) == pytest.approx(
-        tilt, rel=1e-5, abs=1e-12
-    )
-    assert float(np.max(found.roller_load)) == pytest.approx(most, rel=1e-5)
-
-
-def test_crossed_rollers_of_a_rigid_model():
-    row = bj.CrossedRollerRow(40, 0.2775, 0.014, 0.010)
-    law, rule = bj.contact.LineConstant(line_of_two(0.010)), bj.numerics.Midpoint(1)
-    crossed = bj.BearingElement(
-        bj.BearingSet.crossed(row), line_law=law, quadrature=rule
-    )
-    cases = [
-        ([0.0, 20000.0, 0.0], (0.0, 0.0117852749e-3, 0.0), 1414.21356),
-        (
-            [20000.0, 0.0, 0.0],
-            (0.0224138024e-3, 0.000322969508e-3, 2.93792918e-06),
-            2876.63046,
-        ),
-        ([0.0, 0.0, 2000.0], (0.00030357e-3, 0.00024052e-3, 0.0001203), 2073.24718),
-    ]
-    for (fx, fz, my), place, most in cases:
-        found = bj.solve_load(
-            crossed,
-            [fx, 0.0, fz, 0.0, my, 0.0],
-            support=bj.Support(free=("ux", "uy", "uz", "gx", "gy")),
-        )
-        got = np.asarray(found.displacement)[[6, 8, 10]]
-        if fx == my == 0:
-            # Rollers of one slice hold nothing against a turn about the apex of their
-            # normals, on the axis at the pitch radius: ux and gy are those of a turn.
-            got = np.array([got[0] - 0.5 * 0.2775 * got[2], got[1], 0.0])
-        # The last case is printed with five digits.
-        size = np.array([1e-5, 1e-5, 1e-4])
-        rtol = 1e-5 if my == 0 else 3e-5
-        np.testing.assert_allclose(got, place, rtol=rtol, atol=1e-6 * size.min())
-        assert float(np.max(found.roller_load)) == pytest.approx(most, rel=1e-5)
-        assert int((np.asarray(found.roller_load)[:, 0] > 0).sum()) == (
-            20 if fz else 21
-        )
-
-
 def srb_of_the_case():
     angle, gap = 9.5 * DEG, 5e-6
     row = bj.SphericalRollerRow(
@@ -594,39 +510,6 @@ def srb_of_the_case():
         first_azimuth=-90 * DEG,
     )
     return bj.BearingSet.self_aligning(row)
-
-
-@pytest.mark.slow
-def test_barrel_rollers_of_exact_arcs_by_another_program():
-    """Loads there are sums over the slices, here resultants: compared as sums."""
-    cases = [
-        (
-            srb_of_the_case(),
-            [2.56900105e-18, -7.20261092e-05, 5.12151384e-07, 0.0, 0.0],
-            [0.0, -40000.0, 0.0, -0.019501577, 0.0],
-            {0: [5143.498, 4659.75, 3298.362, 1387.269, 31.11584]},
-        ),
-        (
-            toroidal(20),
-            [1.23573686e-17, -0.000101846344, 0.001, 0.0, 0.0],
-            [0.0, -60000.0, 86.342002, -35.115125, 0.0],
-            {0: [13426.25, 12463.65, 9713.928, 5593.011, 947.7796]},
-        ),
-    ]
-    for bearing, q, force, loads in cases:
-        one = element(bearing, line_law=LAW)
-        q = jnp.zeros(12).at[6:11].set(jnp.asarray(q))
-        got, rows = evaluate(one, q)
-        assert int(got.result) == bj.Result.CONVERGED
-        wrong = np.abs(np.asarray(got.force[6:11]) - force)
-        assert wrong[:3].max() < 1e-6 * abs(force[1])
-        assert wrong[3:].max() < 1e-5
-        along = distribution(rows[0], 401)
-        sums = np.trapezoid(
-            np.asarray(along.line_load), np.asarray(along.position), axis=-1
-        )
-        for k, load in enumerate(loads[0]):
-            assert sums[k] == pytest.approx([load, load], abs=1e-4 * loads[0][0])
 
 
 # Derivatives.

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import robust_balls
-from registry import ball_elements, balls
+from registry import ball_elements, balls, grooves
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
@@ -412,3 +412,30 @@ def test_balls_that_do_not_feel_the_speed_roll_at_it(deep):
     assert not any("lifted" in text for text in warnings(found))
     oil = bj.lubrication.iso_vg(68.0)
     assert (np.asarray(films(found, oil, 330.0).minimum)[loaded] > 0).all()
+
+
+def test_constant_contact_angle_in_closed_form():
+    """F = Z K (u sin α)^1.5 sin α, whatever the load; radially the cosine."""
+    bearing = bj.AngularContactBallBearing(
+        7, 0.0435, 0.0115, contact_angle=40 * DEGREE, **grooves(0.53, 0.52)
+    )
+    element = bj.BearingElement(bearing, kinematics=bj.element.ConstantAngle())
+    outer, inner = map(float, element.model().rows[0].element.constant)
+    series = (outer ** (-2 / 3) + inner ** (-2 / 3)) ** (-3 / 2)
+    sine = np.sin(40 * DEGREE)
+    solve = jax.jit(lambda f: bj.solve_load(element, f * jnp.eye(6)[2]))
+    for force in (10.0, 1e4):
+        s = solve(force)
+        load = force / (7 * sine)
+        assert np.allclose(s.contact_angle, 40 * DEGREE, rtol=1e-12)
+        assert np.allclose(s.roller_load, load, rtol=1e-9)
+        moved = (load / series) ** (2 / 3) / sine
+        assert float(s.displacement[8]) == pytest.approx(moved, rel=1e-9)
+        assert float(s.stiffness[8, 8]) == pytest.approx(1.5 * force / moved, rel=1e-8)
+    with pytest.raises(ValueError, match="constant contact angle.*leave out the speed"):
+        element.force(jnp.zeros(12), bj.Speed(100.0))
+    deep = bj.DeepGrooveBallBearing(7, 0.0435, 0.0115, **grooves(0.53, 0.52))
+    with pytest.raises(
+        ValueError, match="constant contact angle.*angular contact and thrust"
+    ):
+        bj.BearingElement(deep, kinematics=bj.element.ConstantAngle())

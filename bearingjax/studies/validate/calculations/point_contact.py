@@ -57,17 +57,11 @@ def raceway_contacts(
     """Return the Hertz contacts of a ball or barrel with outer and inner raceway.
 
     Args:
-        diameter: Of the rolling element [m].
-        pitch_diameter: Of the circle of their centres [m].
-        contact_angle: At outer and inner raceway (2,) [rad].
-        raceway_radii: Radii of the grooves (2,) [m].
+        diameter, pitch_diameter: Of the rolling element, of the bearing [m].
+        contact_angle, raceway_radii: Of outer and inner raceway (2,) [rad, m].
         load: Loads (2,) or (n, 2) [N].
-        elastic_modulus, poisson_ratio: Of both bodies [Pa], [1].
+        elastic_modulus, poisson_ratio: Of both bodies [Pa, 1].
         profile_radius: Radius of a barrel's profile; 0: a ball [m].
-
-    Returns:
-        Sum and difference of curvatures, constants, that of both in series, semi-axes
-        along the groove and across, approaches and peak pressures.
     """
     turn = np.array([1.0, -1.0]) * diameter / pitch_diameter * np.cos(contact_angle)
     rolling = 2.0 / (diameter * (1.0 + turn))
@@ -97,26 +91,27 @@ def shear_stresses(ratio: np.ndarray, poisson_ratio: float) -> dict[str, np.ndar
     Args:
         ratio: Semi-axis in rolling direction over the one across (n,) [1].
         poisson_ratio: [1].
-
-    Returns:
-        Stresses over the peak pressure, depths over the semi-axis in rolling direction.
     """
     found = shear_below(jnp.asarray(ratio), jnp.asarray(poisson_ratio))
     return {name: np.asarray(value) for name, value in found._asdict().items()}
 
 
 def half_space(
-    curvature_x: float, curvature_y: float, load: float, elastic_modulus: float,
-    poisson_ratio: float, half_width: float, half_length: float, cells: int,
+    curvature_x: float,
+    curvature_y: float,
+    load: float,
+    elastic_modulus: float,
+    poisson_ratio: float,
+    half_width: float,
+    half_length: float,
+    cells: int,
 ) -> dict[str, float]:
     """Return peak pressure and approach of a point contact, solved cell by cell.
 
     Args:
         curvature_x, curvature_y: Sums of both bodies' curvatures [1/m].
-        load: [N].
-        elastic_modulus, poisson_ratio: Of both bodies [Pa], [1].
-        half_width, half_length: Of the grid along x and y [m].
-        cells: Number of cells each way.
+        load, elastic_modulus, poisson_ratio: [N, Pa, 1].
+        half_width, half_length, cells: Of the grid along x and y, each way [m, m, 1].
     """
     modulus = elastic_modulus / (2.0 * (1.0 - poisson_ratio**2))
     grid = even_grid(2.0 * half_length, half_width, int(cells), int(cells))
