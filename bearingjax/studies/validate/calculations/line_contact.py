@@ -35,7 +35,7 @@ def line_laws(length: np.ndarray, line_load: float, depth: float) -> dict[str, A
 
 
 def roller_on_plane(
-    roller: dict[str, float],
+    roller: dict[str, Any],
     elastic_modulus: float,
     load: float,
     places: np.ndarray,
@@ -71,7 +71,7 @@ def roller_on_plane(
     if grid is not None:
         width, across, along, grading = map(float, grid)
         cells = contact.grid(width, int(across), int(along), grading)
-    held = {"moment": 0.0} if free_to_tilt else {"tilt": 0.0}
+    held: dict[str, Any] = {"moment" if free_to_tilt else "tilt": 0.0}
     found = contact.solve(load, grid=cells, **held)
     edges = np.asarray(found.grid.edges)
     y, length = edges[-1] - np.asarray(found.grid.y), edges[-1] - edges[0]

@@ -1,6 +1,7 @@
 """Rows of rolling elements: load integrals, and loads along the orbit."""
 
 import dataclasses
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -19,7 +20,6 @@ from ....statics.load import solve_load
 
 _MANY = 720
 """Rolling elements that stand for a load spread around the orbit."""
-_WIDE = {"outer_osculation": 0.7, "inner_osculation": 0.7}
 _SMALL = 1e-9
 """Approach that leaves contact angles as they are [m]."""
 
@@ -45,9 +45,9 @@ def load_integrals(
         )
         laws = {"line_law": LineConstant(1e11), "quadrature": Midpoint(1)}
     else:
-        bearing = AngularContactBallBearing(
-            _MANY, 1.0, 0.004, contact_angle=angle, **_WIDE
-        )
+        wide = dict.fromkeys(("outer_osculation", "inner_osculation"), 0.7)
+        given: dict[str, Any] = wide | {"contact_angle": angle}
+        bearing = AngularContactBallBearing(_MANY, 1.0, 0.004, **given)
         laws = {}
     made = BearingSet.back_to_back(bearing, 0.01) if double_row else bearing
     element = BearingElement(made, **laws)
@@ -70,43 +70,43 @@ def load_integrals(
     towards = loads @ np.cos(2.0 * np.pi * np.arange(_MANY) / _MANY)
     with np.errstate(divide="ignore"):
         ratio = radial / axial
-        return {
-            "radial": radial,
-            "axial": axial,
-            "ratio": ratio,
-            "inverse": 1.0 / radial,
-            "largest": largest[:, -1] / largest[:, 0],
-            "share": towards[:, -1] / towards[:, 0],
-        }
+    return {
+        "radial": radial,
+        "axial": axial,
+        "ratio": ratio,
+        "inverse": 1.0 / radial,
+        "largest": largest[:, -1] / largest[:, 0],
+        "share": towards[:, -1] / towards[:, 0],
+    }
 
 
 def balls_along_the_orbit(
-    bearing: dict[str, float],
+    bearing: dict[str, Any],
     speed: float,
     axial_load: float,
-    radial_load: float,
+    radial_load: np.ndarray,
     alone: float,
-) -> dict[str, float]:
+) -> dict[str, np.ndarray]:
     """Return inner contact loads along the orbit of a steel ball.
 
     Args:
         bearing: Fields of an angular contact ball bearing.
         speed: Of the inner ring; raceways share the gyroscopic moment [rad/s].
-        axial_load, radial_load: In the plane of the inner groove's centre [N].
+        axial_load: In the plane of the inner groove's centre [N].
+        radial_load: Likewise (n,) [N].
         alone: Load of a ball without radial load [N].
 
     Returns:
-        Load under the radial load, opposite and the least; where along the orbit, as
-        a share, it falls below `alone`, exceeds it, and falls below it again.
+        Load under the radial load, opposite and the least (n,); where along the orbit,
+        as a share, it falls below `alone`, exceeds it, and falls below it again.
     """
     steel, turning = Material(206e9, 0.3, 7850.0), Speed(speed)
     made = AngularContactBallBearing(**bearing, material=steel)
-    lever = float(made.grooves[1].axial) * radial_load
-    load = [radial_load, 0.0, axial_load, 0.0, lever, 0.0]
-    element = BearingElement(made, raceway_control=EqualShare())
-    solved = solve_load(element, load, speed=turning)
     single = dataclasses.replace(made, n_balls=1)
-    one = BearingElement(single, raceway_control=EqualShare())
+    element, one = (
+        BearingElement(rows, raceway_control=EqualShare()) for rows in (made, single)
+    )
+    lever = float(made.grooves[1].axial)
 
     @eqx.filter_jit
     def along(one, displacement):
@@ -116,15 +116,14 @@ def balls_along_the_orbit(
 
         return jax.vmap(load)(jnp.linspace(0.0, 2.0 * jnp.pi, _MANY, endpoint=False))
 
-    load = np.asarray(along(one, solved.displacement))
-    above = load > alone
-    changes = np.flatnonzero(above != np.roll(above, 1)) / _MANY
-    first, second, third = changes[:3] if len(changes) > 3 else (np.nan,) * 3
-    return {
-        "under": load[0],
-        "opposite": load[_MANY // 2],
-        "least": load.min(),
-        "falls": first,
-        "rises": second,
-        "falls_again": third,
-    }
+    found = []
+    for radial in map(float, radial_load):
+        load = [radial, 0.0, axial_load, 0.0, lever * radial, 0.0]
+        solved = solve_load(element, load, speed=turning)
+        load = np.asarray(along(one, solved.displacement))
+        above = load > alone
+        changes = np.flatnonzero(above != np.roll(above, 1)) / _MANY
+        zones = changes[:3] if len(changes) > 3 else np.full(3, np.nan)
+        found.append([load[0], load[_MANY // 2], load.min(), *zones])
+    names = "under", "opposite", "least", "falls", "rises", "falls_again"
+    return dict(zip(names, np.array(found).T, strict=True))
