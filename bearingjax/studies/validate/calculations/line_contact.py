@@ -21,11 +21,11 @@ def line_laws(length: np.ndarray, line_load: float, depth: float) -> dict[str, A
         Constants of one contact; times the length, of one and of two in series; by
         Palmgren's law the approach of the load, load and energy of the slice.
     """
-    steel, size = Material(), jnp.asarray(length)
-    found = {}
+    steel, found = Material(), {}
     for law in (Palmgren(), ISO16281()):
         name = type(law).__name__.lower()
-        constant = np.asarray(law.constant(steel, steel, size))
+        sizes = map(jnp.asarray, length)
+        constant = np.array([law.constant(steel, steel, size) for size in sizes])
         found[name] = constant
         found[f"{name}_roller"] = constant * length
         found[f"{name}_two"] = constant * length / 2.0 ** (10 / 9)

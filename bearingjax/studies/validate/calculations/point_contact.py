@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....contact.halfspace import even_grid, influence, solve_pressure
-from ....contact.hertz import ellipse, shear_below
+from ....contact.hertz import Ellipse, ellipse, shear_below
 from ....design import Material, contact_modulus
 from ....numerics.elliptic import complete
 
@@ -70,8 +70,10 @@ def raceway_contacts(
     contact = ellipse(
         jnp.asarray(rolling), jnp.asarray(across), contact_modulus(steel, steel)
     )
-    short, long = contact.semi_axes(jnp.asarray(load))
     series = float(jnp.sum(contact.constant ** (-2 / 3)) ** (-3 / 2))
+    loads = jnp.asarray(load)
+    each = Ellipse(*(jnp.broadcast_to(one, loads.shape) for one in contact))
+    short, long = each.semi_axes(loads)
     found = {
         "curvature_sum": rolling + across,
         "curvature_difference": (rolling - across) / (rolling + across),
@@ -79,8 +81,8 @@ def raceway_contacts(
         "series": series,
         "across": long,
         "along": short,
-        "approach": contact.approach(jnp.asarray(load)),
-        "pressure": contact.peak_pressure(jnp.asarray(load)),
+        "approach": each.approach(loads),
+        "pressure": each.peak_pressure(loads),
     }
     return {name: np.asarray(value) for name, value in found.items()}
 
