@@ -3,7 +3,6 @@
 import jax.numpy as jnp
 import numpy as np
 
-from ....contact.halfspace import even_grid, influence, solve_pressure
 from ....contact.hertz import Ellipse, ellipse, shear_below
 from ....design import Material, contact_modulus
 from ....numerics.elliptic import complete
@@ -96,34 +95,3 @@ def shear_stresses(ratio: np.ndarray, poisson_ratio: float) -> dict[str, np.ndar
     """
     found = shear_below(jnp.asarray(ratio), jnp.asarray(poisson_ratio))
     return {name: np.asarray(value) for name, value in found._asdict().items()}
-
-
-def half_space(
-    curvature_x: float,
-    curvature_y: float,
-    load: float,
-    elastic_modulus: float,
-    poisson_ratio: float,
-    half_width: float,
-    half_length: float,
-    cells: int,
-) -> dict[str, float]:
-    """Return peak pressure and approach of a point contact, solved cell by cell.
-
-    Args:
-        curvature_x, curvature_y: Sums of both bodies' curvatures [1/m].
-        load, elastic_modulus, poisson_ratio: [N, Pa, 1].
-        half_width, half_length, cells: Of the grid along x and y, each way [m, m, 1].
-    """
-    modulus = elastic_modulus / (2.0 * (1.0 - poisson_ratio**2))
-    grid = even_grid(2.0 * half_length, half_width, int(cells), int(cells))
-    x, y = grid.x[:, None], grid.y[None]
-    gap = 0.5 * (curvature_x * x**2 + curvature_y * y**2)
-    solved = solve_pressure(influence(grid, modulus), gap, load=load)
-    hertz = ellipse(*(jnp.asarray(v) for v in (curvature_x, curvature_y, modulus)))
-    return {
-        "pressure": float(solved.peak_pressure),
-        "approach": float(solved.approach),
-        "hertz_pressure": float(hertz.peak_pressure(jnp.asarray(load))),
-        "hertz_approach": float(hertz.approach(jnp.asarray(load))),
-    }
