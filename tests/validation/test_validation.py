@@ -93,7 +93,7 @@ def test_comparison(ours, tolerance, within, kept):
         assert one.worst == 1 and one.largest == pytest.approx(0.05)
 
 
-def _test_every_subject_has_a_case():
+def test_every_subject_has_a_case():
     assert {case.subject for case in cases().values()} == {*SUBJECTS}
 
 

@@ -193,7 +193,8 @@ def preloaded_grooves(
 
     Returns:
         `approach` [m], `constant` [N/m^1.5], `preload` [N], `displacement` that presses
-        the rings [m], `radial` and `axial` stiffness [N/m].
+        the rings [m], `radial` and `axial` stiffness [N/m], and the axial one where the
+        contact angle follows the motion, over it, `stiffening` [1].
     """
     bearing = Grooves(
         inner_radius=inner_radius,
@@ -206,6 +207,7 @@ def preloaded_grooves(
     )
     law = bearing.fixed_angle()
     stiffness = np.asarray(law.stiffness())
+    moving = np.asarray(bearing.moving_angle().stiffness())
     return {
         "approach": float(bearing.approach),
         "constant": float(law.constant),
@@ -213,6 +215,7 @@ def preloaded_grooves(
         "displacement": float(law.preload_displacement),
         "radial": float(stiffness[0, 0]),
         "axial": float(stiffness[2, 2]),
+        "stiffening": float(moving[2, 2] / stiffness[2, 2]),
     }
 
 
@@ -239,9 +242,8 @@ def skidding_balls(
         axial_load: (load,) [N].
 
     Returns:
-        Of each load `slip` of the orbit [1], `angle` of both contacts [rad], `load` of
-        the inner one [N], `spin` (tangential, radial, axial) [rad/s], `pitch` of the
-        spin axis [rad].
+        Of each load `slip` of the orbit [1], `spin` (tangential, radial, axial)
+        [rad/s], `pitch` of the spin axis [rad].
     """
     bearing = AngularContactBallBearing(
         n_balls,
@@ -266,8 +268,6 @@ def skidding_balls(
         )
         return {
             "slip": found.slip[0],
-            "angle": found.contact_angle[0],
-            "load": found.contact_load[0, 1],
             "spin": found.spin[0],
             "pitch": found.pitch_angle[0],
         }
