@@ -290,8 +290,8 @@ def test_boundary_dimensions_of_the_catalogue_are_drawn(name, letter):
     entry = bj.catalogue_entry(name)
     d, big, wide = 1e3 * np.array([entry.bore, entry.outside_diameter, entry.width])
     for ax in (
-        plot.cross_section(entry.bearing, catalogue=entry),
-        plot.drawing(entry.bearing, catalogue=entry).axes[0],
+        plot.cross_section(bj.load_bearing(entry.designation), catalogue=entry),
+        plot.drawing(bj.load_bearing(entry.designation), catalogue=entry).axes[0],
     ):
         drawn = [line for line in ax.lines if line.get_label() == "_boundary"]
         lines = [np.transpose(np.asarray(line.get_data(), float)) for line in drawn]
@@ -307,5 +307,5 @@ def test_boundary_dimensions_of_the_catalogue_are_drawn(name, letter):
         assert all(line[:, 1].max() < top for line in lines)
     smaller = bj.catalogue_entry("6205")  # into which its elements do not fit
     for other in (None, smaller):
-        bare = plot.cross_section(entry.bearing, catalogue=other)
+        bare = plot.cross_section(bj.load_bearing(entry.designation), catalogue=other)
         assert not any(line.get_label() == "_boundary" for line in bare.lines)

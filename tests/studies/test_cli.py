@@ -80,6 +80,7 @@ def test_solve_report_is_self_contained_html(run, tmp_path):
         "Stiffness",
         "Rolling elements",
         "Solution",
+        "Credibility",
         "Drawing",
         "Inputs",
         "How to run it again",

@@ -540,7 +540,7 @@ def test_a_motion_in_time_settles_into_the_linear_response(run, tmp_path):
         "rotor.transient": "{duration='40 ms', n_times=401}",
     }
     given = command(ON_SPRINGS, turning, scene=str(path))
-    done = run(*given, "--json", out, "--table", table)
+    done = run(*given, "--json", out, "--table", table, "--si")
     assert done.status == 0, done.err
     assert "motion in time to 0.04 s" in done.out
     found = read(out)["transient"]

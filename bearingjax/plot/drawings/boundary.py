@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...catalogue.entry import CatalogueEntry
+from ...catalogue.entry import CatalogueEntry, bearing_of_entry
 from ...design import AbstractBearing, BearingSet, rows_of
 from ..style import BOX, GREY, Axes, write_beside
 from .dimension import quantity
@@ -43,7 +43,9 @@ def draw_boundary(
     sizes = entry.bore, entry.outside_diameter, entry.width
     low, high = 500.0 * np.array(sizes[:2]) - centre
     rows = len(rows_of(bearing))
-    placed = rows == len(rows_of(entry.bearing)) and entry.type not in _UNPLACED
+    placed = (
+        rows == len(rows_of(bearing_of_entry(entry))) and entry.type not in _UNPLACED
+    )
     z = np.concatenate([patch.get_path().vertices for patch in ax.patches])[:, 0]
     left, right = np.array([-500.0, 500.0]) * sizes[2] if placed else (z.min(), z.max())
     for patch in ax.patches:
