@@ -159,20 +159,24 @@ def _on_seats(bearing: AbstractBearing, state: FitState) -> Any:
 
 
 def _mounted_row(row: SetRow, state: FitState, shift) -> SetRow:
-    new = _on_seats(row.bearing, state)
-    offset = row.inner_offset + shift
-    if isinstance(new, AngularContactBallBearing):
-        before: Any = row.bearing
-        # Balls that grow bring the groove centres nearer: by what is radial of it the
-        # free angle has changed, the rest is axial.
-        nearer = new.ball_diameter * state.element_strain
-        sine = jnp.sin(new.free_contact_angle)
-        nearer = nearer * sine + new.centre_distance * (
-            jnp.sin(before.free_contact_angle) - sine
-        )
-        # A row is pressed by its inner ring moving along +z; mirrored, along -z.
-        offset = offset + (-nearer if row.mirrored else nearer)
-    return replace(row, bearing=new, inner_offset=offset)
+    nearer = axial_approach(row.bearing, state)
+    # A row is pressed by its inner ring moving along +z; mirrored, along -z.
+    offset = row.inner_offset + shift + (-nearer if row.mirrored else nearer)
+    return replace(row, bearing=_on_seats(row.bearing, state), inner_offset=offset)
+
+
+def axial_approach(bearing: Any, state: FitState) -> Any:
+    """Return how far the place where a row touches comes nearer along the axis [m]: of
+    angular contact, whose displacements count from there. Others count from a place of
+    their rings: 0. The row is as drawn; its state is that of its own sizes."""
+    if not isinstance(bearing, AngularContactBallBearing):
+        return 0.0
+    sine = jnp.sin(_on_seats(bearing, state).free_contact_angle)
+    # Balls that grow bring the groove centres nearer: by what is radial of it the
+    # free angle has changed, the rest is axial.
+    nearer = bearing.ball_diameter * state.element_strain * sine
+    change = jnp.sin(bearing.free_contact_angle) - sine
+    return nearer + bearing.centre_distance * change
 
 
 def row_shifts(

@@ -13,6 +13,7 @@ import jax.scipy as jsp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..design import AngularContactBallBearing
 from ..design.checks import are_known, is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient, unless_failed
@@ -36,6 +37,7 @@ from .seats import axial_growth, offset_of, supports_of, with_preload_offsets
 from .state import SystemSolution, describe_state, moving_part
 from .system import ShaftSystem
 
+_UNUSED = "ball_deviation azimuth_deviation raceway_deviation filled published".split()
 _SLID = 1e-3
 """Way along a shaft over its length from which it has slid off its bearings [1]."""
 
@@ -195,7 +197,7 @@ class Machine(NamedTuple):
         rotors: Its shafts, on springs in place of bearings.
         points: Forces of wheels and loads on the nodes of each [N, N m].
         whole: All of it, condensed on the bearings.
-        growth: How far heat moves each inner ring along its shaft [m].
+        growth: From `axial_growth` [m].
     """
 
     power: PowerFlow
@@ -206,17 +208,21 @@ class Machine(NamedTuple):
 
 
 def without_bearings(system: ShaftSystem) -> ShaftSystem:
-    """Return a system whose bearings are not there, but their seats and springs.
+    """Return a system whose bearings are not there, but their seats and springs, and of
+    mounted angular contact bearings, in place of the drawing, their sizes.
 
     Args:
         system: The system, or a change of its numbers.
     """
 
     def empty(seat):
-        inside = seat.installed
+        inside, sizes = seat.installed, None
         if inside is None:
             return seat
-        bare = with_fields(inside, drawing=None, limits=None, preload=None)
+        row = inside.drawing.bearing
+        if inside.mounting is not None and isinstance(row, AngularContactBallBearing):
+            sizes = with_fields(row, n_balls=1, **dict.fromkeys(_UNUSED))
+        bare = with_fields(inside, drawing=sizes, limits=None, preload=None)
         bare = with_fields(bare, limiting_speed=None, reference_speed=None)
         return with_fields(seat, installed=bare)
 
@@ -224,10 +230,10 @@ def without_bearings(system: ShaftSystem) -> ShaftSystem:
 
 
 def machine_of(system: ShaftSystem) -> Machine:
-    """Work out a system but for its bearings; they need not be there.
+    """Work out a system but for its bearings.
 
     Args:
-        system: The system.
+        system: From `without_bearings`.
     """
     power = power_flow(system)
     rotors, points = [], []
@@ -238,7 +244,7 @@ def machine_of(system: ShaftSystem) -> Machine:
         rotors.append(Rotor(beam, (), springs, rigid=line.rigid))
         points.append(_points(system, power, index, beam))
     whole = with_fields(_couple(system, rotors, points, power), supports=())
-    return Machine(power, rotors, points, whole, axial_growth(system))
+    return Machine(power, rotors, points, whole, axial_growth(system, whole.speed))
 
 
 @program(quick=True)
@@ -256,7 +262,7 @@ def _describe(system, machine, found, held):
 
 @program(quick=True)
 def _state_in_one(system):
-    machine = machine_of(system)
+    machine = machine_of(without_bearings(system))
     supports = supports_of(system, machine.whole.speed, machine.growth)
     machine = machine._replace(whole=with_fields(machine.whole, supports=supports))
     whole = stop_gradient(machine.whole)

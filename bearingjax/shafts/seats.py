@@ -12,6 +12,8 @@ from ..design.checks import are_known, is_traced
 from ..element.bearing_element import BearingElement
 from ..element.frame import FREEDOMS
 from ..element.inertia import Speed
+from ..fits import FitConditions, fit_state, with_bearing_dimensions
+from ..fits.mounting import axial_approach
 from ..numerics.compiled.programs import program
 from ..numerics.types import Scalar, as_array, as_real, in_numpy, with_fields
 from ..rotor import BearingSupport, LinearSupport, preload_offset
@@ -143,7 +145,7 @@ def offset_of(
 
     Args:
         seat: Seat of the bearing.
-        growth: How far heat moves the ring along the shaft [m].
+        growth: How far operation displaces the ring along the shaft [m].
         sense: -1 if the bearing is turned round, else 1; `None`: as `seat` says.
     """
     if sense is None:
@@ -152,14 +154,18 @@ def offset_of(
     return jnp.zeros(N_STATION, offset.dtype).at[2].set(offset)
 
 
-def axial_growth(system: ShaftSystem) -> Float[Array, " bearing"]:
-    """Return how far heat moves each inner ring along its shaft against its seat [m].
+def axial_growth(
+    system: ShaftSystem, speeds: Float[Array | np.ndarray, " bearing"]
+) -> Float[Array, " bearing"]:
+    """Return how far operation displaces each inner ring along its shaft [m].
 
     Shaft and housing grow between the bearings, whose temperatures change evenly from
-    one to the next; the first bearing of a shaft stays where it is.
+    one to the next; the first bearing of a shaft stays where it is. The place where a
+    bearing touches has moved by `axial_approach` since it was mounted in the cold.
 
     Args:
-        system: The system; bearings without temperatures are as cold as mounted.
+        system: From `without_bearings`.
+        speeds: Speed of the shaft of each bearing [rad/s].
     """
     zero = jnp.zeros((), jnp.result_type(float))
     found = [zero for _ in system.seats]
@@ -170,7 +176,19 @@ def axial_growth(system: ShaftSystem) -> Float[Array, " bearing"]:
             ends = [system.seats[k] for k in (last, this)]
             strain = sum(map(_strain, ends)) / 2.0
             found[this] = found[last] + strain * (ends[1].position - ends[0].position)
-    return jnp.stack(found)
+    return jnp.stack(found) + jnp.stack(list(map(_approach, system.seats, speeds)))
+
+
+def _approach(seat: Seat, speed: Scalar) -> Scalar:
+    still = jnp.zeros_like(speed)
+    inside: Any = seat.installed
+    if inside is None or inside.drawing is None:
+        return still
+    own = with_bearing_dimensions(inside.mounting, inside.drawing)
+    warm = inside.conditions or FitConditions()
+    warm = fit_state(own, with_fields(warm, speed=speed, outer_speed=still))
+    more, less = (axial_approach(inside.drawing, s) for s in (warm, fit_state(own)))
+    return less - more if seat.turned else more - less
 
 
 def _strain(seat: Seat) -> Any:
