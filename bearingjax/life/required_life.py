@@ -75,7 +75,7 @@ def judge_life(
 
     Args:
         bearing: The bearing that was solved.
-        conditions: Those of its life.
+        conditions: Conditions of its life, with the required one.
         factor: Life over the required one [1]: the modified life, or without a
             lubricant the reference life times a1.
         basic: Basic life over the required one [1].
@@ -127,7 +127,7 @@ def _life_factors(bearing, lives, oil, clean, times) -> Float[Array, " case"]:
     kind = exponents_of(rows_of(bearing)[0].bearing)
     n, d = kind.spread
 
-    def one(kappa, shares, limit):
+    def factor_of_case(kappa, shares, limit):
         dirt = clean
         if isinstance(clean, Cleanliness):
             dirt = clean.factor(kappa, 2.0 * pitch_radius(bearing))
@@ -139,7 +139,7 @@ def _life_factors(bearing, lives, oil, clean, times) -> Float[Array, " case"]:
         return jnp.where(tired > 0, tired, 1.0) ** -(d / n)
 
     numbers = (lives[name] for name in NEEDED)
-    return jax.vmap(lambda kappa, *parts: one(oil * kappa, *parts))(*numbers)
+    return jax.vmap(lambda kappa, *parts: factor_of_case(oil * kappa, *parts))(*numbers)
 
 
 def _least(used: Callable[[float], float], low: float, high: float) -> float | None:

@@ -272,7 +272,10 @@ def envelope_spectrum(
     weighs least.
 
     Args:
-        signal, duration, shaft_frequency, window: As in `spectrum`, concrete.
+        signal: Record (sample,) or (sample, direction), as in `spectrum`, concrete.
+        duration: Duration of the record [s].
+        shaft_frequency: Turns of the shaft per second [Hz].
+        window: Window of the envelope.
         band: Lower and upper frequency, both in the band (2,) [Hz].
 
     Returns:

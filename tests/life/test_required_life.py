@@ -7,6 +7,7 @@ import pytest
 import bearingjax as bj
 from bearingjax.life.life_factor import CLEANLINESS, Cleanliness
 from bearingjax.life.required_life import judge_life
+from bearingjax.studies.bearing.life_report import over_required
 
 BALLS = bj.DeepGrooveBallBearing(
     7, 43.5e-3, 11.5e-3, inner_osculation=0.52, outer_osculation=0.53
@@ -107,3 +108,13 @@ def test_required_life_is_refused_in_two_units():
         bj.LifeConditions(required=-1.0)
     assert bj.LifeConditions(required=2e4).requires
     assert not bj.LifeConditions(required=2e4).without_requirement.requires
+
+
+def test_life_over_the_required_one():
+    """In hours or revolutions; `None` without a requirement, or of hours at rest."""
+    hours = bj.LifeConditions(required=2e4)
+    turns = bj.LifeConditions(required_revolutions=1e9)
+    assert over_required(hours, 5e3, 4e9) == pytest.approx(0.25)
+    assert over_required(turns, 5e3, 4e9) == pytest.approx(4.0)
+    for conditions, at in ((hours, None), (bj.LifeConditions(), 5e3), (None, 5e3)):
+        assert over_required(conditions, at, 4e9) is None

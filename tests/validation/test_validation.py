@@ -168,19 +168,27 @@ def test_nearest_cases(monkeypatch, load, order):
     assert like.load == pytest.approx(load / 1.1e3)
 
 
-def test_report_names_the_nearest_cases():
+def test_report_names_the_nearest_cases(monkeypatch):
+    one = "harris_218_thrust"
+    known = {one: cases()[one]}
+    monkeypatch.setattr(nearest, "cases", lambda: known)
     found = SimpleNamespace(
         bearing=bj.AngularContactBallBearing(
             16,
-            0.12526,
-            0.022225,
+            0.5 * 0.12526,
+            0.5 * 0.022225,
             contact_angle=0.7,
             outer_osculation=0.5232,
             inner_osculation=0.5232,
         ),
         kinematics=bj.element.Linearised(),
     )
-    (facts,) = credibility_section(found, [0, 0, 17.8e3, 0, 0, 0])
+    (facts,) = credibility_section(found, [0, 0, 0.5 * 17.8e3, 0, 0, 0])
     text = " ".join(str(facts).split())
-    assert "harris_218_thrust (independent program): this bearing has 1 times" in text
+    told = (
+        "harris_218_thrust (independent program): this bearing has 0.5 times its pitch"
+    )
+    assert f"{told} diameter d and 2 times its load/d²" in text
+    (facts,) = credibility_section(found, [0.0] * 6)
+    assert "diameter d, and no load" in " ".join(str(facts).split())
     assert "tilts up to 10 mrad" in text

@@ -34,7 +34,8 @@ def credibility_section(element: Any, load: Any) -> Section:
     near = nearest_cases(row, float(np.linalg.norm(np.asarray(load)[:3])))
     told = [
         f"{one.case.name} ({one.case.trust}): this bearing has {one.size:.2g} times its"
-        f" pitch diameter d and {one.load:.2g} times its load/d²"
+        " pitch diameter d"
+        + (f" and {one.load:.2g} times its load/d²" if one.load else ", and no load")
         for one in near
     ]
     facts.append(("nearest cases", told[0] if told else "none of this type"))

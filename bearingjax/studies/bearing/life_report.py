@@ -71,7 +71,7 @@ def over_required(
     rest.
 
     Args:
-        conditions: Of the life, if any.
+        conditions: Conditions of the life; `None`: no life is asked for.
         hours: The life [h]; `None` at rest.
         revolutions: The life [rev].
     """

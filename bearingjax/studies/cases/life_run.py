@@ -237,7 +237,7 @@ def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
 
     Args:
         run: From `run_life`.
-        exact: As in `sweep_table.columns`, and without the columns of `add_hours`.
+        exact: Whether to keep round-off and leave out lives in hours (`add_hours`).
     """
     found = columns(run.solved, design_columns(run.table), exact=exact)
     return found if exact else add_hours(found, run.solved.cases, run.table.scene.life)

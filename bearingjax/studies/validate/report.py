@@ -102,7 +102,7 @@ def _case_parts(own: list[Comparison]) -> list[Part]:
             Column("ours", [float(o.flat_ours[p]) for o, p in _with(own, places)]),
             Column("unit", [one.number.unit for one in own]),
             Column("differs by", [o.largest for o in own], "1", ".2g", _PERCENT),
-            Column("asked for", [_asked(one) for one in own]),
+            Column("asked for", [_tolerance_in_words(one) for one in own]),
         ],
         f"{case.title} ({case.name})",
     )
@@ -115,7 +115,7 @@ def _with(own, places):
     return zip(own, places, strict=True)
 
 
-def _asked(one: Comparison) -> str:
+def _tolerance_in_words(one: Comparison) -> str:
     """Return the tolerance in words, and whether it is kept."""
     number = one.number
     if not number.is_test:

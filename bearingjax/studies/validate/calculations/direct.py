@@ -47,14 +47,16 @@ def call(function: str, **given: Any) -> Mapping[str, Any]:
         given[table] = {**given[table], name: given.pop(key)}
     if "bearing" in given:
         given["bearing"] = bearing_by(given["bearing"], given.pop("arrangement", ""))
-    found = _as_data(_made({"make": function, **given}))
+    found = _as_data(_call_named({"make": function, **given}))
     return found if isinstance(found, Mapping) else {"value": found}
 
 
-def _made(value: Any) -> Any:
+def _call_named(value: Any) -> Any:
     if not isinstance(value, Mapping) or "make" not in value:
         return value
-    given = {name: _made(inner) for name, inner in value.items() if name != "make"}
+    given = {
+        name: _call_named(inner) for name, inner in value.items() if name != "make"
+    }
     first, *names = value["make"].split(".")
     if hasattr(given.get(first), names[0]):
         called = functools.reduce(getattr, names, given.pop(first))

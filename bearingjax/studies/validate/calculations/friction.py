@@ -18,7 +18,8 @@ def coefficient(
     Args:
         bearing: Its designation.
         load: On the bearing (6,), which one row bears [N, N m].
-        speed, viscosity: Of the inner ring [rad/s], of the oil [m²/s].
+        speed: Speed of the inner ring [rad/s].
+        viscosity: Kinematic viscosity of the oil [m²/s].
     """
     entry, force = catalogue_entry(bearing), jnp.asarray(load)
     own = bearing_of_entry(entry)

@@ -47,8 +47,9 @@ def roller_on_plane(
 
     Args:
         roller: Sizes of a `RollerContact`.
-        elastic_modulus: Of both bodies; Poisson's ratio is 0.3 [Pa].
-        load: [N].
+        elastic_modulus: Elastic modulus of both bodies, whose Poisson's ratio is 0.3
+            [Pa].
+        load: Load that presses them together [N].
         places: Distances from the small end at which the pressure is wanted (n,) [m].
         design_load: Of Lundberg's profile; none: no profile [N].
         grid: Half width of the cells [m], numbers across and along, grading; by

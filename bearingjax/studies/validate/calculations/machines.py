@@ -102,7 +102,7 @@ def ring_frequencies(
     Args:
         n_balls: Number of balls; one stands in the line of the load.
         ball_diameter, pitch_diameter: [m].
-        osculation: Of both grooves [1].
+        osculation: Groove radius over ball diameter, of both grooves [1].
         ring_mass: Mass that vibrates [kg].
         load: Radial load [N].
     """
@@ -186,10 +186,11 @@ def preloaded_grooves(
     Args:
         inner_radius, outer_radius: Radii of both grooves' bottoms [m].
         groove_radius: Of their sections [m].
-        ball_diameter: [m].
+        ball_diameter: Diameter of the balls [m].
         contact_angle: Under preload [rad].
         n_balls: Number of balls.
-        elastic_modulus: [Pa]; Poisson's ratio is 0.3.
+        elastic_modulus: Elastic modulus of balls and rings, whose Poisson's ratio is
+            0.3 [Pa].
 
     Returns:
         `approach` [m], `constant` [N/m^1.5], `preload` [N], `displacement` that presses
@@ -235,7 +236,7 @@ def skidding_balls(
     Args:
         n_balls: Number of balls.
         ball_diameter, pitch_diameter: [m].
-        osculation: Of both grooves [1].
+        osculation: Groove radius over ball diameter, of both grooves [1].
         contact_angle: Unloaded [rad].
         inner_speed: [rad/s].
         oil_temperature: [K].

@@ -29,8 +29,8 @@ def preloaded_pair(
         bore, outside_diameter: d and D; the pitch diameter is their mean [m].
         contact_angle: Unloaded contact angle [rad].
         n_balls: Number of balls.
-        ball_diameter: [m].
-        osculation: Of both grooves [1].
+        ball_diameter: Diameter of the balls [m].
+        osculation: Groove radius over ball diameter, of both grooves [1].
         preload: Preloads (n,) [N].
         measuring_load: Axial load under which the maker measures clearance [N].
     """

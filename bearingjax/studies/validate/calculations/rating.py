@@ -59,7 +59,8 @@ def modified_life(
     Args:
         bearing, arrangement: As in `direct.bearing_by`.
         load: On the bearing, in each interval (n, 6) [N, N m].
-        speed, viscosity: Of each interval [rad/s], [m²/s].
+        speed: Speed of the inner ring in each interval (n,) [rad/s].
+        viscosity: Kinematic viscosity of the oil in each interval (n,) [m²/s].
         contamination: e_C [1].
         mean_diameter: Of κ, in place of the pitch diameter [m].
         given: Ratings in place of those of the bearing [N].
