@@ -5,6 +5,7 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
+import jax
 import numpy as np
 
 from ...cases import Cases
@@ -185,7 +186,7 @@ def run_life(
         conditions.fatigue_load_limit,
     )
     with scene_errors(scene.name):
-        rated = ratings(bearing, *given)
+        rated = jax.device_get(ratings(bearing, *given))
     wanted = dataclasses.replace(table, outputs=tuple(outputs))
     solved = run_cases(wanted, progress, stop)
     lives = {
