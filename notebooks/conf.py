@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-os.environ["MPLBACKEND"] = "Agg"
+os.environ |= {"MPLBACKEND": "Agg", "JAX_PLATFORMS": "cpu"}
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
 import jax  # noqa: E402

@@ -5,7 +5,6 @@ left alone, so that Sphinx reads again what has changed.
 """
 
 import functools
-import hashlib
 import importlib
 import inspect
 import os
@@ -48,6 +47,7 @@ def write_pages():
         place.parent.mkdir(parents=True, exist_ok=True)
         if not place.exists() or place.read_text("utf-8") != text:
             place.write_text(text, "utf-8")
+    (MADE / "drawings").mkdir(exist_ok=True)
     for kind in (*BALLS, *ROLLERS):
         draw(kind)
     site_validation.draw_overview()
@@ -168,13 +168,7 @@ def lead_to_pages(app, name, text):
 
 
 def draw(kind):
-    """Draw the bearing of a type, unless its design and our plots are as they were."""
-    place = MADE / "drawings" / f"{kind}.svg"
-    plots = sorted(Path(bj.__path__[0], "plot").rglob("*.py"))
-    known = scene_text(kind).encode() + b"".join(p.read_bytes() for p in plots)
-    mark = f"<!-- {hashlib.sha256(known).hexdigest()} -->\n"
-    if not place.exists() or not place.read_text().endswith(mark):
-        place.parent.mkdir(parents=True, exist_ok=True)
-        scene = scene_of(tomllib.loads(scene_text(kind)), Path(kind))
-        bj.plot.drawing(scene.element.bearing, DRAWN.get(kind, "")).savefig(place)
-        place.write_text(place.read_text() + mark)
+    """Draw the bearing of a type."""
+    scene = scene_of(tomllib.loads(scene_text(kind)), Path(kind))
+    figure = bj.plot.drawing(scene.element.bearing, DRAWN.get(kind, ""))
+    figure.savefig(MADE / "drawings" / f"{kind}.svg", metadata={"Date": None})

@@ -12,10 +12,7 @@ import numpy as np
 
 from bearingjax.plot import validation_overview
 from bearingjax.report.report_model import Column, Grid
-from bearingjax.studies.validate.report import (
-    pairs_and_trust,
-    validation_report,
-)
+from bearingjax.studies.validate.report import pairs_and_trust, validation_report
 from bearingjax.studies.validate.run import Comparison
 from bearingjax.validation import cases
 
@@ -56,11 +53,9 @@ def validation_page():
 
 
 def draw_overview():
-    """Draw all numbers, unless the picture is there and younger than they are."""
-    place = HERE / "_generated" / "validation.svg"
-    if not place.exists() or place.stat().st_mtime < _changed():
-        place.parent.mkdir(exist_ok=True)
-        validation_overview(*pairs_and_trust(comparisons())).savefig(place)
+    """Draw all numbers."""
+    overview = validation_overview(*pairs_and_trust(comparisons()))
+    overview.savefig(HERE / "_generated" / "validation.svg")
 
 
 def cases_of_type(kind):
@@ -96,17 +91,10 @@ def _anchor(case):
 
 def _table(grid):
     """A grid in Markdown."""
-    heads = [f"{name} [{unit}]" if unit else name for name, unit in _heads(grid)]
+    heads = [
+        f"{name} [{unit}]" if unit else name
+        for name, unit in (c.heading for c in grid.columns)
+    ]
     rows = [heads, ["---"] * len(heads), *grid.rows()]
     cells = (" | ".join(str(c).replace("|", "\\|") for c in row) for row in rows)
     return "\n".join(f"| {row} |" for row in cells)
-
-
-def _heads(grid):
-    return [column.heading for column in grid.columns]
-
-
-def _changed():
-    folder = HERE.parent / "bearingjax" / "validation" / "cases"
-    files = [HERE / "validation.json", *folder.glob("*.toml")]
-    return max(path.stat().st_mtime for path in files)

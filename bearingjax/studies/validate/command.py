@@ -33,32 +33,26 @@ def add(commands: Commands) -> ArgumentParser:
 
 def run(options: Namespace, tools: Tools) -> Outcome:
     """Compare the numbers of cases."""
-    from .report import (
-        case_list,
-        columns,
-        numbers,
-        pairs_and_trust,
-        validation_report,
-    )
+    from . import report
     from .run import compare_case, select_cases
 
     chosen = select_cases(options.cases)
     if options.list:
-        report = case_list(chosen)
-        return Outcome("Validation", {}, lambda: {}, report)
+        return Outcome("Validation", {}, lambda: {}, report.case_list(chosen))
     found = []
     for place, case in enumerate(chosen):
         if tools.stage is not None:
             tools.stage(f"{place + 1} of {len(chosen)}: {case.name}", counts=True)
         found += compare_case(case)
+    pairs = report.pairs_and_trust(found)
     return Outcome(
         "Validation",
         {},
-        lambda: numbers(found),
-        validation_report(found, single=len(chosen) == 1),
-        lambda: columns(found),
-        {"Ours over theirs": picture("validation_overview", *pairs_and_trust(found))},
-        page=lambda: validation_report(found, single=True),
+        lambda: report.numbers(found),
+        report.validation_report(found, single=len(chosen) == 1),
+        lambda: report.columns(found),
+        {"Ours over theirs": picture("validation_overview", *pairs)},
+        page=lambda: report.validation_report(found, single=True),
         problems=[
             f"{one.case.name}: {one.number.name} differs by {100 * one.largest:.3g} %"
             for one in found

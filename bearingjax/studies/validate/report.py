@@ -3,6 +3,7 @@
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -18,25 +19,20 @@ _WIDTH = 100
 """Characters of a line of words."""
 
 
-def case_list(cases: Sequence[Case]) -> Report:
-    """Return the cases by their subjects."""
-    sections: dict[str, Sequence[Part]] = {
-        SUBJECTS[subject]: [
-            Grid(
-                [
-                    Column("case", [case.name for case in own]),
-                    Column("trust", [case.trust for case in own]),
-                    Column("title", [case.title for case in own]),
-                ]
-            )
+def case_list(cases: Iterable[Case]) -> Report:
+    """Return the cases by their subjects, in whose order they must be."""
+    sections: dict[str, Sequence[Part]] = {}
+    for subject, group in groupby(cases, key=lambda case: case.subject):
+        rows = [(case.name, case.trust, case.title) for case in group]
+        names = "case", "trust", "title"
+        sections[SUBJECTS[subject]] = [
+            Grid([*map(Column, names, zip(*rows, strict=True))])
         ]
-        for subject, own in _by_subject(cases, lambda case: case).items()
-    }
     return Report(sections)
 
 
 def validation_report(found: Sequence[Comparison], single: bool) -> Report:
-    """Return the comparisons by subject.
+    """Return the comparisons by subject, in whose order they must be.
 
     Args:
         found: Comparisons of any cases.
@@ -44,44 +40,25 @@ def validation_report(found: Sequence[Comparison], single: bool) -> Report:
             number that differs most from what is asked.
     """
     sections: dict[str, Sequence[Part]] = {}
-    for subject, own in _by_subject(found, lambda one: one.case).items():
-        by_case = {one.case.name: [] for one in own}
-        for one in own:
-            by_case[one.case.name].append(one)
-        if single:
-            parts = [part for one in by_case.values() for part in _case_parts(one)]
-        else:
-            parts = [_summary(list(by_case.values()))]
-        sections[SUBJECTS[subject]] = parts
+    for subject, group in groupby(found, key=lambda one: one.case.subject):
+        by_case = [[*own] for _, own in groupby(group, key=lambda one: one.case.name)]
+        parts = [part for own in by_case for part in _case_parts(own)]
+        sections[SUBJECTS[subject]] = parts if single else [_summary(by_case)]
     sections["Trust"] = [_by_trust(found)]
     return Report(sections)
 
 
-def _by_subject(things: Iterable[Any], case_of) -> dict[str, list[Any]]:
-    found: dict[str, list[Any]] = {subject: [] for subject in SUBJECTS}
-    for one in things:
-        found[case_of(one).subject].append(one)
-    return {subject: own for subject, own in found.items() if own}
-
-
 def _summary(by_case: list[list[Comparison]]) -> Grid:
     tested = [[one for one in own if one.number.is_test] for own in by_case]
+    largest = [max((one.largest for one in own), default=np.nan) for own in tested]
+    kept = ["yes" if all(one.kept for one in own) else "no" for own in tested]
     return Grid(
         [
             Column("case", [own[0].case.name for own in by_case]),
             Column("trust", [own[0].case.trust for own in by_case]),
             Column("numbers", [sum(one.count for one in own) for own in by_case]),
-            Column(
-                "differ by up to",
-                [max((one.largest for one in own), default=np.nan) for own in tested],
-                "1",
-                ".2g",
-                _PERCENT,
-            ),
-            Column(
-                "as asked",
-                ["yes" if all(one.kept for one in own) else "no" for own in tested],
-            ),
+            Column("differ by up to", largest, "1", ".2g", _PERCENT),
+            Column("as asked", kept),
         ]
     )
 
@@ -90,7 +67,6 @@ def _case_parts(own: list[Comparison]) -> list[Part]:
     """Return title, source and numbers of one case; of each list of values the one that
     differs most."""
     case = own[0].case
-    places = [one.worst for one in own]
     reasons = dict.fromkeys(
         f"{one.number.name}: {one.number.reason}" for one in own if one.number.reason
     )
@@ -98,10 +74,10 @@ def _case_parts(own: list[Comparison]) -> list[Part]:
         [
             Column("number", [one.number.name for one in own]),
             Column("values", [one.count for one in own]),
-            Column("theirs", [float(o.theirs[p]) for o, p in _with(own, places)]),
-            Column("ours", [float(o.flat_ours[p]) for o, p in _with(own, places)]),
+            Column("theirs", [one.theirs[one.worst] for one in own]),
+            Column("ours", [one.flat_ours[one.worst] for one in own]),
             Column("unit", [one.number.unit for one in own]),
-            Column("differs by", [o.largest for o in own], "1", ".2g", _PERCENT),
+            Column("differs by", [one.largest for one in own], "1", ".2g", _PERCENT),
             Column("asked for", [_tolerance_in_words(one) for one in own]),
         ],
         f"{case.title} ({case.name})",
@@ -109,10 +85,6 @@ def _case_parts(own: list[Comparison]) -> list[Part]:
     notes = [case.notes] if case.notes else []
     words = [f"{TRUST[case.trust].capitalize()}: {case.source}", *notes, *reasons]
     return [grid, *(textwrap.fill(text, _WIDTH) for text in words)]
-
-
-def _with(own, places):
-    return zip(own, places, strict=True)
 
 
 def _tolerance_in_words(one: Comparison) -> str:
@@ -127,10 +99,8 @@ def _tolerance_in_words(one: Comparison) -> str:
 
 def _by_trust(found: Sequence[Comparison]) -> Grid:
     """Return how many cases and numbers there are of each kind of trust."""
-    cases = Counter(trust for _, trust in {(o.case.name, o.case.trust) for o in found})
-    count: Counter[str] = Counter()
-    for one in found:
-        count[one.case.trust] += one.count
+    cases = Counter({one.case.name: one.case.trust for one in found}.values())
+    count = Counter(one.case.trust for one in found for _ in one.theirs)
     kinds = [kind for kind in TRUST if cases[kind]]
     return Grid(
         [
@@ -138,7 +108,7 @@ def _by_trust(found: Sequence[Comparison]) -> Grid:
             Column("cases", [cases[kind] for kind in kinds]),
             Column("numbers", [count[kind] for kind in kinds]),
         ],
-        shown_count(len({one.case.name for one in found}), "case"),
+        shown_count(cases.total(), "case"),
     )
 
 
@@ -157,20 +127,13 @@ def numbers(found: Sequence[Comparison]) -> dict[str, Any]:
 
 def columns(found: Sequence[Comparison]) -> Mapping[str, np.ndarray]:
     """Return the table: a row for each value."""
-    rows = [
-        (
-            one.case.name,
-            one.number.name,
-            one.case.trust,
-            one.number.unit,
-            float(theirs),
-            float(ours),
-        )
-        for one in found
-        for theirs, ours in zip(one.theirs, one.flat_ours, strict=True)
-    ]
     names = "case", "number", "trust", "unit", "theirs", "ours"
-    return {k: np.array(v) for k, v in zip(names, zip(*rows, strict=True), strict=True)}
+    rows = [
+        (one.case.name, one.number.name, one.case.trust, one.number.unit, *values)
+        for one in found
+        for values in zip(one.theirs, one.flat_ours, strict=True)
+    ]
+    return dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
 
 
 def pairs_and_trust(

@@ -6,7 +6,7 @@ import dataclasses
 import importlib
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +16,6 @@ from ...files.quantity import SceneError
 from ...files.table import not_among
 from ...validation.case import SUBJECTS, Case, Number, as_number, cases
 from ..outcome import Tools
-
-_COMMANDS = {
-    "solve": "solve.command",
-    "life": "cases.life_command",
-    "contact": "contact.command",
-    "skid": "skid.command",
-    "rotor": "rotor.command",
-    "shaft": "shaft.command",
-    "noise": "noise.command",
-}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -105,39 +95,26 @@ def compare_case(case: Case) -> list[Comparison]:
             shape.
         SceneError: If the inputs are no scene of the command.
     """
-    found = list(_results(case))
-    return [_compare(case, number, found) for number in case.numbers]
-
-
-def _compare(case: Case, number: Number, found: list[Mapping[str, Any]]) -> Comparison:
-    values = [_look_up(one, number.of or number.name) for one in found]
-    ours = np.asarray(values if case.rows else values[0], float)
-    if ours.shape != number.theirs.shape:
-        raise ValueError(
-            f"{case.name}: {number.name}: ours has shape {ours.shape}, theirs"
-            f" {number.theirs.shape}"
-        )
-    return Comparison(case, number, np.asarray(ours / number.size))
-
-
-def _results(case: Case) -> Iterator[Mapping[str, Any]]:
-    """Yield the results of each row."""
     rows = [{k: v[i] for k, v in case.rows.items()} for i in range(case.count)]
-    program, _, command = case.calculation.partition(" ")
-    if command:
-        yield from (command_numbers(command, case.inputs, row) for row in rows)
-        return
-    calculate = _calculation(program)
-    inputs = as_number(case.inputs)
-    for row in rows:
-        yield calculate(**inputs, **as_number(row))
-
-
-def _calculation(name: str) -> Callable[..., Mapping[str, Any]]:
-    module, _, function = name.partition(".")
-    package = __package__ or ""
-    found = importlib.import_module(f".calculations.{module}", package)
-    return getattr(found, function)
+    program, _, name = case.calculation.partition(" ")
+    if name:
+        found = [command_numbers(name, case.inputs, row) for row in rows]
+    else:
+        module, _, function = program.partition(".")
+        home = importlib.import_module(f".calculations.{module}", __package__)
+        calculate, inputs = getattr(home, function), as_number(case.inputs)
+        found = [calculate(**inputs, **as_number(row)) for row in rows]
+    comparisons = []
+    for number in case.numbers:
+        values = [_look_up(one, number.of or number.name) for one in found]
+        ours = np.asarray(values if case.rows else values[0], float)
+        if ours.shape != number.theirs.shape:
+            raise ValueError(
+                f"{case.name}: {number.name}: ours has shape {ours.shape}, theirs"
+                f" {number.theirs.shape}"
+            )
+        comparisons.append(Comparison(case, number, np.asarray(ours / number.size)))
+    return comparisons
 
 
 def command_numbers(
@@ -154,9 +131,8 @@ def command_numbers(
         SceneError: If it is no scene of the command.
         ValueError: If the scene is not solved.
     """
-    module = importlib.import_module(
-        f"..{_COMMANDS[command]}", (__package__ or "").rpartition(".")[0] + ".validate"
-    )
+    home = {"life": "cases.life_command"}.get(command, f"{command}.command")
+    module = importlib.import_module(f"..{home}", __package__)
     parser = argparse.ArgumentParser()
     module.add(parser.add_subparsers())
     tables = {name: table for name, table in scene.items() if name != "options"}
