@@ -69,15 +69,17 @@ def columns(
 def _without_round_off(sweep, found):
     """The columns, zero where all numbers of one are round-off."""
     sizes, largest = {}, {}
+    # Of one unit: a force beside the loads of the rolling elements.
+    alike = {h: kind(h)[kind(h)[1] not in ("", "1]")] for h in found}
     for header, column in found.items():
         if column.dtype.kind == "f":
             known = column[sweep.converged & np.isfinite(column)]
             sizes[header] = np.abs(known).max(initial=0.0)
-            alike = kind(header)
-            largest[alike] = max(largest.get(alike, 0.0), sizes[header])
+            known_largest = largest.get(alike[header], 0.0)
+            largest[alike[header]] = max(known_largest, sizes[header])
     return {
         header: np.where(np.isfinite(column), 0.0, column)
-        if header in sizes and sizes[header] < ROUND_OFF * largest[kind(header)]
+        if header in sizes and sizes[header] < ROUND_OFF * largest[alike[header]]
         else column
         for header, column in found.items()
     }

@@ -14,6 +14,7 @@ from typing import Any
 import jax
 
 from .quantity import SceneError
+from .scene_errors import ABSENT
 from .table import as_written
 from .text_file import read_text
 
@@ -204,6 +205,7 @@ def _set(data: dict, setting: str, file: str) -> None:
     value = parsed["value"] if len(parsed) == 1 else text.strip()
     value = text.strip() if isinstance(value, date | time) else value
     value = as_written(value, text.partition("#")[0].strip())
+    value = value if text.strip() else ABSENT
     assign(data, ".".join(parts), value, file)
 
 
@@ -213,13 +215,14 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
     Args:
         data: Parsed data, changed in place.
         key: Dotted key; numbers from 0 denote list entries.
-        value: Value as parsed.
+        value: Value as parsed; `ABSENT` takes the key away.
         file: File name, for the message.
 
     Raises:
-        SceneError: If the key passes through a value that is not a table.
+        SceneError: If the key passes through a value that is not a table, or one that
+            is taken away is not there.
     """
-    parts = key.split(".")
+    parts: list[Any] = key.split(".")
     inner: Any = data
     for depth, part in enumerate(parts[:-1]):
         if isinstance(inner, list):
@@ -231,9 +234,12 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
             raise SceneError(f"{file}: `{place}` is not a table, so {key!r} fails")
     if isinstance(inner, list):
         _list_entry(inner, parts[-1], ".".join(parts[:-1]), file)
-        inner[int(parts[-1])] = value
-    else:
-        inner[parts[-1]] = value
+        parts[-1] = int(parts[-1])
+    elif value is ABSENT and parts[-1] not in inner:
+        raise SceneError(f"{file}: `{key}` is not there, so `{key}=` takes nothing away")
+    inner[parts[-1]] = value
+    if value is ABSENT:
+        del inner[parts[-1]]
 
 
 def _list_entry(values: list[Any], part: str, key: str, file: str) -> Any:

@@ -587,5 +587,7 @@ def _check_use(found: Keys, field: Field) -> None:
         if getattr(found, other) in words:
             continue
         if field.name in found.table:
-            raise found.table.error(field.name, f"goes with {field.key.goes_with}")
+            path = found.table.path_of(field.name).replace("[", ".").replace("]", "")
+            problem = f"goes with {field.key.goes_with}; `--set {path}=` takes it away"
+            raise found.table.error(field.name, problem)
         found.table.fill(field.name, None)

@@ -22,6 +22,9 @@ MOST_DRIFT = 0.5e-6
 MOST_CHANGE = 2.0
 """Ratio to the preload as ground from which a change of preload is warned of [1]."""
 
+_EXACT = 1e-9
+"""Interference below which a seat is neither tight nor loose, by round-off [m]."""
+
 _SEATS = {"housing": "the outer ring", "shaft": "the inner ring on its shaft"}
 """Seats in the order of the rings (outer, inner), and what sits there."""
 
@@ -87,33 +90,32 @@ def seat_warnings(
     if speed is not None and float(speed.inner) != float(speed.outer):
         turning = np.asarray(turns_against_load(speed, load_fixed_to)) > 0
     for (seat, ring), turns in zip(_SEATS.items(), turning, strict=True):
-        before, after = (
-            float(getattr(state, f"{seat}_interference"))
-            for state in (mounted, operating)
+        before, after, left = (
+            x if abs(x) > _EXACT else 0.0
+            for state in (mounted, operating, loosest or operating)
+            for x in [float(getattr(state, f"{seat}_interference"))]
         )
         kind, words, lost = "", "", abs(after)
+        loose = f"is loose by {1e6 * lost:.3g} µm" if lost else "has no interference"
         if turns and after <= 0.0:
             once = ", though tight when mounted" if before > 0.0 else ""
             kind = "creeping_ring"
             words = (
-                f"turns against the load and is loose by {1e6 * lost:.3g} µm in"
-                f" operation{once}: it creeps and wears its seat"
+                f"turns against the load and {loose} in operation{once}: it creeps and wears its seat"
             )
         elif before > 0.0 >= after:
             kind = "loose_ring"
             words = (
-                f"is tight when mounted, but loose by {1e6 * lost:.3g} µm in"
-                " operation: its seat has no pressure"
+                f"is tight when mounted, but {loose} in operation: its seat has no"
+                " pressure"
             )
-        elif loosest is not None and (turns or seat == "shaft"):
-            left = float(getattr(loosest, f"{seat}_interference"))
-            if left <= 0.0 < after:
-                lost = abs(left)
-                kind = "loose_within_tolerances"
-                words = (
-                    f"is loose in operation, by {1e6 * lost:.3g} µm, at the loosest"
-                    " sizes of the tolerances"
-                )
+        elif (turns or seat == "shaft") and left <= 0.0 < after:
+            lost = abs(left)
+            kind = "loose_within_tolerances"
+            words = (
+                f"is loose in operation, by {1e6 * lost:.3g} µm, at the loosest sizes"
+                " of the tolerances"
+            )
         if kind:
             found.append(Warning(kind, f"fit: {ring} {words}", lost, 0.0, seat))
     return found

@@ -302,6 +302,9 @@ def test_seat_warnings_of_creeping_rings(fixed_to, inner, outer, creeping, untyp
     assert "loose in operation, by 1 µm, at the loosest" in tight
     assert len(rest) == (creeping in ("outer", "both"))
     assert seat_warnings(seats(4, 4), seats(2, 2), **asked) == []
+    # Round-off is neither tight nor loose.
+    about = dict(speed=bj.Speed(0.0, 0.0))
+    assert seat_warnings(seats(3e-6, 3e-6), seats(-3e-6, -3e-6), **about) == []
 
 
 def test_speeds_beyond_those_of_a_catalogue():

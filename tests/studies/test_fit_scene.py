@@ -622,6 +622,25 @@ def test_warnings(scene):
     assert told.startswith("fit: the inner ring on its shaft is tight when mounted, bu")
 
 
+def test_exact_sizes_are_told_once_and_round_off_does_not_loosen(scene):
+    """Two nominals side by side said nothing; nor did "loose by 2.9e-06 µm"."""
+    exact = (
+        "bearing.radial_internal_clearance=10 um",
+        "fit.clearance=",
+        "fit.shaft=",
+        "fit.housing=",
+        "fit.shaft_interference=0 um",
+        "fit.housing_interference=0 um",
+        "operating.inner_speed=37 rpm",
+    )
+    path = scene(BEARING + FIT)
+    told = "\n".join(map(str, fit_report(bj.read_scene(path, exact))))
+    assert "nominal" in told and "worst" not in told and "middle" not in told
+    (word,) = bj.read_scene(path, exact).warnings
+    assert "against the load and has no interference in operation: it" in word
+    assert "worst" in "\n".join(map(str, fit_report(bj.read_scene(path))))
+
+
 def test_classes_are_told_by_their_letters(scene):
     with pytest.raises(SceneError) as caught:
         bj.read_scene(scene(BEARING + FIT), ["fit.shaft=K5"])

@@ -19,6 +19,7 @@ import re
 import stat
 import sys
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from importlib.metadata import version
@@ -86,10 +87,11 @@ class _Store:
     ahead: dict[str, Future]
     structures: dict[Any, str]
     telling: Callable[[str], contextlib.AbstractContextManager] | None = None
-    compiled: int = 0
+    compiled: Counter[str]
 
     def __init__(self):
         self.at_hand, self.ahead, self.structures = {}, {}, {}
+        self.compiled = Counter()
 
 
 _STORE = _Store()
@@ -161,15 +163,20 @@ def tell_compiling(telling: Callable[[str], Any] | None) -> None:
 
 def n_compiled() -> int:
     """Return how many programs this process has compiled in order to keep them."""
-    return _STORE.compiled
+    return _STORE.compiled.total()
 
 
 def _compiling(function: Callable) -> contextlib.AbstractContextManager:
-    """Context in which a program is compiled, about which `tell_compiling` asked."""
+    """Context in which a program is compiled, about which `tell_compiling` asked.
+
+    Those of like words are numbered: no two lines are alike, and look like a hang.
+    """
+    what = _WHAT.get(_place_of(function), function.__module__.split(".")[1])
+    _STORE.compiled[what] += 1
     if _STORE.telling is None:
         return contextlib.nullcontext()
-    what = _WHAT.get(_place_of(function), function.__module__.split(".")[1])
-    return _STORE.telling(f"compiling: {what} (once for this kind)")
+    words = f"{what}, program {_STORE.compiled[what]} (each only once)"
+    return _STORE.telling(f"compiling: {words}")
 
 
 def _place_of(function: Callable) -> str:
@@ -298,7 +305,6 @@ def _first_run(
             libraries = _libraries(lowered)
             keep = place is not None and all(x.startswith("lapack_") for x in libraries)
             compiled = _compile(lowered, options, keep)
-        _STORE.compiled += 1
         if keep:
             devices = max((len(array.devices()) for array in arrays), default=1)
             more = len(arrays), outputs[0], bool(libraries), devices

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax
 import numpy as np
 
 from ...design import TaperedRollerBearing, rows_of
@@ -45,18 +46,21 @@ def fit_report(scene: Scene) -> list[Part]:
         "mounted": found.mounted.radial_clearance,
         "operating": found.operating.radial_clearance,
     }
-    ranges = [None, found.mounted_range, found.operating_range]
+    ranges = [found.mounted_range, found.operating_range]
+    limits = jax.device_get(scene.installed.limits or ())
+    scatters = any(ends.lower != ends.upper for ends in limits)
     row = rows_of(scene.element.bearing)[0].bearing
     columns = [Column("", list(states)), _microns("nominal", list(states.values()))]
     if isinstance(row, TaperedRollerBearing):
         across = [float(c) * outer_cosine(row) for c in states.values()]
         columns.append(_microns(ACROSS_TAPERS, across))
-    for kind in ("probable", "worst"):
-        ends = ["-" if r is None else _ends(getattr(r, kind)) for r in ranges]
-        columns.append(Column(kind, ends, "m"))
+    # Of exact sizes there is nothing to tell but the nominal.
+    for kind in ("probable", "worst") if scatters else ():
+        ends = [_ends(getattr(r, kind)) for r in ranges if r is not None]
+        columns.append(Column(kind, ["-", *ends], "m"))
+    place = f"; sizes of the solve: {notes.place.replace('_', ' ')}" if scatters else ""
     return [
-        f"fits: shaft {shaft}, housing {housing}; sizes of the solve:"
-        f" {notes.place.replace('_', ' ')}",
+        f"fits: shaft {shaft}, housing {housing}{place}",
         *driven,
         Grid(columns, "radial clearance"),
         _seats(found),
@@ -70,7 +74,7 @@ def _micron(value) -> str:
 
 
 def _ends(limits) -> str:
-    return f"{_micron(limits.lower)} to {_micron(limits.upper)}"
+    return " to ".join(map(_micron, limits))
 
 
 def _microns(name, values):

@@ -20,7 +20,7 @@ from ...report.html_report import flat
 from ...report.report_model import Column, Grid, Part, Report
 from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
-from .report import without_round_off
+from .report import ring_force, without_round_off
 from .run import solve_scene
 
 _FIELDS = "displacement", "force", "stiffness"
@@ -107,6 +107,7 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
     if not one.converged:
         return {}
     numbers: dict[str, Any] = {name: getattr(solution, name) for name in _FIELDS}
+    numbers["force"] = ring_force(solution)
     names = (*summaries(type(solution)), "n_loaded")
     numbers |= {name: SUMMARIES[name](solution) for name in names}
     if life is not None:

@@ -40,6 +40,9 @@ from ..bearing.read_scene import Scene
 from ..bearing.solved import SolvedScene
 from .operation_report import operation
 
+_NOTHING = 1e-9
+"""Share of the largest load of a contact below which a load is none [1]."""
+
 
 def report(found: SolvedScene) -> Report:
     """Return the readable report of a solved scene.
@@ -258,10 +261,8 @@ def _ring(scene):
 
 def _motion(scene, solution):
     moving = _ring(scene)
-    motion, loads = (
-        without_round_off(np.asarray(values)[moving])
-        for values in (solution.displacement, solution.force)
-    )
+    motion = without_round_off(np.asarray(solution.displacement)[moving])
+    loads = ring_force(solution)[moving]
     held = ["reaction of its support" if f in solution.held else "" for f in FREEDOMS]
     columns = [
         Column("", FREEDOMS),
@@ -288,9 +289,18 @@ def _stiffness(scene, solution):
     )
 
 
-def without_round_off(values: Any) -> Any:
-    """Set numbers to zero that are round-off relative to the largest of their kind."""
-    return np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(), 0.0, values)
+def without_round_off(values: Any, least: float = 0.0) -> Any:
+    """Set numbers to zero that are round-off relative to the largest of their kind, or
+    below `least`."""
+    size = np.abs(values)
+    return np.where(size < max(ROUND_OFF * size.max(), least), 0.0, values)
+
+
+def ring_force(solution: Solution) -> Any:
+    """Return `force` of a solution, zero where it is what the balance leaves of the
+    loads of the rolling elements (12,) [N, N m]."""
+    borne = np.abs(np.asarray(solution.roller_load)).max()
+    return without_round_off(np.asarray(solution.force), _NOTHING * float(borne))
 
 
 def _elements(solution):
@@ -322,7 +332,7 @@ def _stated_columns(solution, shown, **formats) -> list[Column]:
     for name in dict.fromkeys((*Solution.__dataclass_fields__, *found)):
         heading = field_metadata(solution, name).get("column")
         if heading is not None:
-            values = found[name]
+            values = without_round_off(found[name])
             make = by_ring if values.ndim > 1 else lambda *given: [Column(*given)]
             unit = unit_of(solution, name)
             columns += make(heading, values[shown], unit, *formats.get(name, ()))
@@ -346,7 +356,7 @@ def _rollers(solution):
     load = np.asarray(solution.roller_load)
     rib = np.asarray(solution.rib_load)
     largest = np.maximum(load.max(axis=1), rib.max(axis=tuple(range(1, rib.ndim))))
-    touching = largest > 1e-9 * largest.max()
+    touching = largest > _NOTHING * largest.max()
     shown = np.flatnonzero(touching)
     edge = np.any(np.asarray(ends_over(solution)), axis=(1, 2))[shown]
     columns = [
@@ -365,7 +375,7 @@ def _rollers(solution):
 
 def _balls(solution):
     load = np.asarray(solution.contact_load)
-    touching = load.max(axis=1) > 1e-9 * load.max()
+    touching = load.max(axis=1) > _NOTHING * load.max()
     shown = np.flatnonzero(touching)
     # Of two arcs on a ring, the more loaded one.
     half = load.shape[1] // 2
@@ -376,7 +386,7 @@ def _balls(solution):
         return np.take_along_axis(np.asarray(values), most, axis=1)[shown]
 
     # An open contact has no meaningful angle.
-    bears = at_largest(load) > 1e-9 * load.max()
+    bears = at_largest(load) > _NOTHING * load.max()
     angle = np.where(bears, at_largest(solution.contact_angle), np.nan)
     stated = _stated_columns(
         solution, shown, roller_load=(".5g", NEWTONS), roller_pressure=(".0f",)
