@@ -55,7 +55,8 @@ class Mounting(Printable):
         housing_smoothing: Smoothing of the seat in the housing [m].
         ring_width: Width of a ring, B, or T of a tapered roller bearing [m]. A set
             needs it: between its rows the rings grow along the axis over this length,
-            beyond it shaft and housing (or spacers as warm as these); `None` elsewhere.
+            beyond it shaft and housing (or spacers as warm as these). On shafts too, if
+            it is given; `None`: their middle stays where it is on the seat.
             The mean diameter of a tapered bore follows from it; `None`: `bore` counts.
         bore_taper: Taper of bore and seat, of their diameters over the length, such as
             1/12 or 1/30 [1]; 0: cylindrical.
@@ -89,7 +90,7 @@ class Mounting(Printable):
     shaft_smoothing: Real = eqx.field(**real("m"), default=0.0)
     housing_smoothing: Real = eqx.field(**real("m"), default=0.0)
     ring_width: RealOrNone = eqx.field(
-        **real("m", "width of a ring, B or T; sets need it"), default=None
+        **real("m", "width of a ring, B or T, over which it grows itself; sets need it"), default=None
     )
     bore_taper: Real = eqx.field(**real("1"), default=0.0)
     drive_up: Real = eqx.field(

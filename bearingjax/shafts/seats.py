@@ -160,7 +160,10 @@ def axial_growth(
     """Return how far operation displaces each inner ring along its shaft [m].
 
     Shaft and housing grow between the bearings, whose temperatures change evenly from
-    one to the next; the first bearing of a shaft stays where it is. The place where a
+    one to the next; the first bearing of a shaft stays where it is. The middle of a
+    ring stays where it is on its seat, unless `Mounting.ring_width` is given: a ring
+    then abuts the next one, or shoulders and spacers that are as warm as the shaft or
+    housing, and half of its width grows as it does itself. The place where a
     bearing touches has moved by `axial_approach` since it was mounted in the cold.
 
     Args:
@@ -174,8 +177,8 @@ def axial_growth(
         here.sort(key=lambda k: system.station(system.seats[k])[1])
         for last, this in zip(here, here[1:], strict=False):
             ends = [system.seats[k] for k in (last, this)]
-            strain = sum(map(_strain, ends)) / 2.0
-            found[this] = found[last] + strain * (ends[1].position - ends[0].position)
+            gap = ends[1].position - ends[0].position
+            found[this] = found[last] + sum(_half_growth(seat, gap) for seat in ends)
     return jnp.stack(found) + jnp.stack(list(map(_approach, system.seats, speeds)))
 
 
@@ -191,14 +194,25 @@ def _approach(seat: Seat, speed: Scalar) -> Scalar:
     return less - more if seat.turned else more - less
 
 
-def _strain(seat: Seat) -> Any:
-    """Return thermal strain of the shaft less that of the housing at a seat [1]."""
+def _half_growth(seat: Seat, gap: Any) -> Any:
+    """Return the growth of the half of a gap at a seat, of shaft and inner ring less
+    that of housing and outer ring [m].
+
+    Args:
+        seat: The seat.
+        gap: Distance of the bearings [m].
+    """
     warm = None if seat.installed is None else seat.installed.conditions
     if seat.installed is None or warm is None or seat.installed.mounting is None:
         return 0.0
-    seats = seat.installed.mounting
-    of_shaft = seats.shaft.expansion * (warm.shaft - warm.reference)
-    return of_shaft - seats.housing.expansion * (warm.housing - warm.reference)
+    seats: Any = seat.installed.mounting
+
+    def strain(part):
+        return getattr(seats, part).expansion * (getattr(warm, part) - warm.reference)
+
+    within = 0.0 if seats.ring_width is None else jnp.minimum(gap, seats.ring_width)
+    of_rings = within * (strain("inner_ring") - strain("outer_ring"))
+    return 0.5 * (of_rings + (gap - within) * (strain("shaft") - strain("housing")))
 
 
 def bearing_solutions(

@@ -1,5 +1,7 @@
 """Equilibrium of shafts on bearings, against beams and iterations written anew."""
 
+from dataclasses import replace
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -469,6 +471,13 @@ def test_growth_by_heat():
     growth = axial_growth(without_bearings(ShaftSystem(line, seats)), np.zeros(2))
     steel = float(bj.fits.WarmMaterial().expansion)
     np.testing.assert_allclose(growth, [0.0, 0.5 * steel * 20.0 * 0.4], rtol=1e-12)
+    # Rings that abut what stands between them grow over half of their width: of the
+    # first one 10 mm of ring, 5 K less than the shaft, in place of as much shaft.
+    seat = replace(seat, ring_width=0.02)
+    warm = replace(warm, inner_ring=25.0, outer_ring=10.0)
+    seats[0] = Seat("A", "s", 0.05, bj.Installed(ELEMENT, None, seat, warm))
+    wide = axial_growth(without_bearings(ShaftSystem(line, seats)), np.zeros(2))
+    np.testing.assert_allclose(wide - growth, [0.0, -steel * 5.0 * 0.01], rtol=1e-9)
 
 
 NUMBERS = {

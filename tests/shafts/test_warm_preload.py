@@ -98,6 +98,11 @@ def test_warm_pair_presses_as_a_set(bearing, facing):
         np.testing.assert_allclose(found[name], wanted, rtol=SOLVER, err_msg=name)
     np.testing.assert_allclose(found["cold"], FORCE, rtol=SOLVER)
     assert found["rings"] > found["balls"] > 1.2 * FORCE
+    # Rings of a width grow between the rows themselves, on loose seats by warmth alone.
+    wide, warm = replace(LOOSE, ring_width=0.02), WARM["rings"]
+    wanted = kept_by_set(bearing, wide, warm, facing)
+    found = kept(pair(bearing, wide, warm, facing=facing, preload=FORCE))
+    np.testing.assert_allclose(found, wanted, rtol=SOLVER)
 
 
 def touching(bearing, seats, conditions):
@@ -128,7 +133,8 @@ def test_axial_growth_counts_from_where_balls_touch(seats):
 
     found = growth(ANGULAR, seats, warm)
     np.testing.assert_allclose(found, [nearer, -nearer], rtol=1e-9)
-    assert np.abs(growth(DEEP, seats, warm)).max() == 0.0
+    thin = replace(seats, ring_width=None)
+    assert np.abs(growth(DEEP, thin, warm)).max() == 0.0
     bare = without_bearings(pair(ANGULAR, seats, COLD))
     still = np.abs(axial_growth(bare, np.zeros(2))).max()
     assert still < ROUNDING * nearer

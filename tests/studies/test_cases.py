@@ -497,13 +497,15 @@ def test_a_report_shows_no_round_off(scene):
         "result": np.zeros(2, int),
         "stiffness": stiffness,
         "residual": np.full(2, 3e-16),
+        "force": np.full((2, 12), -7.1e-14),
+        "largest_load": np.full(2, 65.0),
         "iterations": np.full(2, 9),
     }
     report = sweep_report(table, Sweep(table.cases, outputs, "inner"), 1.0)
     lines = str(report).splitlines()
     told = {line.split()[0]: line.split()[1:] for line in lines if line}
     assert told["stiffness_inner_ux_inner_ux"] == ["5e+08", "5e+08", "N/m"]
-    assert "stiffness_inner_ux_inner_uy" not in told
+    assert "stiffness_inner_ux_inner_uy" not in told and "force_inner_Fx" not in told
     assert told["stiffness_inner_gx_inner_gy"] == ["2e-05", "2e-05", "N", "m"]
     assert told["residual"] == ["3e-16", "3e-16"]
 

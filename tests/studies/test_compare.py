@@ -71,9 +71,11 @@ def test_compare_two_loads(run, other, tmp_path):
 
 
 def test_compare_identical_scenes(run):
-    done = run("compare", SCENE, SCENE)
+    done = run("compare", SCENE, SCENE, "--set", "operating.load.Fy=-9 kN")
     assert done.status == 0
-    assert done.out.startswith("the scenes are the same\n")
+    alike, same, *_ = done.out.splitlines()
+    assert alike == "all scenes have by --set: operating.load.Fy=-9 kN"
+    assert same == "the scenes are the same"
 
 
 def test_compare_tells_which_scene_is_not_solved(run, other, tmp_path):

@@ -5,6 +5,7 @@ import dataclasses
 import json
 import re
 import struct
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax
@@ -20,7 +21,7 @@ from bearingjax.report.json_output import write_numbers
 from bearingjax.studies.bearing.read_scene import Scene
 from bearingjax.studies.bearing.solved import SolvedScene
 from bearingjax.studies.solve.output import solution_json
-from bearingjax.studies.solve.report import report
+from bearingjax.studies.solve.report import report, ring_force
 from bearingjax.studies.solve.run import run_scene
 
 POINTS = 21
@@ -49,6 +50,15 @@ STUDIES = {
         slow=(False, False),
     ),
 }
+
+
+def test_ring_force_of_an_unloaded_bearing_is_zero(untyped):
+    """Preloaded or turning, its rolling elements leave some round-off."""
+    given = np.array([0.0] * 6 + [-7.1054e-14, 1.2e-8, 0.0, 1e-13, 0.0, 0.0])
+    found = SimpleNamespace(force=given, roller_load=np.array([[65.0, 52.0]]))
+    assert not ring_force(found).any()
+    found.force = given + 0.5
+    np.testing.assert_array_equal(ring_force(found), found.force)
 
 
 class TestRuns(Runs):

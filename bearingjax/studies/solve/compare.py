@@ -131,8 +131,13 @@ def _numbers(one: SolvedScene) -> dict[str, float]:
     return found
 
 
-def compare_report(found: Comparison) -> Report:
-    """Return the readable report of a comparison."""
+def compare_report(found: Comparison, settings: Sequence[str] = ()) -> Report:
+    """Return the readable report of a comparison.
+
+    Args:
+        found: From `run_compare`.
+        settings: Changes that all scenes have in common.
+    """
     rows = {h: values for h, values in found.quantities.items() if difference(values)}
     parts: list[Part] = []
     if rows:
@@ -154,7 +159,8 @@ def compare_report(found: Comparison) -> Report:
         for name, one in zip(found.names, found.solved, strict=True)
         for warning in one.warnings
     ]
-    return Report({"Scenes": [_inputs(found)], "Results": parts}, warned)
+    alike = [f"all scenes have by --set: {', '.join(settings)}"] if settings else []
+    return Report({"Scenes": [*alike, _inputs(found)], "Results": parts}, warned)
 
 
 def _inputs(found: Comparison) -> Part:

@@ -15,11 +15,12 @@ def add(commands: Commands) -> ArgumentParser:
         description="Solve the bearings of several scene files, each for its load, and"
         " set results and inputs that differ side by side, the largest differences"
         " first.",
-        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved.",
+        epilog="A change of one scene: `bearingjax solve A.toml --set key=value --json"
+        " b.json`, then `bearingjax compare A.toml b.json`. Exit status: 0 all solved, 2 bad input, 3 some not solved.",
     )
     command.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more")
     add_json(command)
-    add_set(command, "change all scenes")
+    add_set(command, "change all scenes alike")
     add_table(command, "result")
     add_report(command, "differences")
     return command
@@ -41,7 +42,7 @@ def run(options: Namespace, tools: Tools) -> Outcome:
         ", ".join(found.names),
         {f"{name}: {k}": v for name, one in named for k, v in one.scene.inputs.items()},
         lambda: compare_as_dict(found),
-        compare_report(found) if some else None,
+        compare_report(found, options.set) if some else None,
         (lambda: compare_columns(found, options.si)) if some else None,
         problems=[
             f"{name}: {why_unsolved(one)}" for name, one in named if not one.converged
