@@ -367,7 +367,7 @@ def _stack(trees: list[Any]) -> Any:
     return jax.tree.map(lambda *x: as_array(np.stack(x), float), *trees)
 
 
-@program(quick=True)
+@program(quick=True, what="preload of a set on its seats")
 def _preloads(elements, speeds):
     def preload_at(element, speed):
         return remaining_preload(element, speed, throw=False)

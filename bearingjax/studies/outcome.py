@@ -106,7 +106,8 @@ class Stage:
     """Display of the current stage of a run on standard error.
 
     On a terminal it is one line that is rewritten. Elsewhere a stage that lasts for
-    `PATIENCE` is told in a line of its own, and one that changes every `INTERVAL`.
+    `PATIENCE` is told in a line of its own, and one that changes, or of several short
+    ones the last, every `INTERVAL`.
 
     Args:
         terminal: Whether standard error is a terminal.
@@ -175,7 +176,9 @@ class Stage:
     def _tell_later(self, words: str) -> None:
         self._cancel()
         if PATIENCE < threading.TIMEOUT_MAX:
-            self._timer = threading.Timer(PATIENCE, self._tell, [words])
+            # Short stages one after the other are no silence.
+            left = max(0.1 * PATIENCE, self._told + INTERVAL - time.monotonic())
+            self._timer = threading.Timer(min(PATIENCE, left), self._tell, [words])
             self._timer.daemon = True
             self._timer.start()
 

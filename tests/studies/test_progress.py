@@ -56,6 +56,15 @@ def test_stage_tells_steps_seldom(hasty, capsys):
     assert 1 <= len(lines) <= 5 and all(line.startswith("step ") for line in lines)
 
 
+def test_short_stages_are_no_silence(hasty, capsys):
+    stage = Stage(False)
+    for step in range(20):
+        stage(f"part {step}")
+        time.sleep(0.01)
+    stage.end()
+    assert 1 <= len(capsys.readouterr().err.splitlines()) <= 5
+
+
 def test_programs_say_what_is_compiled(tmp_path):
     """Once for a kind of bearing, and nothing of programs that are kept."""
     said = []

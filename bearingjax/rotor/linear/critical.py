@@ -144,7 +144,7 @@ def _resonance_warning(found) -> Iterator[Warning]:
         )
 
 
-@program(quick=True)
+@program(quick=True, what="critical speeds")
 def _critical(rotor, count):
     fixed = stop_gradient(rotor)
     found, point, right, left = _search(fixed, count + _SPARE)

@@ -175,7 +175,7 @@ def modes(rotor: Rotor, speed: Any = 0.0, *, count: Any = None) -> Modes:
     return dataclasses.replace(found, speed=speed, driven=driven)
 
 
-@program(quick=True)
+@program(quick=True, what="modes")
 def _modes(rotor, speed, count):
     """Return modes, and the part of unsymmetric stiffness in Re λ of each [rad/s]."""
     matrices = rotor.linearise(speed)
@@ -267,7 +267,7 @@ def _following_warning(found) -> Iterator[Warning]:
     )
 
 
-@program(quick=True)
+@program(quick=True, what="modes over the speed")
 def follow_modes(
     rotor: Rotor, speeds: Float[Array, " speed"], count: int | None
 ) -> tuple[Modes, Float[Array, "speed mode"]]:

@@ -122,7 +122,7 @@ class Scene:
         return self.grind_rows().element_at()
 
 
-@program(quick=True)
+@program(quick=True, what="rows ground to their preload")
 def _grind_rows(bearing: Installed) -> Installed:
     return bearing.grind_rows(throw=False)
 
