@@ -61,7 +61,7 @@ class NamesAsLinks(SphinxPostTransform):
         for node in list(self.document.findall(nodes.literal)):
             full = target_of(self.env, node.astext(), package)
             inside = isinstance(node.parent, nodes.reference | nodes.title)
-            if full and not inside and page != "_generated/keys":
+            if full and not inside and "_generated/keys" not in page:
                 node.replace_self(linked(self.app, full, node.deepcopy()))
 
 

@@ -42,6 +42,12 @@ def write_pages():
     texts |= {f"types/{kind}.md": type_page(kind) for kind in (*BALLS, *ROLLERS)}
     texts["validation.md"] = site_validation.validation_page()
     texts |= {f"{name}.md": included(source) for source, name in INCLUDED.items()}
+    head, *parts = re.split(r"\n(?=## )", texts["keys.md"])  # long: a page for each
+    named = {re.sub(r"\W+", "_", p.split("\n")[0][3:]).lower(): p for p in parts}
+    for name, part in named.items():
+        texts[f"keys/{name}.md"] = re.sub("(?m)^#(?=#)", "", part)
+    listed = "\n".join(f"keys/{name}" for name in named)
+    texts["keys.md"] = f"{head}\n```{{toctree}}\n:maxdepth: 2\n\n{listed}\n```\n"
     for name, text in texts.items():
         place = MADE / name
         place.parent.mkdir(parents=True, exist_ok=True)

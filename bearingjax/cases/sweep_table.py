@@ -75,8 +75,8 @@ def _without_round_off(sweep, found):
         if column.dtype.kind == "f":
             known = column[sweep.converged & np.isfinite(column)]
             sizes[header] = np.abs(known).max(initial=0.0)
-            known_largest = largest.get(alike[header], 0.0)
-            largest[alike[header]] = max(known_largest, sizes[header])
+            same = alike[header]
+            largest[same] = max(largest.get(same, 0.0), sizes[header])
     return {
         header: np.where(np.isfinite(column), 0.0, column)
         if header in sizes and sizes[header] < ROUND_OFF * largest[alike[header]]

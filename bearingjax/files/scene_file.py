@@ -236,7 +236,9 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
         _list_entry(inner, parts[-1], ".".join(parts[:-1]), file)
         parts[-1] = int(parts[-1])
     elif value is ABSENT and parts[-1] not in inner:
-        raise SceneError(f"{file}: `{key}` is not there, so `{key}=` takes nothing away")
+        raise SceneError(
+            f"{file}: `{key}` is not there, so `{key}=` takes nothing away"
+        )
     inner[parts[-1]] = value
     if value is ABSENT:
         del inner[parts[-1]]

@@ -90,7 +90,10 @@ class Mounting(Printable):
     shaft_smoothing: Real = eqx.field(**real("m"), default=0.0)
     housing_smoothing: Real = eqx.field(**real("m"), default=0.0)
     ring_width: RealOrNone = eqx.field(
-        **real("m", "width of a ring, B or T, over which it grows itself; sets need it"), default=None
+        **real(
+            "m", "width of a ring, B or T, over which it grows itself; sets need it"
+        ),
+        default=None,
     )
     bore_taper: Real = eqx.field(**real("1"), default=0.0)
     drive_up: Real = eqx.field(

@@ -437,7 +437,12 @@ class Seat(AbstractPlaced):
     position: Real = eqx.field(**real("m"))
     installed: Installed | None = None
     preload: RealOrNone = eqx.field(
-        **real("N", "axial force with which it is adjusted in the cold", above=0),
+        **real(
+            "N",
+            "axial force with which it is adjusted in the cold",
+            above=0,
+            hint="without preload leave it out",
+        ),
         default=None,
     )
     axial_offset: Real = eqx.field(

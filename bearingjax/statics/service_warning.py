@@ -100,9 +100,8 @@ def seat_warnings(
         if turns and after <= 0.0:
             once = ", though tight when mounted" if before > 0.0 else ""
             kind = "creeping_ring"
-            words = (
-                f"turns against the load and {loose} in operation{once}: it creeps and wears its seat"
-            )
+            words = f"turns against the load and {loose} in operation{once}"
+            words += ": it creeps and wears its seat"
         elif before > 0.0 >= after:
             kind = "loose_ring"
             words = (

@@ -126,6 +126,7 @@ class MountKeys(Keys):
         "axial force that the bearing bears before the shaft gives way",
         "force",
         above=0,
+        hint="without preload leave it out",
         needs=("bearing",),
         without={**_OF_BEARING["without"], "offset": ""},
     )

@@ -16,7 +16,8 @@ def add(commands: Commands) -> ArgumentParser:
         " set results and inputs that differ side by side, the largest differences"
         " first.",
         epilog="A change of one scene: `bearingjax solve A.toml --set key=value --json"
-        " b.json`, then `bearingjax compare A.toml b.json`. Exit status: 0 all solved, 2 bad input, 3 some not solved.",
+        " b.json`, then `bearingjax compare A.toml b.json`. Exit status: 0 all"
+        " solved, 2 bad input, 3 some not solved.",
     )
     command.add_argument("scenes", metavar="SCENE", nargs="+", help="two or more")
     add_json(command)
