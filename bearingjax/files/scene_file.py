@@ -205,7 +205,7 @@ def _set(data: dict, setting: str, file: str) -> None:
     value = parsed["value"] if len(parsed) == 1 else text.strip()
     value = text.strip() if isinstance(value, date | time) else value
     value = as_written(value, text.partition("#")[0].strip())
-    value = value if text.strip() else ABSENT
+    value = ABSENT if text.strip() == "unset" else value
     assign(data, ".".join(parts), value, file)
 
 
@@ -237,7 +237,7 @@ def assign(data: dict[str, Any], key: str, value: Any, file: str) -> None:
         parts[-1] = int(parts[-1])
     elif value is ABSENT and parts[-1] not in inner:
         raise SceneError(
-            f"{file}: `{key}` is not there, so `{key}=` takes nothing away"
+            f"{file}: `{key}` is not there, so `{key}=unset` takes nothing away"
         )
     inner[parts[-1]] = value
     if value is ABSENT:

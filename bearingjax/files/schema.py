@@ -588,6 +588,7 @@ def _check_use(found: Keys, field: Field) -> None:
             continue
         if field.name in found.table:
             path = found.table.path_of(field.name).replace("[", ".").replace("]", "")
-            problem = f"goes with {field.key.goes_with}; `--set {path}=` takes it away"
+            cure = f"`--set {path}=unset` takes it away"
+            problem = f"goes with {field.key.goes_with}; {cure}"
             raise found.table.error(field.name, problem)
         found.table.fill(field.name, None)

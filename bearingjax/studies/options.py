@@ -21,8 +21,8 @@ def add_set(command: ArgumentParser, what: str = "change the scene") -> None:
         metavar="KEY=VALUE",
         action="append",
         default=[],
-        help=f'{what}, such as "operating.load.Fz=-6 kN"; KEY= takes a key away; may be'
-        " repeated",
+        help=f'{what}, such as "operating.load.Fz=-6 kN"; KEY=unset takes a key'
+        " away; may be repeated",
     )
 
 

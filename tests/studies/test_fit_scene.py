@@ -626,9 +626,9 @@ def test_exact_sizes_are_told_once_and_round_off_does_not_loosen(scene):
     """Two nominals side by side said nothing; nor did "loose by 2.9e-06 µm"."""
     exact = (
         "bearing.radial_internal_clearance=10 um",
-        "fit.clearance=",
-        "fit.shaft=",
-        "fit.housing=",
+        "fit.clearance=unset",
+        "fit.shaft=unset",
+        "fit.housing=unset",
         "fit.shaft_interference=0 um",
         "fit.housing_interference=0 um",
         "operating.inner_speed=37 rpm",
