@@ -35,7 +35,8 @@ def test_stage_rewrites_one_line_of_a_terminal(capsys):
     assert shown.endswith("\r\x1b[K")
 
 
-def test_stage_tells_what_lasts_where_there_is_no_terminal(hasty, capsys):
+def test_stage_tells_what_lasts_where_there_is_no_terminal(hasty, monkeypatch, capsys):
+    monkeypatch.setattr(outcome, "INTERVAL", 10.0)
     stage = Stage(False)
     stage("short")
     stage("long")
