@@ -69,8 +69,9 @@ def columns(
 def _without_round_off(sweep, found):
     """The columns, zero where all numbers of one are round-off."""
     sizes, largest = {}, {}
-    # Of one unit: a force beside the loads of the rolling elements.
-    alike = {h: kind(h)[kind(h)[1] not in ("", "1]")] for h in found}
+    # Forces count beside the loads of the rolling elements; pure numbers have kinds.
+    units = {header: kind(header)[1] for header in found}
+    alike = {h: kind(h)[0] if unit in ("", "1]") else unit for h, unit in units.items()}
     for header, column in found.items():
         if column.dtype.kind == "f":
             known = column[sweep.converged & np.isfinite(column)]
