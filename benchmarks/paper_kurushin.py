@@ -134,7 +134,6 @@ import dataclasses
 import jax
 import numpy as np
 from bench import benchmark, timed
-from measured_levels import MEASURED, TOTAL
 
 import bearingjax as bj
 from bearingjax.contact import Ellipse
@@ -155,7 +154,7 @@ from bearingjax.noise import (
     vibration,
     waviness_force,
 )
-from bearingjax.noise.level import NORM
+from bearingjax.validation import cases as known_cases
 
 MASS, OVERSIZE = 0.3716, 24e-6
 SPEED = bj.Speed(inner=1500 * np.pi / 30)
@@ -166,6 +165,18 @@ CASES = {
     **{f"two, {n} ball{'s' * (n > 1)} between": (0, n + 1) for n in (1, 2, 3, 4, 5)},
     "two, 6 between (opposite)": (0, 7),
 }
+_LEVELS = known_cases()["kurushin_levels"]
+MEASURED = {
+    name: (np.array(bands), total)
+    for name, bands, total in zip(
+        ["serial", *list(CASES)[1:8]],
+        _LEVELS.rows["bands"],
+        _LEVELS.numbers[1].theirs,
+        strict=True,
+    )
+}
+"""Measured level in each octave band, and their printed total, by the arrangement of
+large balls [dB]."""
 COMMON = {
     "outer_osculation": 0.52,
     "inner_osculation": 0.52,
@@ -327,11 +338,11 @@ def by_hand():
     contact = Ellipse(one, one * 1e10, one, one)
     rate = jax.grad(contact.load)(contact.approach(one * 100.0))
     apart = max(
-        abs(float(combine_levels(np.array(bands))) - TOTAL[name])
-        for name, bands in (("serial", NORM), *MEASURED.items())
+        abs(float(combine_levels(bands)) - total) for bands, total in MEASURED.values()
     )
-    levels = np.array([73.3, 75.0, 78.0, 80.0, 90.8])
-    off = np.asarray(acceleration_of(levels)) - [0.1433, 0.1743, 0.2462, 0.31, 1.0749]
+    levels = known_cases()["kurushin_accelerations"]
+    found = acceleration_of(np.array(levels.inputs["levels"]))
+    off = np.asarray(found) - levels.numbers[0].theirs
     bearing = bj.DeepGrooveBallBearing(*SIZE, **COMMON)
     made = {n: waviness_force(bearing, SPEED, "outer", n) for n in range(1, 44)}
     radial = [n for n, found in made.items() if found.radial.size]
@@ -510,9 +521,8 @@ def show(out):
     for name, (ours, paper) in out["facts"].items():
         print(f"  {name:38s} {ours:9.4g} | {paper:g}")
     print("octave sums of the published bands, and total levels")
-    for name, bands in (("serial", NORM), *MEASURED.items()):
-        total = float(combine_levels(np.array(bands)))
-        print(f"  {name:22s} {total:6.2f} {TOTAL[name]:g}")
+    for name, (bands, total) in MEASURED.items():
+        print(f"  {name:22s} {float(combine_levels(bands)):6.2f} {total:g}")
     levels = (73.3, 75.0, 78.0, 80.0, 90.8)
     told = (f"{x:g} dB {float(acceleration_of(x)):.4f}" for x in levels)
     print("levels to accelerations [m/s²]:", *told)

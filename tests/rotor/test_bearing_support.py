@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from machines import bearing
+from published import inputs
 from scipy.optimize import brentq
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 from vibrations import OUTER, grooves
@@ -13,8 +14,12 @@ from vibrations import OUTER, grooves
 import bearingjax as bj
 from bearingjax.rotor import BearingSupport
 
-# Angle [deg]: free angle [deg] and preload [N] of the case `filipkovskii_preload`.
-PAPER = {12: (6.852, 218.4), 26: (23.855, 581.2)}
+_ROWS = [
+    inputs("filipkovskii_preload", name)
+    for name in ("bearing.contact_angle", "operating.load.Fz")
+]
+PAPER = {12: [of[0] for of in _ROWS], 26: [of[2] for of in _ROWS]}
+"""Free angle [rad] and preload [N] by the angle under preload [deg]."""
 
 
 @jax.jit
@@ -27,7 +32,7 @@ def held(support, motion, speed):
 def preloaded(angle, **choices):
     """A support whose bearing is pressed with P0."""
     free, preload = PAPER[angle]
-    element = bj.BearingElement(bearing(free, OUTER[angle]))
+    element = bj.BearingElement(bearing(np.degrees(free), OUTER[angle]))
     loose = BearingSupport(0, element, **choices)
     sign = -1.0 if loose.turned else 1.0
 
@@ -41,7 +46,7 @@ def preloaded(angle, **choices):
 
 @pytest.mark.parametrize("angle", PAPER)
 def test_stiffness_of_the_published_bearings(angle):
-    """AF002-7: that of a contact angle that follows the motion of the groove centres.
+    """That of a contact angle that follows the motion of the groove centres.
 
     Curvatures are taken at another angle than there, 0.1 % of the constants."""
     law = grooves(angle).moving_angle().stiffness()

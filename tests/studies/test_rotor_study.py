@@ -3,6 +3,7 @@
 import csv
 import dataclasses
 import json
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,6 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from published import inputs, theirs
 from runs import Runs, Study
 from tolerances import PUBLISHED, ROUNDING, SOLVER
 
@@ -65,12 +67,12 @@ def test_read_rotor_paper_rotor_matches_table():
     first, second = a.keys, b.keys
     assert (a.station, b.station) == (0, 2)
     assert (first.turned, second.turned) == (False, True)
-    assert first.preload == second.preload == 581.2 and first.law == "fixed_angle"
+    pressed = inputs("filipkovskii_preload", "operating.load.Fz")[2]
+    assert first.preload == second.preload == pressed and first.law == "fixed_angle"
     bearing = a.element.bearing
     assert float(bearing.pitch_diameter) == pytest.approx(16e-3 + 27.5399e-3)
-    assert np.degrees(float(bearing.free_contact_angle)) == pytest.approx(
-        23.855, abs=5e-4
-    )
+    free = inputs("filipkovskii_preload", "bearing.contact_angle")[2]
+    assert float(bearing.free_contact_angle) == pytest.approx(free, abs=1e-5)
     assert np.allclose(task.loads.base_acceleration, [0, 3, 0])
     assert isinstance(task.keys.own_damping, bj.rotor.ModalDamping)
     assert task.speed == pytest.approx(6000.0 * RPM)
@@ -377,21 +379,25 @@ def test_the_published_rotor_by_command(written):
     """Report, JSON and table of the rotor of method 002, against its table."""
     done, found, _ = written("published")
     assert found["warnings"] == []
-    # At rest: 234.5, 707.6, 1824.8 Hz.
     line = found["campbell"]
     assert np.allclose(line["speed"], [0.0, 30000.0 * RPM, 60000.0 * RPM])
-    rest = [234.5, 707.6, 707.6, 1824.8, 1824.8]
+    of_rotor, of_bearing = (
+        partial(theirs, f"filipkovskii_{of}") for of in ("rotor", "bearing")
+    )
+    rest = of_rotor("natural frequencies at rest [Hz]")[0]
     assert np.allclose(line["frequency"][0], rest, rtol=PUBLISHED)
-    # Axial; backward 688 Hz, forward 721.4 Hz, backward 1262 Hz.
-    critical = np.array(found["critical_speed"]) / TURN
-    assert np.allclose(critical, [234.5, 688.0, 721.4, 1262.0], rtol=PUBLISHED)
+    critical = of_rotor("critical speeds: axial, backward, forward")[0]
+    assert np.allclose(found["critical_speed"], critical, rtol=PUBLISHED)
     assert found["critical_whirl"] == [0, -1, 1, -1]
     static = found["static"]
     assert static["bearing"] == ["gost_831", "gost_831"]
-    assert np.allclose(np.array(static["load"])[:, 2], [218.4, -218.4], rtol=SOLVER)
+    preload = of_bearing("preload")[0] * np.array([1.0, -1.0])
+    assert np.allclose(np.array(static["load"])[:, 2], preload, rtol=SOLVER)
     assert np.allclose(static["displacement"], 0.0, atol=1e-15)
     k = np.diagonal(static["stiffness"], axis1=1, axis2=2)
-    assert np.allclose(k[:, :3], [143.22e6, 143.22e6, 12.941e6], rtol=PUBLISHED)
+    wanted = [of_bearing(f"{way} stiffness")[0] for way in ("radial", "axial")]
+    assert np.allclose(k[:, 1:3], wanted, rtol=PUBLISHED)
+    assert np.allclose(k[:, 0], k[:, 1], rtol=SOLVER)
     _same_as_the_library(found)
     response = found["response"]
     assert (response["method"], response["ending"]) == ("harmonic_balance", "limit")

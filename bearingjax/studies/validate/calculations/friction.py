@@ -1,13 +1,17 @@
-"""Friction torques of one row without a solve, and constants of SKF's model."""
+"""Friction of one row or contact without a solve, and constants of SKF's model."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ....catalogue.entry import bearing_of_entry, catalogue_entry
+from ....contact.hertz import ellipse
+from ....design import Material, contact_modulus
 from ....design.bearing_set import rows_of
 from ....design.keywords import BALLS, ROLLERS
 from ....friction import friction_skf as skf
 from ....life.equivalent_load import equivalent_load
+from ....lubrication import Newtonian, ellipse_patch, mil_l_23699, point_film
 
 
 def coefficient(
@@ -47,3 +51,38 @@ def constants() -> dict[str, np.ndarray]:
     kinds = {name: skf._TYPES.get(kind) for name, kind in {**BALLS, **ROLLERS}.items()}
     tables = {name: [*one.series.values()] for name, one in kinds.items() if one}
     return {name: np.log(rows).sum(axis=0) for name, rows in tables.items()}
+
+
+def traction_slopes(
+    ball_diameter: float,
+    pitch_diameter: float,
+    osculation: float,
+    contact_angle: float,
+    load: float,
+    relative_speed: float,
+    temperature: float,
+) -> dict[str, jax.Array]:
+    """Return by how much the traction at an inner ring grows with the slip of a ball
+    that rolls in MIL-L-23699 without spin, `along` its way and `across` [N s/m].
+
+    Args:
+        ball_diameter, pitch_diameter: [m].
+        osculation: Groove radius over ball diameter [1].
+        contact_angle: [rad].
+        load: On the contact [N].
+        relative_speed: Speed of the ring less that of the orbit [rad/s].
+        temperature: Of the oil [K].
+    """
+    oil, modulus = mil_l_23699(), contact_modulus(Material(), Material())
+    least = pitch_diameter - ball_diameter * np.cos(contact_angle)
+    radius = jnp.asarray(0.5 * ball_diameter * least / pitch_diameter)
+    across = jnp.asarray((2.0 - 1.0 / osculation) / ball_diameter)
+    contact, pressed = ellipse(1.0 / radius, across, modulus), jnp.asarray(load)
+    thin, coefficient = oil.viscosity(0.0, temperature), oil.pressure_coefficient
+    given = 1.0 / contact.ratio, radius, modulus, thin, coefficient(temperature)
+    film = point_film(pressed, *given).central(0.5 * relative_speed * least)
+    peak = contact.peak_pressure(pressed)
+    patch = ellipse_patch(oil, temperature, *contact.semi_axes(pressed), peak)
+    # A Newtonian force grows evenly with the slip, which is 1 m/s here.
+    force = [Newtonian().resultants(patch, film, slip, 0.0).force for slip in np.eye(2)]
+    return {"along": -force[0][0], "across": -force[1][1]}

@@ -21,7 +21,13 @@ from ....noise import (
     waviness_force,
 )
 from ....numerics.power import positive_power
-from ....rotor.nonlinear import Grooves, Shooting, VibratingSystem, backbone
+from ....rotor.nonlinear import (
+    CubicExpansion,
+    Grooves,
+    Shooting,
+    VibratingSystem,
+    backbone,
+)
 from ....skid import SkidModel, steady
 from ....statics.support import Support
 
@@ -97,7 +103,7 @@ def ring_frequencies(
     load: float,
 ) -> dict[str, float]:
     """Return the natural frequencies of an outer ring on its balls, along a radial load
-    and across it [Hz].
+    and across it, and the lowest and highest of those above both [Hz].
 
     Args:
         n_balls: Number of balls; one stands in the line of the load.
@@ -125,7 +131,10 @@ def ring_frequencies(
         return float(found.frequency[mine][0])
 
     along, across = of(1), of(0)
-    return {"along": along, "across": across, "ratio": along / across}
+    others = found.frequency[found.frequency > 1.01 * along]
+    names = "along", "across", "ratio", "lowest other", "highest other"
+    values = along, across, along / across, others.min(), others.max()
+    return dict(zip(names, map(float, values), strict=True))
 
 
 def level_sums(bands: np.ndarray) -> dict[str, np.ndarray]:
@@ -180,7 +189,7 @@ def preloaded_grooves(
     contact_angle: float,
     n_balls: int,
     elastic_modulus: float,
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Return preload and stiffness of a bearing whose radii press its balls.
 
     Args:
@@ -194,8 +203,10 @@ def preloaded_grooves(
 
     Returns:
         `approach` [m], `constant` [N/m^1.5], `preload` [N], `displacement` that presses
-        the rings [m], `radial` and `axial` stiffness [N/m], and the axial one where the
-        contact angle follows the motion, over it, `stiffening` [1].
+        the rings [m], `reach` to which it may move across them [m], `radial` and
+        `axial` stiffness [N/m], and the axial one where the contact angle follows the
+        motion, over it, `stiffening` [1]; errors of the cubic expansion at 0.3, 0.5,
+        0.8, 1 of `reach` across and at -0.9, -0.5, 0.5, 1 of `displacement` along [1].
     """
     bearing = Grooves(
         inner_radius=inner_radius,
@@ -209,7 +220,20 @@ def preloaded_grooves(
     law = bearing.fixed_angle()
     stiffness = np.asarray(law.stiffness())
     moving = np.asarray(bearing.moving_angle().stiffness())
+    cubic, pressed = CubicExpansion.from_law(law), law.force(jnp.zeros(3))
+    reach = float(law.preload_displacement) * np.tan(contact_angle)
+    across = np.outer([0.3, 0.5, 0.8, 1.0], [reach, 0.0, 0.0])
+    along = np.outer([-0.9, -0.5, 0.5, 1.0], [0.0, 0.0, law.preload_displacement])
+
+    @jax.jit
+    @jax.vmap
+    def off(motion):
+        return (cubic.force(motion) - pressed) / (law.force(motion) - pressed) - 1.0
+
     return {
+        "reach": reach,
+        "cubic, across": np.asarray(off(across))[:, 0],
+        "cubic, along": np.asarray(off(along))[:, 2],
         "approach": float(bearing.approach),
         "constant": float(law.constant),
         "preload": float(law.preload()),
@@ -243,8 +267,9 @@ def skidding_balls(
         axial_load: (load,) [N].
 
     Returns:
-        Of each load `slip` of the orbit [1], `spin` (tangential, radial, axial)
-        [rad/s], `pitch` of the spin axis [rad].
+        Of each load `slip` of the orbit and speed of the `orbit` over that of the ring
+        [1], `spin` (tangential, radial, axial) and its `size` [rad/s], `pitch` of the
+        spin axis [rad].
     """
     bearing = AngularContactBallBearing(
         n_balls,
@@ -269,7 +294,9 @@ def skidding_balls(
         )
         return {
             "slip": found.slip[0],
+            "orbit": found.cage_speed / inner_speed,
             "spin": found.spin[0],
+            "size": jnp.linalg.norm(found.spin[0]),
             "pitch": found.pitch_angle[0],
         }
 
