@@ -14,12 +14,10 @@ from vibrations import OUTER, grooves
 import bearingjax as bj
 from bearingjax.rotor import BearingSupport
 
-_ROWS = [
-    inputs("filipkovskii_preload", name)
-    for name in ("bearing.contact_angle", "operating.load.Fz")
-]
-PAPER = {12: [of[0] for of in _ROWS], 26: [of[2] for of in _ROWS]}
-"""Free angle [rad] and preload [N] by the angle under preload [deg]."""
+_ANGLES = np.degrees(inputs("filipkovskii_preload", "bearing.contact_angle"))
+_PRELOADS = inputs("filipkovskii_preload", "operating.load.Fz")
+PAPER = {angle: (_ANGLES[k].round(3), _PRELOADS[k]) for angle, k in ((12, 0), (26, 2))}
+"""Free angle [deg] and preload [N] by the angle under preload [deg]."""
 
 
 @jax.jit
@@ -32,7 +30,7 @@ def held(support, motion, speed):
 def preloaded(angle, **choices):
     """A support whose bearing is pressed with P0."""
     free, preload = PAPER[angle]
-    element = bj.BearingElement(bearing(np.degrees(free), OUTER[angle]))
+    element = bj.BearingElement(bearing(free, OUTER[angle]))
     loose = BearingSupport(0, element, **choices)
     sign = -1.0 if loose.turned else 1.0
 

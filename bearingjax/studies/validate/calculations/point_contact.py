@@ -12,7 +12,8 @@ _MODULUS = 113.2e9
 
 
 def hertz_factors(curvature_difference: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the factors of semi-axes and approach, and the ellipticity.
+    """Return the factors of semi-axes and approach, the ellipticity and the complete
+    elliptic integrals.
 
     Args:
         curvature_difference: Difference over sum of the curvatures, F(ρ) (n,) [1].
@@ -27,7 +28,8 @@ def hertz_factors(curvature_difference: np.ndarray) -> dict[str, np.ndarray]:
     load = jnp.asarray(2.0 / 3.0 * _MODULUS * total * 1e-9)  # 3Q/(2 E* Σρ) = 1 mm³
     short, long = (np.asarray(axis) / 1e-3 for axis in contact.semi_axes(load))
     approach = np.asarray(contact.approach(load)) / (0.5e-6 * total)
-    return {"a": long, "b": short, "approach": approach, "ratio": long / short}
+    found = {"a": long, "b": short, "approach": approach, "ratio": long / short}
+    return found | _integrals(contact)
 
 
 def ellipticity(radius_ratio: np.ndarray) -> dict[str, np.ndarray]:
@@ -37,10 +39,13 @@ def ellipticity(radius_ratio: np.ndarray) -> dict[str, np.ndarray]:
         radius_ratio: Relative radius across over that in rolling direction (n,) [1].
     """
     contact = ellipse(jnp.asarray(radius_ratio), jnp.asarray(1.0), jnp.asarray(1.0))
+    return {"ratio": np.asarray(1.0 / contact.ratio)} | _integrals(contact)
+
+
+def _integrals(contact):
     first, b, d = complete(contact.ratio)
     second = b + contact.ratio**2 * d
-    found = {"ratio": 1.0 / contact.ratio, "first": first, "second": second}
-    return {name: np.asarray(value) for name, value in found.items()}
+    return {"first": np.asarray(first), "second": np.asarray(second)}
 
 
 def raceway_contacts(

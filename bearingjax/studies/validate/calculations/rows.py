@@ -10,13 +10,14 @@ import numpy as np
 
 from ....contact.line import LineConstant
 from ....design import BearingSet, Material
-from ....design.ball_types import AngularContactBallBearing
-from ....design.bearing import TaperedRollerBearing
+from ....design.ball_types import AngularContactBallBearing, DeepGrooveBallBearing
+from ....design.bearing import CylindricalRollerBearing, TaperedRollerBearing
 from ....element.balls.ball_speed import EqualShare
 from ....element.bearing_element import BearingElement
 from ....element.inertia import Speed
 from ....numerics.quadrature import Midpoint
 from ....statics.load import solve_load
+from ....statics.support import Support
 
 _MANY = 720
 """Rolling elements that stand for a load spread around the orbit."""
@@ -78,6 +79,32 @@ def load_integrals(
         "largest": largest[:, -1] / largest[:, 0],
         "share": towards[:, -1] / towards[:, 0],
     }
+
+
+def stiffness_ratios(count: list[int], rollers: bool = False) -> dict[str, np.ndarray]:
+    """Return the stiffness across a radial load over that along it.
+
+    Args:
+        count: Numbers of rolling elements (n,), one of them in the line of the load,
+            without clearance.
+        rollers: Whether contacts are lines, of exponent 10/9.
+    """
+    found = []
+    for n in map(int, count):
+        if rollers:
+            # Nearly none: beside the load even a roller that only touches is stiff.
+            gap = {"radial_internal_clearance": 1e-14}
+            bearing = CylindricalRollerBearing(n, 0.06, 0.01, 0.01, **gap)
+            laws = {"line_law": LineConstant(1e11), "quadrature": Midpoint(1)}
+        else:
+            bearing = DeepGrooveBallBearing(
+                n, 0.06, 0.01, outer_osculation=0.52, inner_osculation=0.52
+            )
+            laws = {}
+        load, support = [1e3, 0.0, 0.0, 0.0, 0.0, 0.0], Support(free=["ux", "uy"])
+        solved = solve_load(BearingElement(bearing, **laws), load, support=support)
+        found.append(float(solved.stiffness[7, 7] / solved.stiffness[6, 6]))
+    return {"ratio": np.array(found)}
 
 
 def balls_along_the_orbit(
