@@ -10,14 +10,15 @@ import numpy as np
 
 from ....contact.line import LineConstant
 from ....design import BearingSet, Material
-from ....design.ball_types import AngularContactBallBearing, DeepGrooveBallBearing
-from ....design.bearing import CylindricalRollerBearing, TaperedRollerBearing
+from ....design.ball_types import AngularContactBallBearing
+from ....design.bearing import TaperedRollerBearing
 from ....element.balls.ball_speed import EqualShare
 from ....element.bearing_element import BearingElement
 from ....element.inertia import Speed
 from ....numerics.quadrature import Midpoint
 from ....statics.load import solve_load
 from ....statics.support import Support
+from .direct import bearing_by
 
 _MANY = 720
 """Rolling elements that stand for a load spread around the orbit."""
@@ -81,30 +82,20 @@ def load_integrals(
     }
 
 
-def stiffness_ratios(count: list[int], rollers: bool = False) -> dict[str, np.ndarray]:
-    """Return the stiffness across a radial load over that along it.
+def stiffness_ratio(
+    bearing: dict[str, Any], line_constant: float = 0.0
+) -> dict[str, float]:
+    """Return the stiffness of a row across a radial load over that along it.
 
     Args:
-        count: Numbers of rolling elements (n,), one of them in the line of the load,
-            without clearance.
-        rollers: Whether contacts are lines, of exponent 10/9.
+        bearing: Its keywords.
+        line_constant: Of rollers as points, of exponent 10/9 [N/m^(19/9)]; 0: balls.
     """
-    found = []
-    for n in map(int, count):
-        if rollers:
-            # Nearly none: beside the load even a roller that only touches is stiff.
-            gap = {"radial_internal_clearance": 1e-14}
-            bearing = CylindricalRollerBearing(n, 0.06, 0.01, 0.01, **gap)
-            laws = {"line_law": LineConstant(1e11), "quadrature": Midpoint(1)}
-        else:
-            bearing = DeepGrooveBallBearing(
-                n, 0.06, 0.01, outer_osculation=0.52, inner_osculation=0.52
-            )
-            laws = {}
-        load, support = [1e3, 0.0, 0.0, 0.0, 0.0, 0.0], Support(free=["ux", "uy"])
-        solved = solve_load(BearingElement(bearing, **laws), load, support=support)
-        found.append(float(solved.stiffness[7, 7] / solved.stiffness[6, 6]))
-    return {"ratio": np.array(found)}
+    line = {"line_law": LineConstant(line_constant or 1.0), "quadrature": Midpoint(1)}
+    element = BearingElement(bearing_by(bearing), **(line if line_constant else {}))
+    load, across = [1e3, 0.0, 0.0, 0.0, 0.0, 0.0], Support(free=["ux", "uy"])
+    stiffness = solve_load(element, load, support=across).stiffness
+    return {"ratio": float(stiffness[7, 7] / stiffness[6, 6])}
 
 
 def balls_along_the_orbit(
