@@ -84,5 +84,6 @@ def traction_slopes(
     peak = contact.peak_pressure(pressed)
     patch = ellipse_patch(oil, temperature, *contact.semi_axes(pressed), peak)
     # A Newtonian force grows evenly with the slip, which is 1 m/s here.
-    force = [Newtonian().resultants(patch, film, slip, 0.0).force for slip in np.eye(2)]
+    law, slips = Newtonian(), jnp.eye(2)
+    force = [law.resultants(patch, film, slip, 0.0).force for slip in slips]
     return {"along": -force[0][0], "across": -force[1][1]}

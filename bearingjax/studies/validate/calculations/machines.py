@@ -221,9 +221,9 @@ def preloaded_grooves(
     stiffness = np.asarray(law.stiffness())
     moving = np.asarray(bearing.moving_angle().stiffness())
     cubic, pressed = CubicExpansion.from_law(law), law.force(jnp.zeros(3))
-    reach = float(law.preload_displacement) * np.tan(contact_angle)
-    across = np.outer([0.3, 0.5, 0.8, 1.0], [reach, 0.0, 0.0])
-    along = np.outer([-0.9, -0.5, 0.5, 1.0], [0.0, 0.0, law.preload_displacement])
+    pressing = float(law.preload_displacement)
+    across = np.outer([0.3, 0.5, 0.8, 1.0], [pressing * np.tan(contact_angle), 0, 0])
+    along = np.outer([-0.9, -0.5, 0.5, 1.0], [0.0, 0.0, pressing])
 
     @jax.jit
     @jax.vmap
@@ -231,13 +231,13 @@ def preloaded_grooves(
         return (cubic.force(motion) - pressed) / (law.force(motion) - pressed) - 1.0
 
     return {
-        "reach": reach,
+        "reach": across[-1, 0],
         "cubic, across": np.asarray(off(across))[:, 0],
         "cubic, along": np.asarray(off(along))[:, 2],
         "approach": float(bearing.approach),
         "constant": float(law.constant),
         "preload": float(law.preload()),
-        "displacement": float(law.preload_displacement),
+        "displacement": pressing,
         "radial": float(stiffness[0, 0]),
         "axial": float(stiffness[2, 2]),
         "stiffening": float(moving[2, 2] / stiffness[2, 2]),
