@@ -225,7 +225,6 @@ def preloaded_grooves(
     across = np.outer([0.3, 0.5, 0.8, 1.0], [pressing * np.tan(contact_angle), 0, 0])
     along = np.outer([-0.9, -0.5, 0.5, 1.0], [0.0, 0.0, pressing])
 
-    @jax.jit
     @jax.vmap
     def off(motion):
         return (cubic.force(motion) - pressed) / (law.force(motion) - pressed) - 1.0
