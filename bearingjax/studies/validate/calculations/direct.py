@@ -69,10 +69,14 @@ def _call_named(value: Any) -> Any:
 
 
 def _as_data(found: Any) -> Any:
-    """Return a result as tables by the names of its fields, lists and numbers."""
+    """Return a result as tables by the names of its fields, lists and numbers; a named
+    tuple with its properties that are numbers."""
     if isinstance(found, jax.Array | np.ndarray):
         return np.asarray(found).tolist()
-    names = getattr(found, "_fields", ())
+    kind = type(found)
+    names = [*getattr(kind, "_fields", ())]
+    own = [k for k, v in vars(kind).items() if names and isinstance(v, property)]
+    names += [k for k in own if isinstance(getattr(found, k), jax.Array)]
     if dataclasses.is_dataclass(found):
         names = [field.name for field in dataclasses.fields(found)]
     if names:

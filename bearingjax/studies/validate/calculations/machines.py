@@ -14,9 +14,6 @@ from ....element.inertia import Speed
 from ....lubrication import mil_l_23699
 from ....noise import (
     NoiseModel,
-    acceleration_of,
-    combine_levels,
-    kinematic_frequencies,
     natural_modes,
     waviness_force,
 )
@@ -40,28 +37,6 @@ def _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle):
     if not contact_angle:
         return DeepGrooveBallBearing(*sizes, **grooves)
     return AngularContactBallBearing(*sizes, contact_angle=contact_angle, **grooves)
-
-
-def defect_orders(
-    n_balls: int, ball_diameter: float, pitch_diameter: float, contact_angle: float
-) -> dict[str, float]:
-    """Return the frequencies of passage and rotation per turn of the inner ring [1].
-
-    Args:
-        n_balls: Number of balls.
-        ball_diameter, pitch_diameter: In one unit, as only their ratio counts.
-        contact_angle: [rad].
-    """
-    bearing = _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle)
-    found = kinematic_frequencies(bearing, Speed(inner=_TURN))
-    names = {
-        "BPFO": found.outer_passage,
-        "BPFI": found.inner_passage,
-        "FTF": found.cage,
-        "2 BSF": found.twice_rotation,
-        "BSF": found.rotation,
-    }
-    return {name: float(value) for name, value in names.items()}
 
 
 def waviness_lines(
@@ -135,24 +110,6 @@ def ring_frequencies(
     names = "along", "across", "ratio", "lowest other", "highest other"
     values = along, across, along / across, others.min(), others.max()
     return dict(zip(names, map(float, values), strict=True))
-
-
-def level_sums(bands: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the level of all octave bands together.
-
-    Args:
-        bands: Level of each band [dB].
-    """
-    return {"total": np.asarray(combine_levels(bands))}
-
-
-def accelerations(levels: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the accelerations of levels [m/s²].
-
-    Args:
-        levels: [dB].
-    """
-    return {"acceleration": np.asarray(acceleration_of(levels))}
 
 
 def _hertz_contact(q, velocity, phase, frequency):

@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 
-from ....contact.hertz import Ellipse, ellipse, shear_below
+from ....contact.hertz import Ellipse, ellipse
 from ....design import Material, contact_modulus
 from ....numerics.elliptic import complete
 
@@ -89,14 +89,3 @@ def raceway_contacts(
         "pressure": each.peak_pressure(loads),
     }
     return {name: np.asarray(value) for name, value in found.items()}
-
-
-def shear_stresses(ratio: np.ndarray, poisson_ratio: float) -> dict[str, np.ndarray]:
-    """Return the largest shear stresses below an elliptic contact, and their depths.
-
-    Args:
-        ratio: Semi-axis in rolling direction over the one across (n,) [1].
-        poisson_ratio: [1].
-    """
-    found = shear_below(jnp.asarray(ratio), jnp.asarray(poisson_ratio))
-    return {name: np.asarray(value) for name, value in found._asdict().items()}
