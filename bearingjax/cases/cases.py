@@ -13,13 +13,15 @@ from jaxtyping import Array, Float, Int
 from ..design.checks import is_traced, must_be, real_numbers
 from ..element import FREEDOMS, BearingElement, Speed
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
+from ..numerics.labels import LabelledArray
+from ..numerics.shown import Printable
 from ..numerics.units import unit
 from ..statics import Solution, SolveOptions, Support
 from ..statics.load import solve
 from ..statics.support import DICT_OF_FREEDOMS, RESTRAINED
 
 
-class Cases(eqx.Module):
+class Cases(Printable):
     """Operating cases, all fields with a leading axis (case,).
 
     Loads, displacements and speeds are not checked by value: a case with a NaN or an
@@ -56,6 +58,12 @@ class Cases(eqx.Module):
     )
     hours: Float[Array | np.ndarray, " case"] | None = eqx.field(metadata=unit("h"))
     design: Int[Array | np.ndarray, " case"] | None
+
+    @staticmethod
+    def label_entry(freedom: str, values: Any) -> LabelledArray:
+        """Return displacements of `prescribed` with their labels."""
+        units = "m" if freedom.startswith("u") else "rad"
+        return LabelledArray(np.asarray(values), ("case",), units)
 
     def __init__(
         self,

@@ -54,8 +54,5 @@ def label_cases(cases: Cases) -> Mapping[str, LabelledArray]:
     """Return the arrays of cases with their labels; `prescribed_ux` and the like."""
     found = labelled_fields(cases)
     for name, values in cases.prescribed.items():
-        units = "m" if name.startswith("u") else "rad"
-        found[f"prescribed_{name}"] = LabelledArray(
-            np.asarray(values), ("case",), units
-        )
+        found[f"prescribed_{name}"] = cases.label_entry(name, values)
     return found

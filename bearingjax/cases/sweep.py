@@ -26,6 +26,7 @@ from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.labels import make_dataset
 from ..numerics.result import Result
+from ..numerics.shown import Printable
 from ..numerics.types import with_fields
 from ..numerics.warning import Warning, exceeded_kinds, warnings_of_cases
 from ..statics import Solution, SolveOptions, Support
@@ -55,7 +56,7 @@ name for it (`FIELD_OF_LARGEST`: the largest load of a rolling element, the larg
 contact pressure), number of loaded elements, steps of the load solve, residual."""
 
 
-class Sweep(eqx.Module):
+class Sweep(Printable):
     """Solved cases: every output with a leading axis (case,), as NumPy arrays.
 
     An output is an attribute (`sweep.displacement`); units and other axes are those of
@@ -76,6 +77,8 @@ class Sweep(eqx.Module):
     outputs: dict[str, np.ndarray]
     moving_ring: str = eqx.field(static=True)
     zeros: tuple[tuple[str, tuple[str, ...]], ...] = eqx.field(static=True, default=())
+
+    label_entry = staticmethod(label_output)
 
     def __getattr__(self, name: str) -> Any:
         outputs = self.__dict__.get("outputs", {})

@@ -8,7 +8,9 @@ from jax import lax
 from ..numerics import ContactMapped, Result, Warning, as_real
 from ..numerics.compiled.programs import program
 from ..numerics.implicit import attach_roots, stop_gradient
+from ..numerics.shown import Printable
 from ..numerics.types import Number, Scalar, Vector
+from ..numerics.units import unit
 from .halfspace.pressure import ContactSolution
 from .halfspace.roller import RollerContact
 from .line import LINE_EXPONENT, AbstractLineLaw, Palmgren, peak_pressure
@@ -26,7 +28,7 @@ FEW = 5
 """Cells across or along a contact below which a warning is given."""
 
 
-class Slices(eqx.Module):
+class Slices(Printable):
     """Line contact under the load and tilt of a contact.
 
     Attributes:
@@ -35,9 +37,9 @@ class Slices(eqx.Module):
         pressure: Hertz's largest pressure across the contact (n,) [Pa].
     """
 
-    approach: Scalar
-    line_load: Vector
-    pressure: Vector
+    approach: Scalar = eqx.field(metadata=unit("m"))
+    line_load: Vector = eqx.field(metadata=unit("N/m"))
+    pressure: Vector = eqx.field(metadata=unit("Pa"))
 
     @property
     def peak_pressure(self) -> Scalar:
@@ -115,7 +117,7 @@ def slices(
     return Slices(approach, line_load, pressure)
 
 
-class SliceComparison(eqx.Module):
+class SliceComparison(Printable):
     """A single solved contact, and slices under the same load and tilt.
 
     Attributes:

@@ -20,6 +20,7 @@ from ..design.checks import check, count, is_traced, of_class
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result
+from ..numerics.shown import Printable
 from ..numerics.units import meaning, unit
 from .bands import Bands, band_levels, octave_bands, total_root_mean_square
 from .level import REFERENCE_ACCELERATION, level
@@ -35,7 +36,7 @@ Progress = Callable[[int, int], Any]
 """Callback with the number of bearings done and the total."""
 
 
-class MonteCarlo(eqx.Module):
+class MonteCarlo(Printable):
     """Levels of many bearings; NaN for those that failed.
 
     Attributes:

@@ -26,6 +26,7 @@ from jaxtyping import Array, Float
 from ..design.checks import check
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar
 from ..numerics.units import unit
 from .bands import LEAST_SHIFT, Bands, band_power, shift
@@ -37,7 +38,7 @@ from .spectrum import Hann, spectrum
 from .vibration import bandwidth, vibration
 
 
-class SourceContributions(eqx.Module):
+class SourceContributions(Printable):
     """Mean squares of the acceleration, each the mean over the same bearings.
 
     Attributes:

@@ -25,6 +25,7 @@ from jaxtyping import Array, Complex, Float
 from ..design.checks import check, floats, must_be, positive
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, array_namespace, as_real
 from ..numerics.units import unit
 
@@ -130,7 +131,7 @@ class Hann(AbstractWindow):
         return xp.where(above, away, -away), (1.0 - away**2) / xp.sinc(away)
 
 
-class Spectrum(eqx.Module):
+class Spectrum(Printable):
     """Lines of a record: it is Re Σ amplitude · exp(2πi · frequency · time).
 
     Amplitudes are peak values: a sine of amplitude 1 on a bin has the size 1, a cosine

@@ -20,6 +20,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit, units
 from ..statics.options import DEFAULT_TOLERANCE
@@ -53,7 +54,7 @@ class CageMotion(NamedTuple):
     acceleration: Annotated[Float[Array, "time 3"], unit("m/s²")]
 
 
-class Vibration(eqx.Module):
+class Vibration(Printable):
     """Record of the vibration of a bearing; leading axis time.
 
     Samples are even, over whole turns of the shaft, without the end point.

@@ -27,15 +27,20 @@ Fact = tuple[int, str, str, str]
 """A line that is shown: depth, name and value, with unit, of a field; its meaning."""
 
 
-class Printable(eqx.Module):
-    """Parent of what users print: `str` has its numbers, `repr` types and shapes."""
+class Shown:
+    """Parent of dataclasses that users print: `str` has the numbers of their parts."""
+
+    deepest = 2  # parts of parts are too many to be read
 
     def shown_facts(self) -> Iterator[Fact]:
         """Yield what is shown, line by line: all fields that are not `None`."""
         return facts_of(self)
 
+    def _read_facts(self) -> Iterator[Fact]:
+        return (fact for fact in self.shown_facts() if fact[0] <= self.deepest)
+
     def __str__(self) -> str:
-        facts = [(0, type(self).__name__, "", ""), *self.shown_facts()]
+        facts = [(0, type(self).__name__, "", ""), *self._read_facts()]
         rows = [("  " * depth + name, *texts) for depth, name, *texts in facts]
         wide = max(len(name) for name, *_ in rows) + 2
         far = wide + max(len(text) for _, text, _ in rows if len(text) <= _WIDEST)
@@ -51,14 +56,21 @@ class Printable(eqx.Module):
     def _repr_html_(self) -> str:
         cell = '<td style="text-align:left;padding-left:{}em">{}</td>'
         page = f"<table><caption>{type(self).__name__}</caption>"
-        for depth, *texts in self.shown_facts():
+        for depth, *texts in self._read_facts():
             cells = map(cell.format, (depth, 1, 1), map(html.escape, texts))
             page += f"<tr>{''.join(cells)}</tr>"
         return f"{page}</table>"
 
 
+class Printable(Shown, eqx.Module):
+    """Parent of modules that users print: `repr` has types and shapes."""
+
+    deepest = 99
+
+
 def facts_of(owner: Any, fields: Sequence[str] = ()) -> Iterator[Fact]:
-    """Yield the fields of a module or named tuple that are not `None`, at depth 1.
+    """Yield the fields of a module, dataclass or named tuple at depth 1: those that are
+    not `None`, and are part of its `repr`.
 
     Args:
         owner: Module or named tuple.
@@ -67,27 +79,37 @@ def facts_of(owner: Any, fields: Sequence[str] = ()) -> Iterator[Fact]:
     for field in fields or _fields(owner) or ():
         value = getattr(owner, field)
         parts = {field: value}
-        if type(value) is tuple and any(_fields(part) is not None for part in value):
+        few = type(value) is tuple and len(value) <= _NAMED
+        if few and any(_fields(part) is not None for part in value):
             parts = {f"{field}.{k}": part for k, part in enumerate(value)}
+        if type(value) is dict:
+            parts = {f"{field}.{k}": part for k, part in value.items()}
         for name, part in parts.items():
             if _fields(part) is not None:
                 yield 1, name, type(part).__name__, _meaning(owner, field)
-                own = isinstance(part, Printable)
+                own = isinstance(part, Shown)
                 facts = part.shown_facts() if own else facts_of(part)
                 yield from ((1 + fact[0], *fact[1:]) for fact in facts)
             elif part is not None:
-                yield 1, name, _value_text(owner, field, part), _meaning(owner, field)
+                text = _value_text(owner, field, part, name.removeprefix(f"{field}."))
+                yield 1, name, text, _meaning(owner, field) if name == field else ""
 
 
-def _value_text(owner: Any, field: str, value: Any) -> str:
-    """Value of a field with its unit; without known numbers its type, or words."""
+def _value_text(owner: Any, field: str, value: Any, entry: str) -> str:
+    """Value of a field, or entry of it, with its unit; without known numbers its type,
+    or words."""
     if not has_numbers(value):
         is_array = hasattr(value, "shape")
-        text = f"{value.dtype}{list(value.shape)}" if is_array else str(value)
+        text = (
+            f"{value.dtype}{list(value.shape)}"
+            if is_array
+            else str(getattr(value, "label", value))
+        )
         return textwrap.shorten(text, _WIDEST, placeholder=" …")
-    array = LabelledArray.field(owner, field, value)
+    label = getattr(owner, "label_entry", None) if entry != field else None
+    array = label(entry, value) if label else LabelledArray.field(owner, field, value)
     values, units = array.values, np.asarray(array.units)
-    if field == "result" and values.dtype.kind == "i":
+    if entry == "result" and values.dtype.kind == "i":
         codes = [(Result(code).label, np.sum(values == code)) for code in Result]
         return ", ".join(f"{n} {x}" if values.ndim else x for x, n in codes if n)
     if values.dtype.kind == "b":
@@ -95,7 +117,11 @@ def _value_text(owner: Any, field: str, value: Any) -> str:
     sizes = zip(values.shape[values.ndim - units.ndim :], units.shape, strict=True)
     units = units[np.ix_(*(np.arange(n) % size for n, size in sizes))]
     units = np.where(units == "1", "", units)
-    return numbers_text(values, units, array.labels(0) if values.ndim == 1 else None)
+    names = array.labels(0) if values.ndim == 1 else None
+    head, tail = "", f" [{', '.join(array.mixed)}]" if array.mixed else ""
+    if values.dtype.kind == "c":
+        head, values = "magnitude ", np.abs(values)
+    return f"{head}{numbers_text(values, units, names)}{tail}"
 
 
 def numbers_text(values: Any, units: Any, names: Sequence[str] | None = None) -> str:
@@ -132,15 +158,16 @@ def numbers_text(values: Any, units: Any, names: Sequence[str] | None = None) ->
 def has_numbers(value: Any) -> bool:
     """Whether it is a number, or an array of numbers, that is known: not traced."""
     kind = getattr(getattr(value, "dtype", None), "kind", "")
-    array = kind in tuple("biuf") and hasattr(value, "__array__")
+    array = kind in tuple("biufc") and hasattr(value, "__array__")
     return (array or type(value) in (int, float)) and not isinstance(value, Tracer)
 
 
 def _fields(owner: Any) -> Sequence[str] | None:
     """Names of the fields of a module or named tuple; `None` of anything else."""
-    if isinstance(owner, type) or not dataclasses.is_dataclass(owner):
+    if isinstance(owner, type | str) or not dataclasses.is_dataclass(owner):
         return getattr(owner, "_fields", None) if isinstance(owner, tuple) else None
-    return [f.name for f in dataclasses.fields(owner) if not f.name.startswith("_")]
+    fields = dataclasses.fields(owner)
+    return [f.name for f in fields if f.repr and not f.name.startswith("_")]
 
 
 def _meaning(owner: Any, field: str) -> str:

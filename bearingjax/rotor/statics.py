@@ -30,6 +30,7 @@ from ..numerics.minimise import (
     TrustRegionNewton,
 )
 from ..numerics.result import Result, raise_unless_converged
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, as_real, with_fields
 from ..numerics.units import unit, units
 from ..numerics.warning import Warning
@@ -59,7 +60,7 @@ _SOLVER = TrustRegionNewton(
 """Solver of the balance, the same whether supports are parts of its program or not."""
 
 
-class StaticEquilibrium(eqx.Module):
+class StaticEquilibrium(Printable):
     """Static equilibrium of a rotor in its supports, at one speed.
 
     Attributes:
@@ -93,14 +94,14 @@ class StaticEquilibrium(eqx.Module):
     damping: Float[Array, "support station_freedom=5 moved_station_freedom=5"] = (
         eqx.field(metadata=unit(DAMPING_UNITS))
     )
-    rotor: Rotor
+    rotor: Rotor = eqx.field(repr=False)
     motion: Float[Array, " motion"] = eqx.field(metadata=units("m", "rad"))
     speed: Scalar = eqx.field(metadata=unit("rad/s"))
     residual: Scalar = eqx.field(metadata=unit("1"))
     steps: Int[Array, ""]
     result: Int[Array, ""]
     free: Float[Array, " motion"] = eqx.field(metadata=unit("1"))
-    given: Rotor | None = None
+    given: Rotor | None = eqx.field(repr=False, default=None)
     place: Float[Array, " motion"] | None = eqx.field(
         metadata=units("m", "rad"), default=None
     )

@@ -17,6 +17,7 @@ from ..design.checks import check, is_traced, positive
 from ..design.checks import count as whole
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, raise_unless_converged, worst_code
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, as_count, as_real
 from ..numerics.units import rpm
 from ..numerics.warning import Warning
@@ -28,7 +29,7 @@ MOST_ERROR = 1e-3
 """Error of the stiffness over the speed above which a warning is given [1]."""
 
 
-class StaticEquilibriumOver(eqx.Module):
+class StaticEquilibriumOver(Printable):
     """Static equilibria of a rotor at speeds from rest to a top speed.
 
     Attributes:

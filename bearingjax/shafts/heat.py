@@ -24,6 +24,7 @@ from ..friction.reference_speed import heat_area
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.result import Result, raise_unless_converged
+from ..numerics.shown import Printable
 from ..numerics.types import Real, RealOrNone, Scalar, as_real
 from ..numerics.units import real, unit
 from ..rotor.like_parts import map_parts
@@ -204,7 +205,7 @@ def _add_conductance(matrix, i, j, conductance):
     return matrix.at[i, j].add(-conductance).at[j, i].add(-conductance)
 
 
-class ThermalState(eqx.Module):
+class ThermalState(Printable):
     """Temperatures of a system in equilibrium with its friction.
 
     Attributes:

@@ -7,6 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..numerics.lapack import solve_any
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, as_real
 from ..numerics.units import unit
 from .line import ShaftLine
@@ -55,7 +56,7 @@ class Mesh(eqx.Module):
     line: Float[Array, "direction=3"] = eqx.field(converter=as_real, metadata=unit("1"))
 
 
-class PowerFlow(eqx.Module):
+class PowerFlow(Printable):
     """Speeds and torques.
 
     Attributes:

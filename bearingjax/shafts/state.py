@@ -12,6 +12,7 @@ from ..numerics.implicit import stop_gradient
 from ..numerics.labels import to_xarray
 from ..numerics.minimise import Minimum
 from ..numerics.result import Result
+from ..numerics.shown import Printable
 from ..numerics.types import Scalar, in_numpy
 from ..numerics.units import unit
 from ..rotor import STATION_FREEDOMS
@@ -25,7 +26,7 @@ from .power import PowerFlow
 from .system import ShaftSystem
 
 
-class ShaftState(eqx.Module):
+class ShaftState(Printable):
     """A shaft in equilibrium, in its local axes.
 
     Forces and moments are those by which the part of the shaft at larger z acts on the
@@ -51,7 +52,7 @@ class ShaftState(eqx.Module):
     to_xarray = to_xarray
 
 
-class SystemSolution(eqx.Module):
+class SystemSolution(Printable):
     """A system of shafts in equilibrium. Numbers are NaN unless it converged.
 
     Attributes:

@@ -19,6 +19,7 @@ from ...numerics.implicit import attach_by, stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.linear import solve_symmetric
 from ...numerics.result import Result, raise_unless_converged
+from ...numerics.shown import Printable
 from ...numerics.types import Count, Flag, Number, Scalar, Vector, as_real
 from ...numerics.units import unit
 from .gradients import (
@@ -47,7 +48,7 @@ AT_SIDES = 1e-3
 reach them, where it bulges at a sharp end. Of 35 cells the peak is then off by less."""
 
 
-class ContactSolution(eqx.Module):
+class ContactSolution(Printable):
     """A solved contact.
 
     Attributes:
@@ -65,7 +66,7 @@ class ContactSolution(eqx.Module):
     motion, material and the size of the grid; a failed solution has NaN derivatives.
     """
 
-    problem: Problem
+    problem: Problem = eqx.field(repr=False)
     pressure: Float[Array, "across along"] = eqx.field(metadata=unit("Pa"))
     approach: Scalar = eqx.field(metadata=unit("m"))
     tilt: Scalar = eqx.field(metadata=unit("rad"))

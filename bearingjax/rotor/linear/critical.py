@@ -17,6 +17,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import cholesky, congruent, eigh, solve_any
+from ...numerics.shown import Printable
 from ...numerics.types import Scalar, as_count, as_real
 from ...numerics.units import unit
 from ...numerics.warning import Warning
@@ -45,7 +46,7 @@ _NEAR = 0.1
 _RPM = 30.0 / np.pi
 
 
-class CriticalSpeeds(eqx.Module):
+class CriticalSpeeds(Printable):
     """Critical speeds of a rotor, lowest first.
 
     Speeds beyond those found are NaN.

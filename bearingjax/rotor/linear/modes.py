@@ -27,6 +27,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import stop_gradient
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import cholesky, congruent, eig, eigvals, solve_any
+from ...numerics.shown import Printable
 from ...numerics.types import Scalar, array_namespace, as_count, as_real
 from ...numerics.units import unit
 from ...numerics.warning import Warning
@@ -77,7 +78,7 @@ def major_axis(x: Any, y: Any) -> Any:
     return 0.5 * (xp.abs(x + 1j * y) + xp.abs(x - 1j * y))
 
 
-class Modes(eqx.Module):
+class Modes(Printable):
     """Modes of a rotor: oscillating ones first, in order of frequency.
 
     Of equal frequencies the most damped one comes first. Rigid-body and overdamped

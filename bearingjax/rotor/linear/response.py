@@ -12,6 +12,7 @@ from ...design.checks import all_of_class, check_fields, number
 from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
+from ...numerics.shown import Printable
 from ...numerics.types import Real, as_count
 from ...numerics.units import meaning, real, unit
 from ..parts import check_station
@@ -53,7 +54,7 @@ class Unbalance(eqx.Module):
         number(self, "phase")
 
 
-class UnbalanceResponse(eqx.Module):
+class UnbalanceResponse(Printable):
     """Steady vibration at the frequency of the speed, Re(motion · exp(iΩt)).
 
     Attributes:

@@ -15,7 +15,6 @@ Source: Krack, Computers & Structures 154 (2015) 59, extended periodic motion.
 from functools import partial
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -27,6 +26,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eig, pseudoinverse, solve_any
 from ...numerics.result import Result, raise_unless_converged
+from ...numerics.shown import Printable
 from ...numerics.types import Scalar, Square, Vector, as_real
 from .method import AbstractMethod
 from .orbit import amplitudes, newton
@@ -46,7 +46,7 @@ _SAME = 1e-8
 """Distance of unknowns below which a guess is exact [1]."""
 
 
-class Backbone(eqx.Module):
+class Backbone(Printable):
     """Backbone curve: free vibrations over their amplitude.
 
     Attributes:

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
@@ -13,6 +12,7 @@ from ...numerics.compiled.programs import program
 from ...numerics.implicit import attach_by, stop_gradient, unless_failed
 from ...numerics.lapack import eigvals, solve_any
 from ...numerics.result import Result, raise_unless_converged
+from ...numerics.shown import Printable
 from ...numerics.types import Flag, Number, Scalar, Vector, as_real
 from ...numerics.units import unit
 from .method import AbstractMethod, Jacobian, Motion, Unknowns
@@ -34,7 +34,7 @@ Point = Float[Array, " x"]
 """Unknowns z and frequency ratio ν: a point of a branch, or a direction there [1]."""
 
 
-class PeriodicOrbit(eqx.Module):
+class PeriodicOrbit(Printable):
     """Periodic orbit: a motion with the period of its excitation.
 
     Attributes:

@@ -10,7 +10,6 @@ of the fastest natural frequency, which grows with the elements: reduce such a r
 from collections.abc import Callable
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -23,6 +22,7 @@ from ...numerics.in_time import IntegrationOptions, Stepping
 from ...numerics.in_time import integrate as in_time
 from ...numerics.lapack import solve_any
 from ...numerics.result import Result, raise_unless_converged
+from ...numerics.shown import Printable
 from ...numerics.types import Number, Scalar, as_real
 from .run_up import FrequencyTable, as_frequency_table
 from .system import AbstractVibratingSystem
@@ -33,7 +33,7 @@ _FIRST = 0.01
 """First step over a radian of the reference frequency [1]."""
 
 
-class History(eqx.Module):
+class History(Printable):
     """Vibration in time; NaN at times that were not reached.
 
     Attributes:

@@ -11,6 +11,7 @@ from ...element.inertia import Speed
 from ...numerics.labels import name_axis, to_xarray
 from ...numerics.linear import lengths
 from ...numerics.result import Result
+from ...numerics.shown import Printable
 from ...numerics.types import Scalar, array_namespace
 from ...numerics.units import unit
 from ...statics.solution import BallSolution, RollerSolution
@@ -56,7 +57,7 @@ class Power(NamedTuple):
     cage: Annotated[Scalar, unit("W")]
 
 
-class SteadyMotion(eqx.Module):
+class SteadyMotion(Printable):
     """Results common to balls and rollers. Axes: place along the orbit; contact.
 
     Attributes:

@@ -9,6 +9,7 @@ from jaxtyping import Array, Float, Int
 from ...element.frame import RINGS
 from ...numerics.labels import to_xarray
 from ...numerics.linear import lengths
+from ...numerics.shown import Printable
 from ...numerics.spectrum import LEAST, even_step, hann_lines
 from ...numerics.units import unit
 from ...statics.solution import BallSolution, RollerSolution
@@ -17,7 +18,7 @@ from ..motion import SkidState, Work
 from ..orbits.steady_results import slip
 
 
-class SkidMotion(eqx.Module):
+class SkidMotion(Printable):
     """Motion of balls or rollers over time; NaN at times that were not reached. Axes:
     time; ball or roller; contact.
 

@@ -9,6 +9,7 @@ from jaxtyping import Float
 from ...numerics.compiled.programs import program
 from ...numerics.result import Result
 from ...numerics.types import as_array
+from ...numerics.units import unit
 from ...numerics.warning import Warning, warnings_of
 from ...rotor import (
     LinearSupport,
@@ -20,6 +21,7 @@ from ...rotor import (
     reduction_warnings,
 )
 from ...rotor.nonlinear.orbit import amplitudes
+from ...rotor.shaft import STATION_UNITS
 from .read import RotorScene
 from .supports import unit_of_length, with_passage
 
@@ -73,8 +75,10 @@ class RotorResponse:
     """
 
     method: str
-    frequency: Float[np.ndarray, " point"]
-    amplitude: Float[np.ndarray, "point node station_freedom"]
+    frequency: Float[np.ndarray, " point"] = dataclasses.field(metadata=unit("rad/s"))
+    amplitude: Float[np.ndarray, "point node station_freedom"] = dataclasses.field(
+        metadata=unit(STATION_UNITS)
+    )
     displacement: Float[np.ndarray, "point sample node station_freedom"]
     branch: nonlinear.Branch | None
     event_amplitude: Float[np.ndarray, "event node station_freedom"]
@@ -96,9 +100,11 @@ class RotorTransient:
         stopped: Code and message, if it ends early.
     """
 
-    time: Float[np.ndarray, " time"]
-    speed: Float[np.ndarray, " time"]
-    displacement: Float[np.ndarray, "time node station_freedom"]
+    time: Float[np.ndarray, " time"] = dataclasses.field(metadata=unit("s"))
+    speed: Float[np.ndarray, " time"] = dataclasses.field(metadata=unit("rad/s"))
+    displacement: Float[np.ndarray, "time node station_freedom"] = dataclasses.field(
+        metadata=unit(STATION_UNITS)
+    )
     velocity: Float[np.ndarray, "time node station_freedom"]
     steps: int
     stopped: Stopped | None

@@ -14,6 +14,7 @@ from ...files.scene_errors import scene_errors
 from ...life import Life, life_warnings, rating_life
 from ...numerics.labels import to_xarray
 from ...numerics.result import Result, SolveError
+from ...numerics.shown import Shown
 from ...numerics.types import as_array
 from ...numerics.warning import Warning, warnings_of
 from ...rotor import (
@@ -54,7 +55,7 @@ class Failure:
 
 
 @dataclasses.dataclass(frozen=True)
-class RotorRun:
+class RotorRun(Shown):
     """Result of a rotor run.
 
     Parts not requested or not solved are `None`.
@@ -74,8 +75,8 @@ class RotorRun:
         warnings: Warnings of doubtful results.
     """
 
-    task: RotorScene
-    rotor: Rotor | None
+    task: RotorScene = dataclasses.field(repr=False)
+    rotor: Rotor | None = dataclasses.field(repr=False)
     settled: StaticEquilibrium | None = None
     lives: tuple[tuple[Mount, Life], ...] = ()
     modes: Modes | None = None

@@ -15,13 +15,14 @@ from ...numerics.labels import (
     labelled_fields,
     make_dataset,
 )
+from ...numerics.shown import Shown
 from ...skid import conditions, rest_state, skid_warnings
 from ...statics.warning import solution_warnings
 from .read import SkidScene
 
 
 @dataclasses.dataclass(frozen=True)
-class SkidRun:
+class SkidRun(Shown):
     """Result of a skid run, in NumPy.
 
     Attributes:
@@ -32,7 +33,7 @@ class SkidRun:
         warnings: Warnings of doubtful results; none if not solved to the end.
     """
 
-    task: SkidScene
+    task: SkidScene = dataclasses.field(repr=False)
     found: Any
     state: Any
     warnings: tuple[Warning, ...]
