@@ -103,7 +103,7 @@ def numbers_of_bearing(
     installed, motion, speed, conditions, oil = placed
     given = installed, motion, speed, inertia, points
     solution = in_place(*given, fixed_stiffness=True)
-    peak, lives, warned = bearing_results(solution, speed, conditions)
+    peak, lives, warned, _ = bearing_results(solution, speed, conditions)
     power = as_real(0.0) if oil is None else oil.power(solution)
     held = solution.force[_INNER]
     return BearingNumbers(held, peak, lives, stop_gradient(warned), power)

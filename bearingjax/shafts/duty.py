@@ -12,6 +12,7 @@ from jax import lax
 from jaxtyping import Array, Float, Int
 
 from ..cases.cases import check_hours
+from ..cases.output_labels import label_output
 from ..design import rows_of
 from ..element.frame import LOAD_UNITS, MOTION_UNITS
 from ..element.inertia import Speed
@@ -19,6 +20,7 @@ from ..life.life import LifeConditions, rating_life
 from ..life.life_warning import life_sizes
 from ..life.rating import check_alike
 from ..life.reference_life import BALLS, exponents_of
+from ..life.required_life import NEEDED
 from ..numerics.compiled.programs import program
 from ..numerics.labels import to_xarray
 from ..numerics.shown import Printable
@@ -48,6 +50,7 @@ LIVES = (
     "damage",
 )
 """Numbers of a `Life` that a `DutyResult` has; the damage is last."""
+_KEPT = LIVES, NEEDED
 
 
 class DutyResult(Printable):
@@ -66,6 +69,8 @@ class DutyResult(Printable):
         friction: Power lost in each bearing (case, bearing) [W]; `None`: not asked for.
         warned: For each bearing the size of every kind of warning about its solution
             and its life that can arise, by name (case,); empty of springs.
+        fatigue: For each bearing what `judge_life` takes of its lives, by name
+            (case, ...); empty of springs.
     """
 
     load: Float[Array | np.ndarray, "*case bearing component=6"] = eqx.field(
@@ -84,11 +89,13 @@ class DutyResult(Printable):
         metadata=unit("Pa")
     )
     lives: dict[str, Float[Array | np.ndarray, "*case bearing"]]
-    warned: tuple[dict[str, Any], ...]
+    warned: tuple[dict[str, Any], ...] = eqx.field(repr=False)
     friction: Float[Array | np.ndarray, "*case bearing"] | None = eqx.field(
         metadata=unit("W"), default=None
     )
+    fatigue: tuple[dict[str, Any], ...] = eqx.field(repr=False, default=())
 
+    label_entry = staticmethod(label_output)
     to_xarray = to_xarray
 
 
@@ -124,12 +131,12 @@ def solve_duty(
     whole = [with_preload_offsets(system, offsets) for system in systems]
     found = _map(state_of, whole)
     _check_balances(systems, found)
-    lives: list[tuple[Any, Any, Any]] = []
+    lives: list[tuple[Any, Any, Any, Any]] = []
     first = systems[0]
     for k, seat in enumerate(first.seats):
         if seat.installed is None:
             none = np.full(len(systems), np.nan)
-            lives.append((none, dict.fromkeys(LIVES, none), {}))
+            lives.append((none, dict.fromkeys(LIVES, none), {}, {}))
             continue
         speeds = [speed_of(first, k, speed)[0] for speed in np.asarray(found["speed"])]
         given = [
@@ -154,6 +161,7 @@ def solve_duty(
             for name in names
         },
         warned=tuple(life[2] for life in lives),
+        fatigue=tuple(life[3] for life in lives),
     )
 
 
@@ -258,7 +266,7 @@ def numbers_of(found: SystemSolution) -> dict[str, Any]:
 
 def _rate(
     given: Any, inertia: bool | None
-) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
+) -> tuple[Scalar, dict[str, Any], dict[str, Any], dict[str, Any]]:
     installed, motion, speed, conditions = given
     solution = in_place(installed, motion, speed, inertia, 101)
     return bearing_results(solution, speed, conditions)
@@ -266,8 +274,9 @@ def _rate(
 
 def bearing_results(
     solution: Solution, speed: Speed, conditions: LifeConditions
-) -> tuple[Scalar, dict[str, Any], dict[str, Any]]:
-    """Return peak pressure, numbers of `LIVES`, and sizes of warnings of a bearing.
+) -> tuple[Scalar, dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Return peak pressure, numbers of `LIVES`, sizes of warnings, and what
+    `judge_life` takes, of a bearing.
 
     Args:
         solution: From `in_place`.
@@ -277,10 +286,10 @@ def bearing_results(
     solution = in_numpy(solution)
     given = solution.element, solution, conditions
     life = in_numpy(rating_life(*given, speed=speed))
-    lives = {name: getattr(life, name) for name in LIVES}
-    lives = {name: value for name, value in lives.items() if value is not None}
+    known = {name: value for name, value in vars(life).items() if value is not None}
+    lives, parts = ({k: known[k] for k in names if k in known} for names in _KEPT)
     doubts = life_sizes(solution.element.bearing, life.ratings, vars(life))
-    return solution.roller_pressure.max(), lives, sizes(solution) | doubts
+    return solution.roller_pressure.max(), lives, sizes(solution) | doubts, parts
 
 
 def bearing_hours(

@@ -1,11 +1,13 @@
 """Scenes of shaft systems, and what `bearingjax shaft` makes of them."""
 
+import dataclasses
 import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -14,15 +16,16 @@ from runs import SEARCH, WORDS, Runs, Study
 
 import bearingjax as bj
 from bearingjax.files import SceneError
+from bearingjax.life import Life, judge_life
 from bearingjax.numerics.result import Result
 from bearingjax.plot.rotors.shaft_views import system_views
 from bearingjax.plot.shafts import _draw_nodes, _draw_warm_up
 from bearingjax.report.report_model import Grid
-from bearingjax.shafts import DutyResult, power_flow
+from bearingjax.shafts import DutyResult, ThermalState, power_flow
 from bearingjax.studies.shaft.output import shaft_columns
 from bearingjax.studies.shaft.read import read_shafts
 from bearingjax.studies.shaft.report import _temperatures
-from bearingjax.studies.shaft.run import ShaftRun, run_shafts
+from bearingjax.studies.shaft.run import ShaftRun, _with_temperatures, run_shafts
 
 GEARS = Path(__file__).with_name("refused") / "gears.toml"
 SCENE = GEARS.read_text(encoding="utf-8")
@@ -277,6 +280,85 @@ def test_worst_case_of_a_spectrum(tmp_path):
     np.testing.assert_array_equal(found.hours, run.hours)
 
 
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory):
+    """A run with cases whose lives were made up: A has a required life, C is on
+    springs, D has none."""
+    path = tmp_path_factory.mktemp("judged") / "x.toml"
+    path.write_text(SCENE + CASES, "utf-8")
+    scene = read_shafts(path, ["bearings.A.life.required=8000 h"])
+    rng, cases = np.random.default_rng(3), 3
+    damage = 1e-9 * rng.uniform(1.0, 2.0, (cases, 4))
+    damage[:, 2] = np.nan
+    basic = rng.uniform(0.5, 1.0, (cases, 4)) / damage
+    parts = {
+        "viscosity_ratio": np.array([0.7, 0.9, 0.5]),
+        "damage_share": np.tile([[[0.3], [0.7]]], (cases, 1, 1, 1)),
+        "limit_ratio": rng.uniform(0.3, 0.6, (cases, 1, 1)),
+    }
+    zero, six = np.zeros((cases, 4)), np.zeros((cases, 4, 6))
+    speed = np.array([[150.0, 50.0], [300.0, 100.0], [150.0, 50.0]])
+    lives = {"basic_rating_life": basic, "damage": damage}
+    duty = DutyResult(
+        six, six, zero, speed, zero[:, 0], zero[:, 0].astype(int), zero, lives,
+        ({},) * 4, fatigue=(parts, {}, {}, {}),
+    )  # fmt: skip
+    life = object.__new__(Life)
+    object.__setattr__(life, "ratings", SimpleNamespace(dynamic_capacity=4e4))
+    bearings = [
+        SimpleNamespace(name=name, scene=scene.bearings[k], life=life)
+        for k, name in enumerate("ABCD")
+    ]
+    bearings[2].scene = bearings[2].life = None
+    return solved(scene, duty=duty, bearings=bearings)
+
+
+def test_verdict_of_cases_tells_what_it_would_take(judged):
+    """As that of a spectrum of one bearing, of the cases by their hours."""
+    first, *others = judged.verdicts
+    assert others == [None] * 3
+    spent = np.array([100.0, 10.0, 0.0])
+    turns = spent * judged.duty.speed[:, 0] * 3600 / (2 * np.pi)
+    damage = judged.duty.lives["damage"][:, 0]
+    hours = spent.sum() / (turns @ damage)
+    assert first.factor == pytest.approx(hours / 8000.0)
+    used = turns @ (1.0 / judged.duty.lives["basic_rating_life"][:, 0])
+    basic = spent.sum() / used / 8000.0
+    bearing, given = judged.bearings[0].scene.element.bearing, judged.task.lives[0]
+    share = turns * damage / (turns @ damage)
+    factors = first.factor, basic, 4e4
+    wanted = judge_life(bearing, given, *factors, judged.duty.fatigue[0], share)
+    assert wanted.viscosity is not None and wanted.cleanliness
+    assert first.cleanliness == wanted.cleanliness
+    for name in ("dynamic_capacity", "basic_capacity", "viscosity"):
+        assert getattr(first, name) == pytest.approx(getattr(wanted, name))
+    # Where cases vary the bearings or the oil there is no one that it would take.
+    for key in ("lubricant.temperature", "bearings.A.position"):
+        varied = dataclasses.replace(judged.task, varied=(key,))
+        run = solved(varied, duty=judged.duty, bearings=judged.bearings)
+        (other, *_) = run.verdicts
+        assert other.factor == first.factor and other.dynamic_capacity is None
+
+
+def test_table_of_cases_judges_each_case_alone(judged):
+    found = shaft_columns(judged)
+    turns = judged.duty.speed[:, 0] * 3600 / (2 * np.pi)
+    factor = 1.0 / (judged.duty.lives["damage"][:, 0] * turns) / 8000.0
+    np.testing.assert_allclose(found["life_factor"][::4], factor)
+    assert np.isnan(np.delete(found["life_factor"], [0, 4, 8])).all()
+    words = np.where(factor >= 1, "true", "false")
+    assert found["life_kept"].tolist() == [x for w in words for x in (w, "", "", "")]
+    assert 0 < (factor >= 1).sum() < 3
+    # Truth values where all have a verdict; no column where none has one.
+    for scene, told in ((judged.bearings[0].scene, True), (None, False)):
+        every = [SimpleNamespace(scene=scene)] * 4
+        lives = {"damage": np.full((3, 4), 1e-12)}
+        duty = dataclasses.replace(judged.duty, lives=lives)
+        found = shaft_columns(solved(judged.task, duty=duty, bearings=every))
+        assert ("life_kept" in found) is told
+        assert not told or found["life_kept"].dtype == bool
+
+
 def test_result_of_what_runs_away(tmp_path):
     """It is that of the temperatures too, not of the shafts alone."""
     hot: Any = SimpleNamespace(result=int(Result.STEP_LIMIT))
@@ -288,6 +370,22 @@ def test_result_of_what_runs_away(tmp_path):
     given = "bearings.A.temperature={shaft='50 °C'}"
     warned = read_shafts(tmp_path / "x.toml", [given]).warnings
     assert "A: its `temperature` is not used: [heat] finds temperatures" in warned
+
+
+def test_verdict_of_warm_bearings_counts_from_the_warm_oil(tmp_path):
+    (tmp_path / "x.toml").write_text(WARM, "utf-8")
+    scene = read_shafts(tmp_path / "x.toml", ["life.required=9000 h"])
+    state = object.__new__(ThermalState)
+    rings = {"inner_ring": jnp.full(2, 350.0), "outer_ring": jnp.full(2, 340.0)}
+    for name, value in {"system": scene.system, **rings}.items():
+        object.__setattr__(state, name, value)
+    warm = _with_temperatures(scene, state)
+    given: Any = zip(warm.bearings, scene.bearings, warm.lives, strict=True)
+    for one, cold, conditions in given:
+        oil = float(one.oil.lubricant.kinematic_viscosity(345.0))
+        assert one.life.viscosity == conditions.viscosity == pytest.approx(oil)
+        assert one.life.viscosity < 0.6 * cold.life.viscosity
+        assert one.life.required == 9000.0
 
 
 @pytest.mark.slow

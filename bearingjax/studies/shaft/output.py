@@ -8,6 +8,7 @@ import numpy as np
 
 from ...cases.output_labels import label_output
 from ...element.frame import LOAD_UNITS
+from ...life.required_life import RequiredLife
 from ...numerics.labels import LabelledArray, summaries
 from ...numerics.result import Result
 from ...report.json_output import run_json
@@ -16,7 +17,7 @@ from ...shafts.duty import LIVES
 from ...shafts.warning import axial_load
 from ...statics.solution import BallSolution, Solution
 from ..bearing.fit_report import fit_as_dict
-from ..bearing.life_report import life_as_dict, verdict_as_dict
+from ..bearing.life_report import life_as_dict, over_required, verdict_as_dict
 from ..bearing.oil import oil_as_dict
 from .run import ShaftRun, bearing_loss
 
@@ -217,9 +218,6 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
             ]
             for key in (*LIVES[:-1], "life_hours")
         }
-        if any(run.verdicts):
-            over = [np.nan if v is None else v.factor for v in run.verdicts]
-            lives["life_factor"] = over
     else:
         count = len(run.task.cases)
         found = {
@@ -242,4 +240,25 @@ def shaft_columns(run: ShaftRun) -> dict[str, np.ndarray]:
         found |= {
             f"{key} [K]": of.ravel() for key, of in _ring_temperatures(run).items()
         }
+    over = _over_required(run)
+    if not np.isnan(over).all():
+        kept = np.array([RequiredLife(factor).kept for factor in over.tolist()])
+        if np.isnan(over).any():  # springs, and bearings without a required life
+            kept = np.where(np.isnan(over), "", np.where(kept, "true", "false"))
+        found |= {"life_factor": over, "life_kept": kept}
     return {name: np.asarray(values) for name, values in found.items()}
+
+
+def _over_required(run: ShaftRun) -> np.ndarray:
+    """Return the life over the required one of each row of the table, of a case as if
+    it acted alone (row,) [1]; NaN without one."""
+    if run.duty is None:
+        factors = [None if v is None else v.factor for v in run.verdicts]
+        return np.array(factors, float)
+    damage, speed, _ = run.spectrum(run.duty)
+    asked = [b.scene and b.scene.life for b in run.bearings] * len(damage)
+    with np.errstate(divide="ignore"):
+        turns = 1.0 / damage.ravel()
+        hours = turns / (np.abs(speed).ravel() * (3600.0 / (2.0 * np.pi)))
+    rows = zip(asked, hours, turns, strict=True)
+    return np.array([over_required(*row) for row in rows], float)

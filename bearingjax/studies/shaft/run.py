@@ -17,9 +17,10 @@ from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import Life, rating_life
 from ...life.life_warning import ALL
-from ...life.required_life import RequiredLife
+from ...life.required_life import RequiredLife, judge_life
 from ...numerics.labels import LabelledArray, labelled_fields, make_dataset
 from ...numerics.result import Result
+from ...numerics.shown import Shown
 from ...numerics.types import in_numpy
 from ...numerics.warning import Warning, warnings_of, warnings_of_cases
 from ...shafts.duty import case_damage
@@ -36,6 +37,9 @@ from ..bearing.solved import solved_warnings
 from ..solve.run import with_set_preload
 from .read import ShaftScene
 
+_OF_LIFE = {"bearings", "life", "lubricant"}
+"""Tables whose keys, if cases vary them, leave no one bearing to be judged."""
+
 
 @dataclasses.dataclass(frozen=True)
 class InPlace:
@@ -50,7 +54,7 @@ class InPlace:
     """
 
     name: str
-    scene: Scene | None
+    scene: Scene | None = dataclasses.field(repr=False)
     solution: Solution | None
     life: Life | None
     oil: OilFacts | None
@@ -74,7 +78,7 @@ class InPlace:
 
 
 @dataclasses.dataclass(frozen=True)
-class ShaftRun:
+class ShaftRun(Shown):
     """Result of the scene of a system of shafts.
 
     Attributes:
@@ -92,7 +96,7 @@ class ShaftRun:
         warnings: Warnings of doubtful results.
     """
 
-    task: ShaftScene
+    task: ShaftScene = dataclasses.field(repr=False)
     solution: shafts.SystemSolution
     bearings: tuple[InPlace, ...]
     thermal: shafts.ThermalState | None
@@ -136,7 +140,7 @@ class ShaftRun:
     def hours(self) -> np.ndarray:
         """Life of each bearing, under all cases (bearing,) [h]; NaN of springs."""
         if self.duty is not None:
-            return np.asarray(shafts.bearing_hours(*self._spectrum(self.duty)))
+            return np.asarray(shafts.bearing_hours(*self.spectrum(self.duty)))
         found = []
         for bearing in self.bearings:
             life = None if bearing.life is None else bearing.life.life_hours
@@ -146,16 +150,30 @@ class ShaftRun:
     @functools.cached_property
     def verdicts(self) -> list[RequiredLife | None]:
         """Verdict on the life required of each bearing, under all cases; `None` without
-        one, and of revolutions under cases, whose bearings turn at several speeds."""
-        found = []
-        for place, hours in zip(self.bearings, self.hours, strict=True):
-            scene, life, verdict = place.scene, place.life, None
-            if scene is not None and life is not None and self.duty is None:
-                verdict = life_verdict(scene, life)
-            elif scene is not None and scene.life is not None and scene.life.required:
-                verdict = RequiredLife(float(hours) / float(scene.life.required))
-            found.append(verdict)
-        return found
+        one, and of revolutions under cases, whose bearings turn at several speeds.
+        Where cases vary bearings or their lives, nothing tells what it would take."""
+        return [self._verdict(k, b.scene, b.life) for k, b in enumerate(self.bearings)]
+
+    def _verdict(
+        self, k: int, scene: Scene | None, life: Life | None
+    ) -> RequiredLife | None:
+        if scene is None or life is None or scene.life is None:
+            return None
+        if self.duty is None:
+            return life_verdict(scene, life)
+        conditions, required = self.task.lives[k], scene.life.required
+        if conditions is None or required is None:
+            return None
+        damage, speed, spent = self.spectrum(self.duty)
+        basic = 1.0 / np.asarray(self.duty.lives["basic_rating_life"])
+        hours = self.hours[k], shafts.bearing_hours(basic, speed, spent)[k]
+        factor, of_basic = (float(one) / float(required) for one in hours)
+        capacity = float(life.ratings.dynamic_capacity)
+        varied = {key.split(".")[0] for key in self.task.varied}
+        parts = {} if varied & _OF_LIFE else self.duty.fatigue[k]
+        share = self.hours[k] * np.asarray(case_damage(damage, speed, spent))[:, k]
+        given = scene.element.bearing, conditions, factor, of_basic, capacity
+        return judge_life(*given, parts, share)
 
     @functools.cached_property
     def worst_cases(self) -> list[int | None]:
@@ -163,10 +181,10 @@ class ShaftRun:
         of bearings without damage, and without cases."""
         if self.duty is None:
             return [None] * len(self.task.system.seats)
-        damage = np.nan_to_num(case_damage(*self._spectrum(self.duty)))
+        damage = np.nan_to_num(case_damage(*self.spectrum(self.duty)))
         return [int(np.argmax(of)) if of.any() else None for of in damage.T]
 
-    def _spectrum(self, duty: shafts.DutyResult) -> tuple[Any, Any, Any]:
+    def spectrum(self, duty: shafts.DutyResult) -> tuple[Any, Any, Any]:
         """Return damage, speeds of the bearings and hours of the cases."""
         of = [self.task.system.station(seat)[0] for seat in self.task.system.seats]
         given = [case.hours for case in self.task.cases]
@@ -375,7 +393,9 @@ def _with_temperatures(task: ShaftScene, state: shafts.ThermalState) -> ShaftSce
             scene.installed, conditions=jax.device_get(seat.installed.conditions)
         )
         oil = dataclasses.replace(oil, temperature=float(rings[k]))
-        scenes.append(dataclasses.replace(scene, oil=oil, installed=warm))
+        asked = scene.life and dataclasses.replace(scene.life, viscosity=life.viscosity)
+        parts = {"oil": oil, "installed": warm, "life": asked}
+        scenes.append(dataclasses.replace(scene, **parts))
         lives.append(life)
     return dataclasses.replace(
         task, system=state.system, bearings=tuple(scenes), lives=tuple(lives)
