@@ -1,12 +1,14 @@
 """Validation cases nearest to a bearing and its load."""
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
 
 from ..design import AbstractBearing
+from ..design.checks import must_be
 from ..design.keywords import BALLS, ROLLERS
-from .case import Case, cases
+from .case import SUBJECTS, Case, cases
 
 
 class Near(NamedTuple):
@@ -30,7 +32,10 @@ def type_of(bearing: AbstractBearing) -> str:
 
 
 def nearest_cases(
-    bearing: AbstractBearing, load: float, count: int = 2
+    bearing: AbstractBearing,
+    load: float,
+    count: int = 2,
+    subjects: Collection[str] = tuple(SUBJECTS),
 ) -> tuple[Near, ...]:
     """Return the cases of the same type that are nearest in size and load.
 
@@ -42,11 +47,18 @@ def nearest_cases(
         bearing: A row.
         load: Size of its load [N]; at 0 the loads of the cases do not count.
         count: How many cases at most.
+        subjects: Keys of `SUBJECTS` that cases may be about.
+
+    Raises:
+        ValueError: For a subject that is none.
     """
+    known, allowed = set(subjects) <= SUBJECTS.keys(), f"of {[*SUBJECTS]}"
+    must_be("nearest_cases", "subjects", subjects, known, allowed, ValueError)
     pitch, kind = float(bearing.pitch_diameter), type_of(bearing)
     found = []
     for case in cases().values():
-        if kind and case.type == kind and case.pitch_diameter and case.load:
+        like = kind and case.type == kind and case.subject in subjects
+        if like and case.pitch_diameter and case.load:
             size = pitch / case.pitch_diameter
             found.append(Near(case, size, load / case.load / size**2))
 

@@ -6,11 +6,13 @@ tests look at it too, so each is solved once.
 """
 
 import csv
+import html
 import json
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import bearingjax as bj
+from bearingjax.studies.bearing.credibility import _MODELS
 
 WORDS = frozenset({"result", "message", "warnings", "inputs", "version"})
 SEARCH = frozenset({"residual", "iterations"})
@@ -94,6 +96,12 @@ class Runs:
             picture = paths["--plot"].read_bytes()
             assert picture[:8] == b"\x89PNG\r\n\x1a\n" and len(picture) > 20_000
         assert "--table" not in paths or len(written(study.name).rows) > 1
+        # How far the numbers are to be trusted; of `life` on the page alone.
+        command, page = study.run.command[0], paths.get("--report")
+        text = page.read_text("utf-8") if command == "life" and page else done.out
+        if command in _MODELS and (page or command != "life"):
+            model = " ".join(_MODELS[command][0].split())
+            assert model in " ".join(html.unescape(text).split())
 
     def test_numbers_are_those_of_the_golden_file(self, written, study, golden):
         golden(f"{study.run.command[0]} {study.name}", written(study.name).numbers)

@@ -147,6 +147,7 @@ def test_sweep_reports_preload_of_each_case(scene):
     (text,) = set_warnings(cases, solved)
     assert f"200 N as ground are {wanted[1]:.4g} N to {wanted[0]:.4g} N in op" in text
     report = str(sweep_report(cases, solved, 1.0))
+    assert "\nnearest cases " in report
     assert f"warning: {text}" in report
     assert "operation: at `fit.at` alone, not over the tolerances" in report
 

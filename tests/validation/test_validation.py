@@ -8,7 +8,9 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import cli
-from bearingjax.studies.bearing.credibility import credibility_section
+from bearingjax.report.report_model import Grid
+from bearingjax.studies.bearing.credibility import _MODELS, credibility_section
+from bearingjax.studies.study import STUDIES as COMMANDS
 from bearingjax.studies.validate.run import Comparison
 from bearingjax.validation import SUBJECTS, Case, Number, cases, nearest
 from bearingjax.validation.case import as_number, read_case
@@ -125,13 +127,13 @@ def test_command_writes_every_number(tmp_path, capsys):
         assert number.name in shown and number.name in page
 
 
-def made_case(name, pitch, load, kind="deep_groove_ball"):
+def made_case(name, pitch, load, kind="deep_groove_ball", subject="life"):
     return Case(
         name,
         "",
         "",
         "printed",
-        "life",
+        subject,
         "",
         (),
         type=kind,
@@ -166,6 +168,12 @@ def test_nearest_cases(monkeypatch, load, order):
     like = next(one for one in found if one.case.name == "like")
     assert like.size == pytest.approx(1.0)
     assert like.load == pytest.approx(load / 1.1e3)
+    made.append(made_case("torque", 0.04, 1e3, subject="friction"))
+    found = nearest.nearest_cases(bearing, load, 1, ["friction", "fits"])
+    assert [one.case.name for one in found] == ["torque"]
+    assert nearest.nearest_cases(bearing, load, subjects=["fits"]) == ()
+    with pytest.raises(ValueError, match=r"`subjects` is \['lives'\]; it must be of"):
+        nearest.nearest_cases(bearing, load, subjects=["lives"])
 
 
 def test_report_names_the_nearest_cases(monkeypatch):
@@ -183,12 +191,42 @@ def test_report_names_the_nearest_cases(monkeypatch):
         ),
         kinematics=bj.element.Linearised(),
     )
-    (facts,) = credibility_section(found, [0, 0, 0.5 * 17.8e3, 0, 0, 0])
-    text = " ".join(str(facts).split())
-    told = (
+
+    def told(study, *bearings):
+        (facts,) = credibility_section(study, bearings)
+        return " ".join(str(facts).split())
+
+    half, none = [0, 0, 0.5 * 17.8e3, 0, 0, 0], [0.0] * 6
+    text = told("solve", ("", found, half))
+    words = (
         "harris_218_thrust (independent program): this bearing has 0.5 times its pitch"
     )
-    assert f"{told} diameter d and 2 times its load/d²" in text
-    (facts,) = credibility_section(found, [0.0] * 6)
-    assert "diameter d, and no load" in " ".join(str(facts).split())
-    assert "tilts up to 10 mrad" in text
+    assert f"nearest cases {words} diameter d and 2 times its load/d²" in text
+    assert text.endswith("`bearingjax validate CASE` compares theirs with ours")
+    text = told("solve", ("", found, none))
+    assert "diameter d, and no load" in text and "tilts up to 10 mrad" in text
+    # It is about statics: no case of noise. Nothing is told of how to compare then.
+    text = told("noise", ("", found, half))
+    assert "nearest cases none of this type" in text and "validate" not in text
+    # Like bearings together, the largest load of several cases; those without one.
+    roller = SimpleNamespace(
+        bearing=bj.CylindricalRollerBearing(14, 0.06, 0.01, 0.01),
+        kinematics=bj.element.Finite(),
+    )
+    shaft = ("A", found, half), ("B", found, [half, np.multiply(half, 2)])
+    text = told("shaft", *shaft, ("C", roller, half), ("D", roller, half))
+    words = "A, B: harris_218_thrust (independent program): these bearings have 0.5"
+    assert f"{words} times its pitch diameter d and 2 to 4 times its load/d²" in text
+    assert text.count("harris_218") == 1 and "C, D: none of this type" in text
+    assert "of no bearing by itself: pygritbx_gear_shaft" in text
+    assert "tilts" in text and "tilts" not in told("shaft", ("C", roller, half))
+    assert "half_space_point_contacts" in told("contact")
+
+
+@pytest.mark.parametrize("study", _MODELS)
+def test_models_of_reports_name_subjects_of_cases(study):
+    *words, subjects = _MODELS[study]
+    assert set(subjects.split()) <= SUBJECTS.keys() and study in COMMANDS
+    (facts,) = credibility_section(study)
+    assert isinstance(facts, Grid)
+    assert facts.columns[1].values[:2] == tuple(" ".join(x.split()) for x in words)

@@ -23,9 +23,11 @@ from ...life.rating import Ratings, ratings
 from ...life.reference_life import exponents_of
 from ...life.required_life import NEEDED, RequiredLife, judge_life
 from ...numerics import Result, Warning
+from ...numerics.shown import Shown
 from ...numerics.units import shown_count
 from ...report.json_output import run_json
 from ...report.report_model import CASES_SHOWN, NEWTONS, Column, Grid, Part, Report
+from ..bearing.credibility import credibility_section
 from ..bearing.life_ratings import life_conditions, rating_origins, why_not_published
 from ..bearing.life_report import (
     describe_turning,
@@ -47,7 +49,7 @@ LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
 
 @dataclasses.dataclass(frozen=True)
-class LifeRun:
+class LifeRun(Shown):
     """Life under the cases of a scene.
 
     Attributes:
@@ -60,7 +62,7 @@ class LifeRun:
         verdict: Verdict on the required life; `None` without one.
     """
 
-    table: CaseTable
+    table: CaseTable = dataclasses.field(repr=False)
     solved: Sweep
     lives: dict[str, SpectrumLife]
     asked: SpectrumLife
@@ -287,6 +289,8 @@ def spectrum_page(run: LifeRun) -> Report:
             f" have them; over the cases {_on_seats(run)}.",
             *sections[fits],
         ]
+    bearing = "", run.table.scene.element, run.table.cases.load
+    sections["Credibility"] = credibility_section("life", [bearing])
     return Report(sections, report.warnings)
 
 

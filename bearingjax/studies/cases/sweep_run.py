@@ -26,6 +26,7 @@ from ...statics.preload import is_opposed, row_preload_force
 from ...statics.service_warning import preload_range_warnings, preload_warnings
 from ...statics.solution import solution_kind
 from ...statics.support import Support
+from ..bearing.credibility import credibility_section
 from ..bearing.life_ratings import life_conditions
 from ..solve.run import with_set_preload
 from .read_cases import CaseTable, DesignGroup, turns_of
@@ -235,7 +236,9 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
         names = "result", "least", "largest", "unit"
         given = zip(names, zip(*rows, strict=True), strict=True)
         parts += ["", Grid([Column(name, found) for name, found in given])]
-    return Report({"Cases": parts}, all_warnings(table, solved))
+    bearing = "", table.scene.element, table.cases.load
+    sections = {"Cases": parts, "Credibility": credibility_section("solve", [bearing])}
+    return Report(sections, all_warnings(table, solved))
 
 
 def _spans(solved: Sweep) -> dict[str, tuple[float, float]]:

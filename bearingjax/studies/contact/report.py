@@ -9,6 +9,7 @@ from ...numerics import Result, Warning
 from ...numerics.units import shown_count
 from ...report.json_output import run_json
 from ...report.report_model import NEWTONS, Column, Grid, Report
+from ..bearing.credibility import credibility_section
 from .read import ContactScene
 
 PLACES = (1 / 30, 1 / 15, 1 / 4, 1 / 2, 3 / 4, 14 / 15, 29 / 30)
@@ -111,6 +112,7 @@ def contact_report(scene: ContactScene, cases: list[SliceComparison]) -> Report:
         "Loads and peaks": [_loads(solved)],
         "Pressures": [_places(scene, solved)],
         "Solution": [_convergence(solved)],
+        "Credibility": credibility_section("contact"),
     }
     return Report(sections, contact_warnings(scene, cases))
 

@@ -5,8 +5,9 @@ import numpy as np
 from ...numerics.types import in_numpy
 from ...numerics.units import rpm, shown_count
 from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
-from ...rotor import STATION_FREEDOMS
+from ...rotor import STATION_FREEDOMS, BearingSupport
 from ...rotor.nonlinear import BranchEnd
+from ..bearing.credibility import credibility_section
 from ..bearing.fit_report import fit_report
 from ..solve.report import without_round_off
 from .motion import RotorResponse, RotorTransient
@@ -30,6 +31,14 @@ _AXIAL = 0.9
 
 def rotor_report(run: RotorRun) -> Report:
     """Return the readable report of a rotor; unsolved parts are left out."""
+    placed = []
+    if run.rotor is not None and run.settled is not None:
+        found = run.rotor.supports, run.settled.support_load
+        placed = [
+            (f"{mount.station} {mount.name}", support.element, load)
+            for mount, support, load in zip(run.task.mounts, *found, strict=True)
+            if isinstance(support, BearingSupport)
+        ]
     sections: dict[str, Section] = {
         "Rotor": [_head(run)],
         **_fit_sections(run.task),
@@ -42,6 +51,7 @@ def rotor_report(run: RotorRun) -> Report:
         "Motion in time": []
         if run.transient is None
         else _transient(run, run.transient),
+        "Credibility": credibility_section("rotor", placed),
     }
     return Report(sections, run.warnings)
 

@@ -14,6 +14,7 @@ from ...report.report_model import (
     Report,
     Section,
 )
+from ..bearing.credibility import credibility_section
 from ..bearing.life_report import life_number, life_section, verdict_in_words
 from ..bearing.oil import oil_report, series_words
 from ..solve.report import fits_section
@@ -30,6 +31,12 @@ def shaft_report(run: ShaftRun) -> Report:
     Args:
         run: From `run_shafts`, its first case solved.
     """
+    loads = run.solution.load[None] if run.duty is None else run.duty.load
+    placed = [
+        (bearing.name, bearing.solution.element, loads[:, k])
+        for k, bearing in enumerate(run.bearings)
+        if bearing.solution is not None
+    ]
     sections: dict[str, Section] = {
         "System": [*_head(run), _shafts(run)],
         "Wheels": _wheels(run),
@@ -41,6 +48,7 @@ def shaft_report(run: ShaftRun) -> Report:
             f"converged in {shown_count(int(run.solution.steps), 'step')}, residual"
             f" {float(run.solution.residual):.1e} of the load"
         ],
+        "Credibility": credibility_section("shaft", placed),
     }
     return Report(sections, run.warnings)
 

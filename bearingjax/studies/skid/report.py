@@ -13,6 +13,7 @@ from ...report.report_model import (
     labelled_facts,
     load_text,
 )
+from ..bearing.credibility import credibility_section
 from ..bearing.read_lubricant import TRACTIONS, describe_oil
 from ..solve.report import by_ring, describe_row
 from .output import at_balls, each_ball, rolling_cage_speed
@@ -34,6 +35,9 @@ def skid_report(run: SkidRun) -> Report:
         "Cage, torque and power" if run.task.steady else "Motion": whole,
         "Balls" if run.state else "Rollers": [_balls(run)],
         "Solution": [*_films(run), _convergence(run)],
+        "Credibility": credibility_section(
+            "skid", [("", run.task.model.element, run.task.scene.load)]
+        ),
     }
     return Report(sections, run.warnings)
 

@@ -67,7 +67,9 @@ def report(found: SolvedScene) -> Report:
             f"converged in {shown_count(int(solution.stats.iterations), 'step')},"
             f" residual {float(solution.stats.residual):.1e} of the load"
         ],
-        "Credibility": credibility_section(solution.element, scene.load),
+        "Credibility": credibility_section(
+            "solve" if life is None else "life", [("", solution.element, scene.load)]
+        ),
     }
     return Report(sections, found.warnings)
 
