@@ -85,14 +85,7 @@ def noise_spectrum(
         "o", color=CURVES[1], ms=3.5, ls="none", label="_named",
     )  # fmt: skip
     if measured is not None:
-        lines_there, there = _sizes(measured)
-        scale, word = 1.0, "measured"
-        if not has_unit:
-            scale, word = size.max() / there.max(), "measured, without unit"
-        others = decibel(scale * there)
-        ax.plot(lines_there, others, color=CURVES[1], lw=0.6, zorder=1.9, label=word)
-        ax.lines[0].set_label("calculated")
-        ax.legend(fontsize=SMALL, loc="upper left")
+        others = _plot_measured(ax, measured, has_unit, size, decibel)
         values = np.concatenate([values, others])
     top = float(values.max())
     bottom = max(float(np.percentile(values, 1)), top - 100.0)
@@ -102,6 +95,20 @@ def noise_spectrum(
     _names(ax, named, decibel)
     finish(ax, "Spectrum", "frequency [Hz]", _level("level of lines", reference).label)
     return ax
+
+
+def _plot_measured(ax, measured, has_unit, size, shown):
+    """Plot a measured spectrum behind the calculated one, of the sizes given; return
+    what is shown of each of its lines."""
+    frequency, there = _sizes(measured)
+    scale, word = 1.0, "measured"
+    if not has_unit:
+        scale, word = size.max() / (there.max() or 1.0), "measured, without unit"
+    others = shown(scale * there)
+    ax.plot(frequency, others, color=CURVES[1], lw=0.6, zorder=1.9, label=word)
+    ax.lines[0].set_label("calculated")
+    ax.legend(fontsize=SMALL, loc="upper left")
+    return others
 
 
 def _sizes(spectrum):
@@ -118,13 +125,16 @@ def noise_envelope(
     ax: Ax = None,
     *,
     band: Sequence[float] | None = None,
+    measured: noise.Spectrum | None = None,
+    has_unit: bool = True,
 ) -> Axes:
-    """Plot the spectrum of an envelope, over all directions [m/s²].
+    """Plot the spectrum of an envelope, over all its directions [m/s²].
 
     Args:
         spectrum: From `envelope_spectrum`.
         lines: From `name_lines`; the largest have their names.
         band: Lower and upper frequency of the band, for the title [Hz].
+        measured, has_unit: Spectrum of a measured envelope, as in `noise_spectrum`.
     """
     ax = axes_or_new(ax)
     frequency, size = _sizes(spectrum)
@@ -135,7 +145,12 @@ def noise_envelope(
     ax.plot(*at, "o", color=CURVES[1], ms=3.5, label="_named")
     ends = (line.frequency for line in lines)
     ax.set_xlim(0.0, 1.1 * max(ends, default=frequency[-1] / 1.1))
-    ax.set_ylim(0.0, 1.6 * size[frequency <= ax.get_xlim()[1]].max() or 1.0)
+    highest = size[frequency <= ax.get_xlim()[1]].max()
+    if measured is not None:
+        others = _plot_measured(ax, measured, has_unit, size, lambda sizes: sizes)
+        seen = _sizes(measured)[0] <= ax.get_xlim()[1]
+        highest = others[seen].max(initial=highest)
+    ax.set_ylim(0.0, 1.6 * highest or 1.0)
     _names(ax, named, lambda amplitude: amplitude)
     title = "Spectrum of the envelope"
     if band is not None:

@@ -17,8 +17,9 @@ from .style import Figure, head, new_page
 def noise_overview(run: Any, title: str = "") -> Figure:
     """Plot record, spectrum, bands, contact states and envelope on one page.
 
-    A measured spectrum stands beside the calculated one along the sensor. Of random
-    bearings also the distribution of their levels, and what makes it.
+    A measured spectrum, and the envelope of a record, stand beside the calculated one
+    along the sensor. Of random bearings also the distribution of their levels, and what
+    makes it.
 
     Args:
         run: Results of a scene of noise, with a record.
@@ -38,9 +39,10 @@ def noise_overview(run: Any, title: str = "") -> Figure:
     contact_state_map(analysis.record, analysis.states, across[3])
     measured, sensor = task.measured, task.model.sensor
     ax = figure.add_subplot(rows, 1 if measured is None else 2, 3 + 2 * bool(measured))
-    noise_envelope(
-        analysis.envelope, analysis.envelope_lines, ax, band=analysis.envelope_band
-    )
+    found, there = analysis.envelope, analysis.measured_envelope
+    unknown = measured is not None and not measured.has_unit
+    beside = {"measured": there and there.spectrum, "has_unit": not unknown}
+    noise_envelope(found.spectrum, found.lines, ax, band=found.band, **beside)
     if measured is not None:
         ax = figure.add_subplot(rows, 2, 6)
         beside = {"measured": measured.spectrum, "has_unit": measured.has_unit}

@@ -103,6 +103,25 @@ def test_noise_envelope_names_its_lines():
     assert not plot.noise_envelope(silent).texts
 
 
+@pytest.mark.parametrize("has_unit", [True, False])
+def test_noise_envelope_shows_a_measured_one(has_unit):
+    """At its size, or without unit at that of the largest calculated line."""
+    time = np.arange(512) / 512
+
+    def struck(size, rate):
+        beat = 1 + 0.5 * np.cos(2 * np.pi * rate * time)
+        signal = size * beat * np.cos(2 * np.pi * 99 * time)
+        return envelope_spectrum(signal, 1.0, 4.0, (80.0, 120.0))
+
+    lines, there = [Line(2.25, 9.0, 0.5, "BPFO")], struck(4.0, 8)
+    ax = plot.noise_envelope(struck(1.0, 9), lines, measured=there, has_unit=has_unit)
+    curves = {line.get_label(): line for line in ax.lines}
+    curve = curves["measured" if has_unit else "measured, without unit"]
+    assert np.asarray(curve.get_ydata())[7] == pytest.approx(2.0 if has_unit else 0.5)
+    assert ax.get_ylim()[1] == pytest.approx(3.2 if has_unit else 0.8)
+    assert "calculated" in curves and curve.get_zorder() < 2
+
+
 def test_names_of_near_lines_do_not_lie_on_each_other():
     found = record()
     lines = spectrum(found.acceleration, found.duration, 25.0, window=Hann())

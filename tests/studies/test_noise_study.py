@@ -4,6 +4,7 @@ import dataclasses
 import json
 import re
 import wave
+from types import SimpleNamespace
 
 import jax
 import jax.numpy as jnp
@@ -19,9 +20,11 @@ from bearingjax.design.tolerance import running_accuracy
 from bearingjax.files import shipped_scenes
 from bearingjax.files.output_files import scene_files
 from bearingjax.noise import (
+    Line,
     NoiseModel,
     Rectangular,
     Sensor,
+    Spectrum,
     Tolerances,
     Vibration,
     model_warnings,
@@ -36,7 +39,8 @@ from bearingjax.numerics import Result
 from bearingjax.studies.noise import run as noise_run
 from bearingjax.studies.noise.output import noise_as_dict
 from bearingjax.studies.noise.read import read_noise
-from bearingjax.studies.noise.run import run_noise
+from bearingjax.studies.noise.report import _measured, _own_envelope
+from bearingjax.studies.noise.run import Envelope, run_noise
 
 SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point", "noise_pair")
 WAVE = "part='outer raceway', order=3, amplitude='1 um'"
@@ -307,8 +311,37 @@ def test_measured_line_has_its_frequency_and_amplitude(kind, tmp_path):
     assert found.spectrum.frequency[k] == pytest.approx(50.0)
     assert found.has_unit is (kind != "bare")
     assert size[k] == pytest.approx(2.0 if found.has_unit else 0.5, rel=2e-3)
+    samples = found.samples
+    assert (samples is None) is (kind == "spectrum")
+    if samples is not None:
+        unit = 1.0 if found.has_unit else 0.25
+        np.testing.assert_allclose(samples, unit * SAMPLES, atol=0.04)
     assert scene.inputs["vibration"]["measured"]["file"] == str(path)
     assert path in scene_files("noise_deep_groove", given)
+
+
+def test_report_tells_the_measured_envelope_in_its_unit_or_why_there_is_none():
+    lines = Line(0.4, 20.0, 0.05, "unnamed"), Line(0.8, 40.0, 0.06, "cage")
+    waves = jnp.arange(3.0), jnp.arange(3.0), jnp.full(3, 0.1 + 0j)
+    found = Spectrum(*waves, Rectangular())
+    known = SimpleNamespace(
+        name="a.wav", spectrum=found, has_unit=False, rate=64.0, samples=SAMPLES
+    )
+    task = SimpleNamespace(measured=known, model=SimpleNamespace(sensor=None))
+    envelope = Envelope((9.0, 32.0), found, lines)
+    analysis = SimpleNamespace(
+        spectrum=found, envelope=envelope, measured_envelope=envelope
+    )
+    run = SimpleNamespace(task=task, analysis=analysis)
+    _, told = _measured(run)
+    assert str(told).startswith("its envelope of 9 to 32 Hz, mean 0.1: largest lines")
+    assert "m/s²" not in str(told) and str(told).index("cage") < str(told).index("20 ")
+    own = "along the loudest axis, envelope of 9 to 32 Hz, mean 0.1 m/s²: largest"
+    assert str(_own_envelope(run)).startswith(own)
+    analysis.measured_envelope = None
+    assert _measured(run)[1:] == ["its rate is too low for the band of the envelope"]
+    known.samples = None  # of a spectrum there is none
+    assert len(_measured(run)) == 1 and str(_own_envelope(run)).startswith("envelope")
 
 
 BAD_RECORDS = {
@@ -596,9 +629,11 @@ def test_noise_model_warnings(scene):
 
 @pytest.mark.slow
 def test_measured_record_beside_the_calculated_one(run, scene, tmp_path):
-    (tmp_path / "run.csv").write_text(
-        columns("time [s],acceleration [m/s^2]", np.arange(640) / 6400, SAMPLES)
-    )
+    # Beside what is loud a carrier that swings by half, 20 times a second.
+    phase = 2 * np.pi * np.arange(640) / 6400
+    rings = 2e-3 * (1 + 0.5 * np.cos(20 * phase)) * np.cos(950 * phase)
+    record = phase / (2 * np.pi), SAMPLES + rings
+    (tmp_path / "run.csv").write_text(columns("time [s],acceleration [m/s^2]", *record))
     out, page, plot = (tmp_path / name for name in ("a.json", "a.html", "a.png"))
     given = (
         "vibration.measured.file='run.csv'",
@@ -612,6 +647,14 @@ def test_measured_record_beside_the_calculated_one(run, scene, tmp_path):
     level = 20.0 * np.log10(np.sqrt(2.0) / 0.31e-4)  # of a sine of 2 m/s²
     assert found["measured"]["level"] == pytest.approx(level)
     assert len(found["measured"]["band_level"]) == 12
+    envelope = found["measured"]["envelope"]
+    assert envelope["band"] == pytest.approx([900.0, 1000.0])
+    assert envelope["mean"] == pytest.approx(2e-3, rel=1e-3)
+    line = max(envelope["lines"], key=lambda line: line["amplitude"])
+    assert line["frequency"] == pytest.approx(20.0, rel=1e-2)
+    assert line["amplitude"] == pytest.approx(1e-3, rel=1e-2)
+    words = "\nits envelope of 900 to 1000 Hz, mean 0.002 m/s²: largest lines\n"
+    assert words in done.out and "\nalong the sensor, envelope of 900" in done.out
     words = "run.csv: a record at 6400 Hz, of the same window and reference; its lines"
     assert words in done.out and words in page.read_text(encoding="utf-8")
     assert plot.stat().st_size > 0

@@ -10,7 +10,7 @@ from ...noise import SourceContributions, write_sound
 from ...noise.natural import LOOSE
 from ...report.json_output import run_json
 from .read_tolerance import Tighter
-from .run import NoiseRun, RandomBearings
+from .run import Envelope, NoiseRun, RandomBearings
 
 
 def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
@@ -26,7 +26,8 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
         excite it to first order; `contact_states`: `contacts` (0, 1, 2, …), `samples`
         with that many, of all elements together, `switches_per_turn`; `reference`;
         `envelope`: `band` [Hz], `mean` of the envelope and its `lines`, without causes.
-        Of a measured record in m/s² `measured`: `level` and `band_level` [dB].
+        Of a measured record `measured`: `envelope` likewise, in its unit, and
+        in m/s² `level` and `band_level` [dB]; beside it `envelope` is along the sensor.
         Of random bearings `monte_carlo`: `level` (bearing, direction), `band_level`
         (bearing, band, direction), null of unsolved ones; `percentile`: `share` [%]
         and `level` (share, direction); `sources` of the scatter with the `part` of the
@@ -53,7 +54,12 @@ def noise_as_dict(run: NoiseRun) -> dict[str, Any]:
 def _analysis(run: NoiseRun) -> dict[str, Any]:
     analysis = run.analysis
     assert analysis is not None  # checked by the caller
-    states, measured = analysis.states, analysis.measured_level
+    states, levels = analysis.states, analysis.measured_level
+    measured: dict[str, Any] = {}
+    if analysis.measured_envelope is not None:
+        measured["envelope"] = _envelope(analysis.measured_envelope)
+    if levels is not None:
+        measured |= {"level": levels[0], "band_level": levels[1:]}
     return {
         "direction": DIRECTIONS,
         "time": analysis.record.time,
@@ -71,16 +77,16 @@ def _analysis(run: NoiseRun) -> dict[str, Any]:
             "switches_per_turn": states.switches_per_turn,
         },
         "reference": run.task.reference,
-        "envelope": {
-            "band": analysis.envelope_band,
-            "mean": np.linalg.norm(analysis.envelope.amplitude[0]),
-            "lines": [line._asdict() for line in analysis.envelope_lines],
-        },
-        **(
-            {}
-            if measured is None
-            else {"measured": dict(level=measured[0], band_level=measured[1:])}
-        ),
+        "envelope": _envelope(analysis.envelope),
+        **({"measured": measured} if measured else {}),
+    }
+
+
+def _envelope(found: Envelope) -> dict[str, Any]:
+    return {
+        "band": found.band,
+        "mean": np.linalg.norm(found.spectrum.amplitude[0]),
+        "lines": [line._asdict() for line in found.lines],
     }
 
 

@@ -53,12 +53,14 @@ class Measurement(NamedTuple):
         spectrum: On its own lines [m/s²]; without unit relative to full scale [1].
         has_unit: Whether its unit is known.
         rate: Sampling rate of the record [Hz]; 0 of a spectrum.
+        samples: Record (sample,), in the unit of the spectrum; `None` of a spectrum.
     """
 
     name: str
     spectrum: Spectrum
     has_unit: bool
     rate: Annotated[float, unit("Hz")]
+    samples: np.ndarray | None = None
 
 
 def read_measured(
@@ -105,7 +107,7 @@ def read_measured(
     with table.building(duration="file"):
         found = spectrum(values, len(values) / rate, shaft_frequency, window=window)
     table.fill("file", str(path.resolve()))
-    return Measurement(path.name, in_numpy(found), scale is not None, rate)
+    return Measurement(path.name, in_numpy(found), scale is not None, rate, values)
 
 
 def _even_rate(table: Table, time: np.ndarray) -> float:

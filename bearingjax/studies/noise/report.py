@@ -7,7 +7,8 @@ from ...noise import ring_modes
 from ...noise.level import LOWEST_LEVEL
 from ...noise.scatter import SOURCES
 from ...numerics.units import rpm, shown_count
-from ...report.report_model import Column, Grid, Report, load_text
+from ...report.report_model import Column, Grid, Part, Report, load_text
+from ..bearing.credibility import credibility_section
 from ..solve.report import bearing_text
 from .output import PERCENTILES, parts_of
 from .run import LARGEST_LINES, NoiseRun
@@ -22,15 +23,17 @@ def noise_report(run: NoiseRun) -> Report:
     Args:
         run: From `run_noise`, converged.
     """
+    model = run.task.model
     sections = {
         "Bearing and rig": [_bearing(run)],
         "Natural modes": [_modes(run)],
         "Levels": [_levels(run)],
         "Lines": _lines(run),
-        "Envelope": [_envelope(run.analysis)],
-        "Measured": [] if run.task.measured is None else [_measured(run)],
+        "Envelope": [_own_envelope(run)],
+        "Measured": [] if run.task.measured is None else _measured(run),
         "Contacts": [_states(run)],
         "Random bearings": [] if run.many is None else _random_bearings(run),
+        "Credibility": credibility_section("noise", [("", model.element, model.load)]),
     }
     return Report(sections, run.warnings)
 
@@ -117,25 +120,33 @@ def _lines(run):
     return [Grid(columns, title)]
 
 
-def _columns_of(lines):
+def _columns_of(lines, unit="m/s²"):
     return [
         Column("frequency", [line.frequency for line in lines], "Hz"),
         Column("order", [line.order for line in lines], "", ".4g"),
-        Column("amplitude", [line.amplitude for line in lines], "m/s²", ".4g"),
+        Column("amplitude", [line.amplitude for line in lines], unit, ".4g"),
         Column("line", [line.name for line in lines]),
     ]
 
 
-def _envelope(analysis):
-    """Tabulate the largest lines of the envelope."""
-    low, high = analysis.envelope_band
-    words = f"envelope of {low:.5g} to {high:.5g} Hz"
-    lines = sorted(analysis.envelope_lines, key=lambda line: -line.amplitude)
+def _own_envelope(run):
+    """Tabulate the calculated envelope, beside a measured record that along an axis."""
+    measured, along = run.task.measured, ""
+    if measured is not None and measured.samples is not None:
+        known = run.task.model.sensor is not None
+        along = f"along the {'sensor' if known else 'loudest axis'}, "
+    return _envelope(run.analysis.envelope, along)
+
+
+def _envelope(found, whose="", unit="m/s²"):
+    """Tabulate the largest lines of an envelope."""
+    words = "{}envelope of {:.5g} to {:.5g} Hz".format(whose, *found.band)
+    lines = sorted(found.lines, key=lambda line: -line.amplitude)
     if not lines:
         return f"{words}: no line stands out"
-    mean = np.linalg.norm(analysis.envelope.amplitude[0])
-    title = f"{words}, mean {mean:.4g} m/s²: largest lines"
-    return Grid(_columns_of(lines[: LARGEST_LINES // 2]), title)
+    mean = f"{np.linalg.norm(found.spectrum.amplitude[0]):.4g} {unit}".strip()
+    title = f"{words}, mean {mean}: largest lines"
+    return Grid(_columns_of(lines[: LARGEST_LINES // 2], unit), title)
 
 
 def _measured(run):
@@ -149,7 +160,12 @@ def _measured(run):
     if not measured.has_unit:
         words += "; without `full_scale` it has no unit: its largest line is drawn at"
         words += " the level of the largest calculated one"
-    return f"{measured.name}: {words}"
+    told: list[Part] = [f"{measured.name}: {words}"]
+    if (there := run.analysis.measured_envelope) is not None:
+        told.append(_envelope(there, "its ", "m/s²" if measured.has_unit else ""))
+    elif measured.samples is not None:
+        told.append("its rate is too low for the band of the envelope")
+    return told
 
 
 def _states(run):

@@ -3,7 +3,7 @@
 import contextlib
 import dataclasses
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -47,6 +47,7 @@ from ...noise.static_start import describe_failure
 from ...noise.vibration import rounding
 from ...numerics import Result, Warning
 from ...numerics.labels import labelled_fields, make_dataset
+from ...numerics.shown import Shown
 from ...numerics.types import in_numpy
 from .read import NoiseScene
 
@@ -56,6 +57,20 @@ _KEPT = 64
 """Most random bearings whose records are kept for the sources of noise, not made anew:
 50 MB of 16 turns with 2048 samples."""
 _TOO_LONG = "its steps are too long for the contacts under their largest load"
+
+
+class Envelope(NamedTuple):
+    """Spectrum of the envelope of an acceleration in a band.
+
+    Attributes:
+        band: Lower and upper frequency of the band [Hz].
+        spectrum: Amplitudes (line, ...) [m/s²].
+        lines: Its prominent lines, up to the order of names.
+    """
+
+    band: tuple[float, float]
+    spectrum: Spectrum
+    lines: tuple[Line, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,12 +86,12 @@ class NoiseAnalysis:
         lines: Prominent spectral lines.
         causes: Possible causes of each line.
         states: Contact states of the rolling elements.
-        envelope: Spectrum of the envelope of the acceleration in a band, amplitudes
-            (line, direction) [m/s²].
-        envelope_band: Lower and upper frequency of the band [Hz].
-        envelope_lines: Its prominent lines, up to the order of names.
+        envelope: Of the acceleration (line, direction); beside a measured record of
+            that along the sensor, as `NoiseRun.direction` (line,).
         measured_level: Level of a measured record in m/s², then of each band of it
             (1 + band,) [dB]; `None` without one.
+        measured_envelope: Of a measured record, in its unit, in what it holds of the
+            band; `None` without one.
     """
 
     record: Vibration
@@ -86,10 +101,9 @@ class NoiseAnalysis:
     lines: tuple[Line, ...]
     causes: tuple[tuple[str, ...], ...]
     states: ContactStates
-    envelope: Spectrum
-    envelope_band: tuple[float, float]
-    envelope_lines: tuple[Line, ...]
+    envelope: Envelope
     measured_level: Float[np.ndarray, " level"] | None
+    measured_envelope: Envelope | None = None
 
     @property
     def acceleration(self) -> np.ndarray:
@@ -112,7 +126,7 @@ class RandomBearings:
 
 
 @dataclasses.dataclass(frozen=True)
-class NoiseRun:
+class NoiseRun(Shown):
     """Result of a noise run.
 
     Attributes:
@@ -126,7 +140,7 @@ class NoiseRun:
         warnings: Warnings of doubtful results.
     """
 
-    task: NoiseScene
+    task: NoiseScene = dataclasses.field(repr=False)
     result: Result
     message: str
     modes: NaturalModes | None = None
@@ -143,12 +157,8 @@ class NoiseRun:
     @property
     def direction(self) -> np.ndarray:
         """Unit vector of the measurement: of the sensor, or the loudest axis."""
-        sensor = self.task.model.sensor
-        if sensor is not None:
-            direction = np.asarray(sensor.direction)
-            return direction / np.linalg.norm(direction)
         assert self.analysis is not None
-        return np.eye(len(DIRECTIONS))[int(np.argmax(self.analysis.level))]
+        return _direction(self.task, self.analysis.level)
 
     @property
     def heard(self) -> Spectrum:
@@ -226,6 +236,14 @@ def run_noise(
     if many is not None and many.contributions is not None:
         warned += tuple(contribution_warnings(many.contributions))
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
+
+
+def _direction(task: NoiseScene, levels: np.ndarray) -> np.ndarray:
+    sensor = task.model.sensor
+    if sensor is None:
+        return np.eye(len(DIRECTIONS))[int(np.argmax(levels))]
+    direction = np.asarray(sensor.direction)
+    return direction / np.linalg.norm(direction)
 
 
 def _announce(on_stage, stage, *share):
@@ -308,10 +326,20 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     causes = line_causes(lines, task.model, 0.5 * float(found.resolution))
     highest = float(record.bandwidth)
     of_bands = band_levels(found, task.bands, task.reference, highest)
-    band = task.envelope_band(highest)
-    envelope = in_numpy(envelope_spectrum(*given, band, window=task.window))
-    struck = name_lines(envelope, bearing, speed, **rules)
-    known, levels = task.measured, None
+    loud = np.asarray(level(total_root_mean_square(found), task.reference))
+
+    def envelope_of(signal, duration, low, high):
+        band = low, min(high, 0.5 * len(signal) / duration)
+        made = envelope_spectrum(signal, duration, shaft, band, window=task.window)
+        named = name_lines(in_numpy(made), bearing, speed, **rules)
+        near = tuple(line for line in named if line.order <= harmonics)
+        return Envelope(band, in_numpy(made), near)
+
+    band, known, levels, there = task.envelope_band(highest), task.measured, None, None
+    if known is not None and known.samples is not None:
+        acceleration = acceleration @ _direction(task, loud)
+        if band[0] < 0.5 * known.rate:
+            there = envelope_of(known.samples, len(known.samples) / known.rate, *band)
     if known is not None and known.rate and known.has_unit:
         total = level(total_root_mean_square(known.spectrum), task.reference)
         bands = band_levels(known.spectrum, task.bands, task.reference)
@@ -319,13 +347,12 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     return NoiseAnalysis(
         record=record,
         spectrum=found,
-        level=np.asarray(level(total_root_mean_square(found), task.reference)),
+        level=loud,
         band_level=np.asarray(of_bands),
         lines=lines,
         causes=causes,
         states=contact_states(record),
-        envelope=envelope,
-        envelope_band=band,
-        envelope_lines=tuple(line for line in struck if line.order <= harmonics),
+        envelope=envelope_of(acceleration, given[1], *band),
         measured_level=levels,
+        measured_envelope=there,
     )
