@@ -1,15 +1,18 @@
 """What `print` and notebooks show: numbers with units and meanings, of any module."""
 
+import dataclasses
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from registry import ball_elements, bearings
+from test_units import with_axes
 
 import bearingjax as bj
-from bearingjax.numerics.shown import Printable, numbers_text
-from bearingjax.numerics.units import meaning, real
+from bearingjax.numerics.shown import Printable, Shown, numbers_text
+from bearingjax.numerics.units import meaning, real, units
 
 
 def lines(module) -> list[list[str]]:
@@ -134,3 +137,67 @@ def test_notebooks_show_a_table_with_text_escaped():
 )
 def test_conditions_and_ratings_are_printed(made):
     assert str(made).startswith(type(made).__name__ + "\n") and "[]" not in str(made)
+
+
+@pytest.mark.parametrize("kind", list(with_axes()), ids=lambda kind: kind.__name__)
+def test_every_result_with_axes_is_printed(kind):
+    """Modules and runs; named tuples print their values already."""
+    assert issubclass(kind, Shown | tuple)
+
+
+def test_a_sweep_prints_units_and_how_many_cases_converged():
+    cases = bj.Cases(np.zeros((9, 6)), prescribed={"gx": np.linspace(0, 2e-3, 9)})
+    outputs = {
+        "result": np.array([0] * 8 + [1]),
+        "peak_pressure": np.linspace(1e9, 2e9, 9),
+        "own": np.array(["a"] * 9),
+    }
+    text = str(bj.cases.Sweep(cases, outputs, "inner"))
+    found = {
+        words[0]: " ".join(words[1:]) for words in map(str.split, text.split("\n"))
+    }
+    assert found["prescribed.gx"] == "0 to 2 mrad (9)"
+    assert found["outputs.result"] == "8 converged, 1 step_limit"
+    assert found["outputs.peak_pressure"] == "1000 to 2000 MPa (9)"
+    assert "moving_ring" in found and "array(" not in text
+
+
+def test_complex_and_mixed_numbers_are_printed():
+    three = jnp.arange(3.0)
+    lines = bj.noise.Spectrum(three, three, jnp.full(3, 3 + 4j), bj.noise.Hann())
+    text = " ".join(str(lines).split())
+    assert "amplitude magnitude 5, 5, 5 complex" in text and "0, 1, 2 Hz" in text
+
+    class Both(Printable):
+        motion: np.ndarray = eqx.field(metadata=units("m", "rad"))
+
+    assert "0.5, 2 [m, rad]" in str(Both(np.array([0.5, 2.0])))
+
+
+@dataclasses.dataclass(frozen=True)
+class Run(Shown):
+    """A run.
+
+    Attributes:
+        task: What it was asked.
+        lives: Lives by name.
+        lines: Many parts.
+    """
+
+    task: Odd = dataclasses.field(repr=False)
+    lives: dict
+    lines: tuple
+    code: bj.Result = bj.Result.STEP_LIMIT
+
+
+def test_a_run_prints_its_parts_but_not_theirs():
+    inner = Odd(2.0, "deep")
+    part = Run(inner, {"mine": inner}, ())
+    text = str(Run(inner, {"one": part, "two": inner}, (inner,) * 20))
+    text = " ".join(text.split())
+    assert (
+        "task" not in text and "Run lives.one Run lives by name lives.mine Odd" in text
+    )
+    assert "lives.two Odd lives by name mass 2 kg" in text and text.count("2 kg") == 1
+    assert "lines.0" not in text and text.endswith("code step_limit")
+    assert "lives.two" in Run(inner, {"two": inner}, ())._repr_html_()
