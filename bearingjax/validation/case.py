@@ -2,13 +2,13 @@
 
 import dataclasses
 import functools
-import tomllib
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli
 
 from ..files.quantity import read_quantity, size_of_unit
 
@@ -139,7 +139,7 @@ def read_case(path: Path) -> Case:
         ValueError: If it is none; the message names the file and the key.
     """
     try:
-        given = tomllib.loads(path.read_text("utf-8"))
+        given = tomli.loads(path.read_text("utf-8"))
         rows = {k: _row_values(v) for k, v in given.pop("rows", {}).items()}
         numbers = tuple(
             Number(name, np.asarray(values.pop("theirs"), float), **values)
