@@ -170,7 +170,7 @@ MEASURED = {
     name: (np.array(bands), total)
     for name, bands, total in zip(
         ["serial", *list(CASES)[1:8]],
-        _LEVELS.rows["bands"],
+        _LEVELS.rows["levels"],
         _LEVELS.numbers[1].theirs,
         strict=True,
     )
