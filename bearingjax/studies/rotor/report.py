@@ -33,7 +33,7 @@ def rotor_report(run: RotorRun) -> Report:
     """Return the readable report of a rotor; unsolved parts are left out."""
     placed = []
     if run.rotor is not None and run.settled is not None:
-        found = run.rotor.supports, run.settled.support_load
+        found = run.rotor.supports, np.asarray(run.settled.support_load)
         placed = [
             (f"{mount.station} {mount.name}", support.element, load)
             for mount, support, load in zip(run.task.mounts, *found, strict=True)
