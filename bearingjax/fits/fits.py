@@ -91,7 +91,9 @@ class Mounting(Printable):
     housing_smoothing: Real = eqx.field(**real("m"), default=0.0)
     ring_width: RealOrNone = eqx.field(
         **real(
-            "m", "width of a ring, B or T, over which it grows itself; sets need it"
+            "m",
+            "width of a ring, B or T, over which it grows itself; of sets and tapered"
+            " seats, elsewhere only if it is written",
         ),
         default=None,
     )

@@ -405,3 +405,10 @@ def test_report_without_load():
     assert np.all(solved["roller_load"] == 0.0)
     (line,) = solved.numbers["warnings"]
     assert line.startswith("no stiffness in ux, uy, gx, gy of the outer ring")
+
+
+def test_nearest_cases_count_the_load_of_a_prescribed_place(run):
+    place = "operating.prescribed={uz='150 um'}"
+    done = run("solve", "deep_groove", "--set", place, "--set", "operating.load=unset")
+    told = " ".join(done.out.partition("\nnearest cases ")[2].split())
+    assert told and "times its load/d²" in told and "no load" not in told

@@ -100,7 +100,9 @@ def _words(names: tuple[str, ...], near: tuple[Near, ...]) -> str:
     )
     who = "this bearing has" if len(near) == 1 else "these bearings have"
     words = f"{_head(names)}{near[0].case.name} ({near[0].case.trust}): {who} {size}"
-    loaded = f" and {load} times its load/d²" if load != "0" else ", and no load"
+    loaded = (
+        f" and {load} times its load/d²" if load != "0" else ", and no load is given"
+    )
     return f"{words} times its pitch diameter d{loaded}"
 
 

@@ -86,12 +86,12 @@ class NoiseAnalysis:
         lines: Prominent spectral lines.
         causes: Possible causes of each line.
         states: Contact states of the rolling elements.
-        envelope: Of the acceleration (line, direction); beside a measured record of
-            that along the sensor, as `NoiseRun.direction` (line,).
+        envelope: Envelope of the acceleration (line, direction); beside a measured
+            record that along the sensor, as `NoiseRun.direction` (line,).
         measured_level: Level of a measured record in m/s², then of each band of it
             (1 + band,) [dB]; `None` without one.
-        measured_envelope: Of a measured record, in its unit, in what it holds of the
-            band; `None` without one.
+        measured_envelope: Envelope of a measured record, in the record's unit and in
+            what its rate leaves of the band; `None` without a record.
     """
 
     record: Vibration

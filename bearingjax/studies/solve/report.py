@@ -68,7 +68,9 @@ def report(found: SolvedScene) -> Report:
             f" residual {float(solution.stats.residual):.1e} of the load"
         ],
         "Credibility": credibility_section(
-            "solve" if life is None else "life", [("", solution.element, scene.load)]
+            "solve" if life is None else "life",
+            # Of a ring whose place is prescribed the load is not that of the scene.
+            [("", solution.element, ring_force(solution)[_ring(scene)])],
         ),
     }
     return Report(sections, found.warnings)

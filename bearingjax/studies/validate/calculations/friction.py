@@ -66,12 +66,12 @@ def traction_slopes(
     that rolls in MIL-L-23699 without spin, `along` its way and `across` [N s/m].
 
     Args:
-        ball_diameter, pitch_diameter: [m].
+        ball_diameter, pitch_diameter: Diameters of ball and pitch circle [m].
         osculation: Groove radius over ball diameter [1].
-        contact_angle: [rad].
-        load: On the contact [N].
+        contact_angle: Contact angle [rad].
+        load: Load of the contact [N].
         relative_speed: Speed of the ring less that of the orbit [rad/s].
-        temperature: Of the oil [K].
+        temperature: Temperature of the oil [K].
     """
     oil, modulus = mil_l_23699(), contact_modulus(Material(), Material())
     least = pitch_diameter - ball_diameter * np.cos(contact_angle)

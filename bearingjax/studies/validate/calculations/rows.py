@@ -89,7 +89,8 @@ def stiffness_ratio(
 
     Args:
         bearing: Its keywords.
-        line_constant: Of rollers as points, of exponent 10/9 [N/m^(19/9)]; 0: balls.
+        line_constant: Constant of the line law, of exponent 10/9, of rollers that
+            are taken as points [N/m^(19/9)]; 0: balls.
     """
     line = {"line_law": LineConstant(line_constant or 1.0), "quadrature": Midpoint(1)}
     element = BearingElement(bearing_by(bearing), **(line if line_constant else {}))
