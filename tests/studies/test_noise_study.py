@@ -40,7 +40,7 @@ from bearingjax.studies.noise import run as noise_run
 from bearingjax.studies.noise.output import noise_as_dict
 from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.noise.report import _measured, _own_envelope
-from bearingjax.studies.noise.run import Envelope, run_noise
+from bearingjax.studies.noise.run import Envelope, band_within, run_noise
 
 SHIPPED = ("noise_cylindrical", "noise_deep_groove", "noise_four_point", "noise_pair")
 WAVE = "part='outer raceway', order=3, amplitude='1 um'"
@@ -318,6 +318,11 @@ def test_measured_line_has_its_frequency_and_amplitude(kind, tmp_path):
         np.testing.assert_allclose(samples, unit * SAMPLES, atol=0.04)
     assert scene.inputs["vibration"]["measured"]["file"] == str(path)
     assert path in scene_files("noise_deep_groove", given)
+
+
+def test_envelope_has_what_the_record_holds_of_its_band():
+    assert band_within((900.0, 4000.0), 6000.0) == (900.0, 3000.0)
+    assert band_within((900.0, 4000.0), 1e4) == (900.0, 4000.0)
 
 
 def test_report_tells_the_measured_envelope_in_its_unit_or_why_there_is_none():

@@ -238,6 +238,16 @@ def run_noise(
     return NoiseRun(task, result, "converged", modes, steps, analysis, many, warned)
 
 
+def band_within(band: tuple[float, float], rate: float) -> tuple[float, float]:
+    """Return what a record holds of a band [Hz].
+
+    Args:
+        band: Lower and upper frequency of the band [Hz].
+        rate: Samples of the record per second, of which half can be told [Hz].
+    """
+    return band[0], min(band[1], 0.5 * rate)
+
+
 def _direction(task: NoiseScene, levels: np.ndarray) -> np.ndarray:
     sensor = task.model.sensor
     if sensor is None:
@@ -328,8 +338,8 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     of_bands = band_levels(found, task.bands, task.reference, highest)
     loud = np.asarray(level(total_root_mean_square(found), task.reference))
 
-    def envelope_of(signal, duration, low, high):
-        band = low, min(high, 0.5 * len(signal) / duration)
+    def envelope_of(signal, duration, band):
+        band = band_within(band, len(signal) / duration)
         made = envelope_spectrum(signal, duration, shaft, band, window=task.window)
         named = name_lines(in_numpy(made), bearing, speed, **rules)
         near = tuple(line for line in named if line.order <= harmonics)
@@ -339,7 +349,7 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
     if known is not None and known.samples is not None:
         acceleration = acceleration @ _direction(task, loud)
         if band[0] < 0.5 * known.rate:
-            there = envelope_of(known.samples, len(known.samples) / known.rate, *band)
+            there = envelope_of(known.samples, len(known.samples) / known.rate, band)
     if known is not None and known.rate and known.has_unit:
         total = level(total_root_mean_square(known.spectrum), task.reference)
         bands = band_levels(known.spectrum, task.bands, task.reference)
@@ -352,7 +362,7 @@ def analyse(task: NoiseScene, record: Vibration, modes: NaturalModes) -> NoiseAn
         lines=lines,
         causes=causes,
         states=contact_states(record),
-        envelope=envelope_of(acceleration, given[1], *band),
+        envelope=envelope_of(acceleration, given[1], band),
         measured_level=levels,
         measured_envelope=there,
     )
