@@ -22,8 +22,8 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
 
 - Packages, from the ground up: `numerics`, `files`, `design`, `fits`, `contact`,
   `lubrication`, `element`, `statics`, `life`, `cases`, `catalogue`, `friction`,
-  `optimise`, `skid`, `rotor`, `shafts`, `noise`, `validation`, `report`, `plot`,
-  `studies`.
+  `optimise`, `skid`, `rotor`, `shafts`, `noise`, `decide`, `validation`, `report`,
+  `plot`, `studies`.
 - Ball bearings: `DeepGrooveBallBearing`, `AngularContactBallBearing`,
   `FourPointBallBearing`, `SelfAligningBallRow`, `ThrustBallBearing`.
 - Roller bearings: `CylindricalRollerBearing`, `NeedleRollerBearing`,
@@ -165,6 +165,7 @@ from .statics import (
 
 if _TYPE_CHECKING:
     from . import (
+        decide,
         files,
         noise,
         optimise,
@@ -183,7 +184,7 @@ if _TYPE_CHECKING:
 __all__ = [
     "numerics", "files", "design", "fits", "contact", "lubrication", "element",
     "statics", "life", "cases", "catalogue", "friction", "optimise", "skid", "rotor",
-    "shafts", "noise", "validation", "report", "plot", "studies",
+    "shafts", "noise", "decide", "validation", "report", "plot", "studies",
     "DeepGrooveBallBearing",
     "AngularContactBallBearing", "FourPointBallBearing", "SelfAligningBallRow",
     "ThrustBallBearing", "CylindricalRollerBearing", "NeedleRollerBearing",
@@ -204,7 +205,7 @@ __all__ = [
 
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = dict.fromkeys(
-    "files noise optimise plot report rotor shafts skid studies validation".split()
+    "decide files noise optimise plot report rotor shafts skid studies validation".split()
 ) | {
     "SceneError": "files",
     "load_bearing": "studies.bearing.read_scene",

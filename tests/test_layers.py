@@ -19,7 +19,7 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics files design fits contact lubrication element statics life"
-    " cases catalogue friction optimise skid rotor shafts noise validation report plot"
+    " cases catalogue friction optimise skid rotor shafts noise decide validation report plot"
     " studies cli"
 ).split()
 
