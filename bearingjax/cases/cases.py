@@ -37,6 +37,11 @@ class Cases(Printable):
         outer_speed: Speed of the outer ring (case,) [rad/s], or `None`.
         hours: Time that the machine spends in each case (case,) [h], or `None`.
         design: Which of several designs each case has (case,), or `None`.
+        viscosity: Kinematic viscosity of the oil in each case, in place of that of the
+            `LifeConditions` (case,) [m²/s], or `None`.
+        oscillation: Amplitude of the inner ring against the outer one, half of the
+            whole swing (case,) [rad]; 0, `None`: the rings turn. The speed is then the
+            mean one, as in `rating_life`.
 
     Traced: all fields.
     """
@@ -58,6 +63,12 @@ class Cases(Printable):
     )
     hours: Float[Array | np.ndarray, " case"] | None = eqx.field(metadata=unit("h"))
     design: Int[Array | np.ndarray, " case"] | None
+    viscosity: Float[Array | np.ndarray, " case"] | None = eqx.field(
+        metadata=unit("m²/s")
+    )
+    oscillation: Float[Array | np.ndarray, " case"] | None = eqx.field(
+        metadata=unit("rad")
+    )
 
     @staticmethod
     def label_entry(freedom: str, values: Any) -> LabelledArray:
@@ -75,14 +86,16 @@ class Cases(Printable):
         outer_speed: Any = None,
         hours: Any = None,
         design: Any = None,
+        viscosity: Any = None,
+        oscillation: Any = None,
     ):
         """Arguments without a case axis hold for all cases.
 
         Raises:
             TypeError: For text in place of numbers, or designs that are not whole.
             ValueError: For shapes that do not fit, unknown freedoms, hours below
-                zero or without a sum above zero, no cases, or if nothing has a case
-                axis.
+                zero or without a sum above zero, amplitudes below zero or above half a
+                turn, no cases, or if nothing has a case axis.
         """
         given = isinstance(prescribed, Mapping | None)
         allowed = f"{DICT_OF_FREEDOMS}, such as {{'uz': [1e-5, 2e-5]}}"
@@ -99,6 +112,8 @@ class Cases(Printable):
             "outer_speed": outer_speed,
             "hours": hours,
             "design": design,
+            "viscosity": viscosity,
+            "oscillation": oscillation,
             **prescribed,
         }
         vectors = {"load": load, "fixed_displacement": fixed_displacement}
@@ -135,12 +150,16 @@ class Cases(Printable):
             backend = jnp if isinstance(array, jax.Array) else np
             return backend.broadcast_to(array, whole)
 
-        for name in ("load", "fixed_displacement"):
-            setattr(self, name, fill_cases(name))
-        for name in ("inner_speed", "outer_speed", "hours", "design"):
-            setattr(self, name, fill_cases(name))
+        for name in (*vectors, *scalars):
+            if name not in prescribed:
+                setattr(self, name, fill_cases(name))
         self.prescribed = {name: fill_cases(name) for name in prescribed}
         check_hours(self.hours)
+        if oscillation is not None and not is_traced(oscillation):
+            swings = np.asarray(oscillation)
+            known = not np.any((swings < 0) | (swings > np.pi + 1e-9))
+            allowed = "0 to pi rad, half of the whole swing"
+            must_be("Cases", "oscillation", swings, known, allowed)
 
     @property
     def count(self) -> int:

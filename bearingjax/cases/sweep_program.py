@@ -21,7 +21,7 @@ from ..life.life import LifeConditions, life_outputs, rating_life
 from ..life.life_warning import life_sizes
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result
-from ..numerics.types import as_array
+from ..numerics.types import as_array, with_fields
 from ..statics import Solution, SolveOptions, Support
 from ..statics.warning import sizes
 from .cases import Cases, solve_case
@@ -81,8 +81,8 @@ class Task(eqx.Module):
             element = jax.tree.map(lambda leaf: leaf[case.design], element)
         return solve_case(element, case, self.support, self.options, start)
 
-    def outputs(self, solution: Any) -> dict[str, jax.Array]:
-        """Outputs of a solution by name; floats of a failed solve are NaN."""
+    def outputs(self, solution: Any, case: Cases) -> dict[str, jax.Array]:
+        """Outputs of a solved case by name; floats of a failed solve are NaN."""
         solved = solution.converged
 
         def nan_if_failed(value):
@@ -95,7 +95,11 @@ class Task(eqx.Module):
         }
         warned = sizes(solution) if self.warn else {}
         if self.life is not None:
-            life = rating_life(solution.element, solution, self.life)
+            oiled = self.life
+            if case.viscosity is not None and oiled.viscosity is not None:
+                oiled = with_fields(oiled, viscosity=case.viscosity)
+            swing = case.oscillation
+            life = rating_life(solution.element, solution, oiled, oscillation=swing)
             lives = life_outputs(life, self.lives)
             kept |= {name: nan_if_failed(v) for name, v in lives.items()}
             if self.warn:
@@ -244,7 +248,7 @@ def _solve_block(element, given, known, near, task, lanes, alike, mesh):
             solutions = jax.vmap(solve)(cases, start)
             known, unsound = add_solved(known, solutions, cases, other, alike)
             lost = unsound & jnp.isfinite(start[:, 0])
-            return known, jax.vmap(task.outputs)(solutions) | {_LOST: lost}
+            return known, jax.vmap(task.outputs)(solutions, cases) | {_LOST: lost}
 
         def cut_lanes(a):
             return a[order].reshape(n // lanes, lanes, *a.shape[1:])

@@ -211,7 +211,8 @@ def case_columns(cases: Cases) -> dict[str, np.ndarray]:
     found = label_cases(cases)
     names = {"load": "", **{k: k for k in found if k.startswith("prescribed_")}}
     names |= {"fixed_displacement": "fixed"}
-    names |= {name: name for name in ("inner_speed", "outer_speed", "hours", "design")}
+    known = "inner_speed", "outer_speed", "oscillation", "viscosity", "hours", "design"
+    names |= {name: name for name in known}
     return {
         header: column
         for name, shown in names.items()

@@ -35,7 +35,15 @@ from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.shown import Printable
-from ..numerics.types import Real, RealOrNone, Scalar, in_numpy, with_fields
+from ..numerics.types import (
+    Number,
+    Real,
+    RealOrNone,
+    Scalar,
+    as_real,
+    in_numpy,
+    with_fields,
+)
 from ..numerics.units import meaning, real, unit
 from ..statics.empty_places import solution_with_empty_places, spread_elements
 from ..statics.service_warning import turns_against_load
@@ -52,6 +60,7 @@ from .life_factor import (
     reliability_factor,
     viscosity_ratio,
 )
+from .oscillation import critical_amplitudes
 from .rating import (
     Ratings,
     check_alike,
@@ -98,6 +107,9 @@ LIFE_OUTPUTS = (
     "damage_share",
 )
 """Numbers of a `Life` that a sweep may keep."""
+
+MORE_OUTPUTS = "limit_ratio", "raceway_damage"
+"""Numbers besides from which verdicts and the use of a life follow."""
 
 _MILLION = 1e6
 _RATED = "published for the `designation`, else from the geometry"
@@ -286,6 +298,10 @@ class Life(Printable):
         limit_ratio: C_u over the load with which each track enters a_ISO
             (row, track) [1]; a large number without load.
         turns_against_load: 1 where a ring turns against the load (outer, inner) [1].
+        raceway_damage: `damage` of every raceway by itself (row, raceway) [1/rev]. The
+            standards rate no rolling elements apart from the raceways.
+        critical_ratio: Critical amplitude on the outer raceway over that of the
+            oscillation [1]; 0 where the rings turn, `None` without an amplitude.
     """
 
     ratings: Ratings
@@ -308,6 +324,8 @@ class Life(Printable):
     damage_share: Float[Array, "row raceway=2 track"] = eqx.field(metadata=unit("1"))
     limit_ratio: Float[Array, "row track"] = eqx.field(metadata=unit("1"))
     turns_against_load: Float[Array, "raceway=2"] = eqx.field(metadata=unit("1"))
+    raceway_damage: Float[Array, "row raceway=2"] = eqx.field(metadata=unit("1/rev"))
+    critical_ratio: Scalar | None = eqx.field(metadata=unit("1"))
 
     to_xarray = to_xarray
 
@@ -344,6 +362,7 @@ def rating_life(
     *,
     speed: Speed | None = None,
     lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
+    oscillation: Number | None = None,
 ) -> Life:
     """Rating life of a solved bearing by ISO 281 and ISO/TS 16281.
 
@@ -358,6 +377,9 @@ def rating_life(
         lamina_load: Load of every lamina on both raceways in place of the solution's
             [N], such as those of `refined_lamina_loads`. Concentrations of
             stress at the ends are then in it, whatever `edge_stress`.
+        oscillation: Amplitude of rings that oscillate, half of the whole swing, at most
+            π [rad]; 0, `None`: they turn. `speed` is then the mean one, 4 θ f of f
+            cycles a second, and a revolution 2π of the way to and fro.
 
     Returns:
         Life, differentiable with respect to all that the solution is. Numbers are NaN
@@ -365,10 +387,12 @@ def rating_life(
 
     Raises:
         TypeError: For a bearing in place of an element, or text in place of numbers.
-        ValueError: For conditions out of range, sets of unlike rows, several solutions
-            at once (map over them), or fewer than 30 laminae of a roller.
+        ValueError: For conditions or an amplitude out of range, sets of unlike rows,
+            several solutions at once (map over them), or fewer than 30 laminae of a
+            roller.
 
-    Source: ISO 281:2007; ISO/TS 16281:2008 (`reference_life`); ISO 76:2006.
+    Source: ISO 281:2007; ISO/TS 16281:2008 (`reference_life`); ISO 76:2006;
+        oscillations as in `life.oscillation`, with the film of their mean speed.
     """
     if solution is None:
         solution = cast(Solution, element)
@@ -409,11 +433,15 @@ def rating_life(
                 " lamina), of the rollers of the solution."
             )
     check_alike(bearing)
+    if oscillation is not None:
+        ends = "oscillation", 0.0, np.pi + 1e-9, oscillation, "rad"
+        in_range("rating_life", *ends, include_low=True)
+        oscillation = as_real(oscillation)
     given = bearing, solution, lamina_load
     if are_known(given):
         # One program for all numbers of rolling elements.
         given = _with_empty_places(*given)
-    return _life(*given, conditions, speed)
+    return _life(*given, conditions, speed, oscillation)
 
 
 def _with_empty_places(bearing, solution, lamina_load):
@@ -499,7 +527,7 @@ def _life(bearing, solution, *others) -> Life:
     return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
 
 
-def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
+def _life_of(bearing, solution, lamina_load, conditions, speed, swing) -> Life:
     speed = solution.speed if speed is None else speed
     loads = lamina_load
     if loads is None:
@@ -520,7 +548,7 @@ def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
     )
     kind = exponents_of(rows_of(bearing)[0].bearing)
     turning = turns_against_load(speed, conditions.load_fixed_to)
-    parts = _rows(bearing, solution.row_sizes, loads, rated, turning)
+    parts = _rows(bearing, solution.row_sizes, loads, rated, turning, swing)
     share = jnp.stack([part.fatigue.share for part in parts])
     total = jnp.sum(share)
     n, d = kind.spread
@@ -553,6 +581,7 @@ def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
             [load_ratio(jnp.ones_like(r.limit), r.limit, r.fatigue.load) for r in parts]
         ),
         "turns_against_load": turning,
+        "critical_ratio": None if swing is None else _critical_ratio(bearing, swing),
     }
     a1 = reliability_factor(conditions.reliability)
     damage = damage / a1
@@ -565,7 +594,8 @@ def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
     }
     if conditions.viscosity is not None:
         kappa, clean = _lubrication(bearing, turns, conditions)
-        tired = sum(_modified_damage(*row, kappa, clean, kind) for row in parts)
+        worn = [_modified_damage(*row, kappa, clean, kind) for row in parts]
+        share, tired = jnp.stack(worn), sum(jnp.sum(part) for part in worn)
         damage = positive_power(tired, d, n) / (_MILLION * a1)
         a_iso = (total / jnp.where(loaded, tired, 1.0)) ** (d / n)
         modified = {
@@ -577,9 +607,21 @@ def _life_of(bearing, solution, lamina_load, conditions, speed) -> Life:
     hours = None
     if turns is not None:
         hours = _lifetime(damage * turns * (3600.0 / (2.0 * jnp.pi)))
+    alone = positive_power(jnp.sum(share, axis=2), d, n) / (_MILLION * a1)
     return Life(
-        **fields, **modified, damage=damage, life_hours=hours, reliability_factor=a1
+        **fields,
+        **modified,
+        damage=damage,
+        raceway_damage=alone,
+        life_hours=hours,
+        reliability_factor=a1,
     )
+
+
+def _critical_ratio(bearing, swing):
+    row = rows_of(bearing)[0].bearing
+    critical = critical_amplitudes(row, row.nominal_contact_angle)[0]
+    return jnp.where(swing > 0, critical / jnp.where(swing > 0, swing, 1.0), 0.0)
 
 
 class _RowPart(NamedTuple):
@@ -590,7 +632,7 @@ class _RowPart(NamedTuple):
     thrust: Array
 
 
-def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
+def _rows(bearing, row_sizes, loads, rated, turning, swing) -> list[_RowPart]:
     """Fatigue of every row, as bearings of their own."""
     ends, parts = np.cumsum(row_sizes), []
     alone = row_ratings(bearing, rated)
@@ -599,7 +641,7 @@ def _rows(bearing, row_sizes, loads, rated, turning) -> list[_RowPart]:
         angle = row.nominal_contact_angle
         thrust = is_axial(row.is_thrust, angle)
         loaded = loads[int(end) - size : int(end)]
-        fatigue = row_fatigue(row, capacity, angle, loaded, turning)
+        fatigue = row_fatigue(row, capacity, angle, loaded, turning, swing)
         parts.append(_RowPart(fatigue, limit, thrust))
     return parts
 
@@ -620,12 +662,12 @@ def _lubrication(bearing, turns, conditions):
 
 
 def _modified_damage(fatigue, limit, thrust, kappa, clean, kind):
-    """Sum of the shares of a row, each part with its own a_ISO."""
+    """Shares of a row, (raceway, track), each part with its own a_ISO."""
     ratio = load_ratio(clean, limit, fatigue.load)
     balls = kind is BALLS
     factor = life_factor(kappa, ratio, balls, thrust)
     n, d = kind.spread
-    return jnp.sum(jnp.sum(fatigue.share, axis=0) * factor ** -(n / d))
+    return fatigue.share * (factor ** -(n / d))[None]
 
 
 def _above_residual(load, least):

@@ -36,6 +36,7 @@ from ..design.abstract import nearest_entry
 from ..numerics.power import positive_power
 from ..numerics.types import Scalar
 from ..numerics.units import unit
+from .oscillation import arc_factor, critical_amplitudes, mean_of_swing
 from .rating import is_axial
 
 LEAST_LAMINAE = 30
@@ -161,6 +162,7 @@ def row_fatigue(
     angle: Scalar,
     loads: Float[Array, "element 2 track"],
     turning: Float[Array, "2"],
+    amplitude: Scalar | None = None,
 ) -> RowFatigue:
     """Fatigue of a row.
 
@@ -171,6 +173,7 @@ def row_fatigue(
         loads: Load of every element on both raceways: of balls on each arc, of rollers
             on each lamina, with its concentration of stress [N].
         turning: 1 where the ring turns against the load, 0 where it does not.
+        amplitude: Half of the swing of an oscillation [rad]; 0, `None`: the rings turn.
 
     Source: ISO/TS 16281:2008, basic reference rating life and equivalent load of a
         lamina; of thrust bearings, whose formula was not found, by the statics above.
@@ -183,8 +186,16 @@ def row_fatigue(
     x = loads * (tracks ** (7.0 / 9.0) / capacities)[None, :, None]
     # Empty places carry nothing.
     count = bearing.n_elements
-    of_turning = jnp.sum(positive_power(x, *kind.load), 0) / count
-    turns = positive_power(of_turning, *kind.spread)
+    wear = positive_power(x, *kind.load)
+    turns = positive_power(jnp.sum(wear, 0) / count, *kind.spread)
+    arcs = jnp.ones_like(turning)
+    if amplitude is not None:
+        swings = amplitude > 0
+        swing = jnp.where(swings, amplitude, 1.0)
+        turns = jnp.where(swings, mean_of_swing(wear, count, swing, kind.spread), turns)
+        covering = swing / critical_amplitudes(bearing, angle)
+        uneven = arc_factor(covering, kind.spread[0] / kind.spread[1])
+        arcs = jnp.where(swings, uneven, 1.0)
     stands = jnp.sum(positive_power(x, *kind.share), 0) / count
     share = jnp.where(turning[:, None] > 0, turns, stands)
     thrust = is_axial(bearing.is_thrust, angle)
@@ -194,7 +205,7 @@ def row_fatigue(
     outer = 1.0 if balls else jnp.where(thrust, 1.0, kind.ratio ** (n / d))
     part = tracks * (outer * share[0] + share[1])
     load = whole * jnp.where(thrust, 1.0, kind.lamina) * positive_power(part, d, n)
-    return RowFatigue(share, load, kind)
+    return RowFatigue(arcs[:, None] * share, load, kind)
 
 
 def edge_stress(n_laminae: int) -> np.ndarray:
