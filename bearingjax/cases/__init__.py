@@ -43,14 +43,18 @@ Names
 
 - Sweeps: `sweep`, `Sweep`, `Cases`, `Batches`, `solve_case`, `stack_designs`.
 - Load spectra: `spectrum_life`, `SpectrumLife`.
+- Records in time: `series_cases`, `Series`, `series_life`, `SeriesLife`,
+  `SERIES_OUTPUTS`.
 """
 
 from .batches import Batches
 from .cases import Cases, solve_case
+from .series import SERIES_OUTPUTS, Series, SeriesLife, series_cases, series_life
 from .spectrum import SpectrumLife, spectrum_life
 from .sweep import Sweep, stack_designs, sweep
 
 __all__ = [
     "sweep", "Sweep", "Cases", "Batches", "solve_case", "stack_designs",
     "spectrum_life", "SpectrumLife",
+    "series_cases", "Series", "series_life", "SeriesLife", "SERIES_OUTPUTS",
 ]  # fmt: skip

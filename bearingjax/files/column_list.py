@@ -43,7 +43,7 @@ def read_list(
     columns = zip(*(row for _, row in cells), strict=True)
     found: dict[str, Any] = {}
     for title, values in zip(header, columns, strict=True):
-        key, unit = _head(table, name, title)
+        key, unit = split_title(table, name, title)
         if key in found:
             raise table.error("file", f"{name}: names a column twice, {key}")
         kind = kinds.get(key)
@@ -51,7 +51,7 @@ def read_list(
     return found
 
 
-def _head(table, name, title) -> tuple[str, str | None]:
+def split_title(table: Table, name: str, title: str) -> tuple[str, str | None]:
     """Split a column title into key and unit."""
     match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
     if match is not None:
@@ -85,22 +85,41 @@ def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
 def _cells(table, name, key, kind, unit, values, lines):
     """Convert the cells of a column: SI numbers of a kind, or design settings."""
     if kind is not None:
-        if unit is None:
-            example = f"{key} [{QUANTITIES[kind][1]}]"
-            problem = f'{name}: {key} has no unit; head the column "{example}"'
-            raise table.error("file", problem)
-        try:
-            factor = to_si(f"1 {unit}", kind)
-        except SceneError as error:
-            problem = f"{name}: the unit of {key}: {error}"
-            raise table.error("file", problem) from error
-        return np.array(_numbers(table, name, key, values, lines)) * factor
+        factor, zero = unit_of_column(table, name, key, kind, unit)
+        return np.array(_numbers(table, name, key, values, lines)) * factor + zero
     empty = [line for line, value in zip(lines, values, strict=True) if not value]
     if empty:
         raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
     if unit is not None:
         return [f"{value.strip()} {unit}" for value in values]
     return [_parse_value(value.strip()) for value in values]
+
+
+def unit_of_column(
+    table: Table, name: str, key: str, kind: str, unit: str | None
+) -> tuple[float, float]:
+    """Return factor and zero by which the numbers of a column become SI.
+
+    Args:
+        table: Table that names the file.
+        name: The file.
+        key: Key of the column.
+        kind: Kind of its quantity.
+        unit: Unit in its header, if it has one.
+
+    Raises:
+        SceneError: For no unit, or one of another kind.
+    """
+    if unit is None:
+        example = f"{key} [{QUANTITIES[kind][1]}]"
+        problem = f'{name}: {key} has no unit; head the column "{example}"'
+        raise table.error("file", problem)
+    try:
+        zero = to_si(f"0 {unit}", kind)
+        return to_si(f"1 {unit}", kind) - zero, zero
+    except SceneError as error:
+        problem = f"{name}: the unit of {key}: {error}"
+        raise table.error("file", problem) from error
 
 
 def _numbers(table, name, key, values, lines) -> list[float]:

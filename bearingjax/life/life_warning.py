@@ -141,6 +141,8 @@ def _sizes(bearing, ratings, numbers) -> Iterator[tuple[str, Any]]:
         # At a standstill, where it is 0, nothing tires.
         yield "thin_film", KAPPA[0] / xp.where(kappa == 0, xp.inf, kappa)
         yield "thick_film", kappa
+    if "critical_ratio" in numbers:
+        yield "short_swing", numbers["critical_ratio"]
     share = numbers.get("damage_share")
     if share is not None and share.shape[-1] >= LEAST_LAMINAE:
         yield "loaded_ends", share[..., 0].sum() + share[..., -1].sum()
@@ -243,6 +245,12 @@ LIFE_KINDS: dict[str, Kind] = {
         " that runs out it does not",
         lambda b, r, numbers: f", {np.shape(numbers['damage_share'])[2]} here",
         shown=lambda size: 100 * size,
+    ),
+    "short_swing": Kind(
+        1.0,
+        "critical amplitude {size:.3g} times that of the oscillation: no rolling element"
+        " reaches the track of the next one on the outer raceway, and wear (false"
+        " brinelling), which no rating counts, decides rather than fatigue",
     ),
     "no_hours": Kind(
         0.0,

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,11 +11,13 @@ import numpy as np
 
 from ...cases import Cases
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
+from ...cases.series import SERIES_OUTPUTS, SeriesLife, series_life
 from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
 from ...cases.sweep import Sweep
 from ...cases.sweep_table import columns
 from ...design import rows_of
 from ...design.published import with_published
+from ...element import RINGS
 from ...files.quantity import SceneError
 from ...files.scene_errors import scene_errors
 from ...life.life import LIFE_OUTPUTS, turns_against_load
@@ -45,6 +48,9 @@ from .case_words import case_words, varied_settings
 from .read_cases import CaseTable
 from .sweep_run import add_hours, all_warnings, design_columns, run_cases
 
+_YEAR = 8766.0
+"""Hours of a year [h]."""
+
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
 
@@ -60,6 +66,7 @@ class LifeRun(Shown):
             reference life times a1.
         ratings: Ratings of the bearing; for several designs those of the scene.
         verdict: Verdict on the required life; `None` without one.
+        record: Use of the life in a record in time; `None` of other cases.
     """
 
     table: CaseTable = dataclasses.field(repr=False)
@@ -68,6 +75,7 @@ class LifeRun(Shown):
     asked: SpectrumLife
     ratings: Ratings
     verdict: RequiredLife | None = None
+    record: SeriesLife | None = None
 
     @property
     def converged(self) -> bool:
@@ -83,12 +91,34 @@ class LifeRun(Shown):
             return ""
         first = Result(int(codes[lost[0]])).label
         many = f"{len(lost)} of {len(codes)} cases not solved"
-        return f"{many} (case {lost[0]}: {first})"
+        return f"{many} ({self.name_of(int(lost[0]))}: {first})"
 
     @functools.cached_property
     def warnings(self) -> list[Warning]:
         """Warnings of the scene, of its cases and of their lives."""
-        return all_warnings(self.table, self.solved)
+        found = all_warnings(self.table, self.solved)
+        series = self.table.series
+        if series is None:
+            return found
+
+        def by_row(match):
+            return f"worst in {self.name_of(int(match[1]))}"
+
+        found = [
+            dataclasses.replace(w, words=re.sub(r"worst case (\d+)", by_row, w))
+            for w in found
+        ]
+        if series.gaps:
+            how = self.table.inputs["cases"].get("gaps")
+            words = f"the record has gaps ({how}): {'; '.join(series.gaps)}"
+            found.append(Warning("gaps", words))
+        return found
+
+    def name_of(self, case: int) -> str:
+        """Return what reports call a case; of a record the first row that has it."""
+        series = self.table.series
+        row = case if series is None else int(np.argmax(series.case == case))
+        return self.table.row_name(row)
 
     @property
     def origins(self) -> dict[str, str]:
@@ -119,7 +149,7 @@ class LifeRun(Shown):
         safety = np.asarray(self.solved.static_safety)
         case, hours = int(np.argmin(safety)), self.table.cases.hours
         spent = hours is not None and float(hours[case]) == 0.0
-        which = f"case {case}{', of 0 h' if spent else ''}"
+        which = f"{self.name_of(case)}{', of 0 h' if spent else ''}"
         return f"{life_number(safety[case])} ({which})"
 
     def worst_cases(self, most: int) -> tuple[np.ndarray, np.ndarray]:
@@ -174,8 +204,11 @@ def run_life(
         )
     judged = scene.life is not None and scene.life.requires
     parts = ["damage_share", "limit_ratio"]
-    if judged and table.cases.design is None:
+    alike = table.cases.design, table.cases.viscosity, table.cases.oscillation
+    if judged and alike == (None, None, None) and table.series is None:
         outputs += parts
+    if table.series is not None:
+        outputs += [name for name in SERIES_OUTPUTS if name not in outputs]
     bearing = scene.element.bearing
     if (
         scene.catalogue is not None
@@ -197,6 +230,7 @@ def run_life(
         if name in outputs
     }
     asked_for = spectrum_life(table.cases, np.asarray(solved.damage))
+    record = None if table.series is None else series_life(table.series, solved)
     numbers = {k: v for k, v in solved.outputs.items() if k in NEEDED}
     kept = {k: v for k, v in solved.outputs.items() if k not in parts}
     solved = dataclasses.replace(solved, outputs=kept)
@@ -207,7 +241,7 @@ def run_life(
         basic = factor * float(lives["basic_rating_life"].rating_life) / turns
         found = bearing, scene.life, factor, basic, float(rated.dynamic_capacity)
         verdict = judge_life(*found, numbers, asked_for.damage_share)
-    return LifeRun(table, solved, lives, asked_for, rated, verdict)
+    return LifeRun(table, solved, lives, asked_for, rated, verdict, record)
 
 
 def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
@@ -216,8 +250,9 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
     Returns:
         Ratings as in `ratings_as_dict`, lives under all cases and the damage shares of
         the cases; `equivalent_load` is the constant load with the same basic life,
-        `static_safety` the least of all cases. Columns of the cases; counts, warnings,
-        inputs, version. Infinite is null; no lives if a case was not solved.
+        `static_safety` the least of all cases. Columns of the cases, of a record in
+        time its `record` instead; counts, warnings, inputs, version. Infinite is null;
+        no lives if a case was not solved.
     """
     found = ratings_as_dict(run.ratings, run.origins)
     found["minimum_load"] = minimum_load(run.table.scene.element.bearing, run.ratings)
@@ -228,11 +263,23 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["equivalent_load"] = equivalent_load(run)
         found["static_safety"] = np.min(run.solved.static_safety)
         found["life_hours"] = run.asked.life_hours
-        found["damage_share"] = run.asked.damage_share
         found |= verdict_as_dict(run.table.scene.life, run.verdict)
-    found["columns"] = life_columns(run, exact=True)
+        if run.record is None:
+            found["damage_share"] = run.asked.damage_share
+        else:
+            found["record"] = _record_as_dict(run)
+    if run.record is None:
+        found["columns"] = life_columns(run, exact=True)
     found["counts"] = run.solved.counts()
     return run_json(found, run.warnings, run.table.inputs)
+
+
+def _record_as_dict(run) -> dict[str, Any]:
+    """Return the use of a life in a record; rows are counted from 0."""
+    found = {k: v for k, v in vars(run.record).items() if k != "row_damage"}
+    series = run.table.series
+    found |= {"rows": series.case.size, "cases": series.cases.count}
+    return found | {"gaps": list(series.gaps)}
 
 
 def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
@@ -324,7 +371,42 @@ def _lives(run) -> list[Part]:
         fixed_to = life_conditions(table.scene).load_fixed_to
         parts.append(describe_turning(turns_against_load(None, fixed_to), True))
     parts += [] if run.clearance is None else [f"over the cases {_on_seats(run)}"]
+    parts += _record_in_words(run)
     return [*parts, *_by_case(run)]
+
+
+def _record_in_words(run) -> list[Part]:
+    """Tell the use of the life in a record, and its extremes; empty without one."""
+    record, series = run.record, run.table.series
+    if record is None:
+        return []
+    several = len(record.raceway_damage) > 1
+    alone = [
+        f"{ring} {damage:.4g}" + (f" of row {k}" if several else "")
+        for k, pair in enumerate(record.raceway_damage)
+        for ring, damage in zip(RINGS, pair, strict=True)
+    ]
+    where = {name: run.table.row_name(k) for name, k in record.row.items()}
+    swings = run.table.cases.oscillation
+    parts: list[Part] = [
+        "",
+        f"record of {shown_count(series.case.size, 'row')}, {record.hours:.6g} h"
+        f" ({record.hours / _YEAR:.4g} a) that count: damage {record.damage:.4g}; it is"
+        f" 1 after {record.life_hours / _YEAR:.4g} a of the same",
+        f"damage of each raceway by itself: {', '.join(alone)}; rolling elements are"
+        " rated with the raceways",
+        f"most damage in an hour in {where['damage']}; least static safety"
+        f" {life_number(record.static_safety)} in {where['static_safety']}; largest"
+        f" contact pressure {1e-6 * record.peak_pressure:.5g} MPa in"
+        f" {where['peak_pressure']}; largest load of a rolling element"
+        f" {record.largest_load:.5g} N in {where['largest_load']}",
+    ]
+    if swings is not None and np.any(swings):
+        parts.append(
+            "oscillations count by their way to and fro (2π rad are a revolution), with"
+            " the film of their mean speed, of which ISO 281 says nothing"
+        )
+    return parts
 
 
 def _on_seats(run) -> str:
@@ -348,8 +430,13 @@ def _by_case(run) -> list[Part]:
     order, shares = run.worst_cases(CASES_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
+    heading, *names = "case", *order
+    if run.record is not None:
+        names = [run.name_of(int(k)) for k in order]
+        heading = names[0].partition(" ")[0]
+        names = [int(name.partition(" ")[2]) for name in names]
     columns = [
-        Column("case", order),
+        Column(heading, names),
         Column("hours", spent),
         Column("P", np.asarray(solved.equivalent_load)[order], "N", ".4g"),
     ]
@@ -373,5 +460,5 @@ def _by_case(run) -> list[Part]:
             ", ".join(w.replace(" ", "\xa0") for w in case_words(found, int(k)))
             for k in order
         ]
-        parts += ["", Grid([Column("case", order), Column("what differs", apart)])]
+        parts += ["", Grid([Column(heading, names), Column("what differs", apart)])]
     return parts

@@ -9,7 +9,7 @@ import dataclasses
 import itertools
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,20 +17,22 @@ import jax
 import numpy as np
 
 from ...cases.cases import Cases
+from ...cases.series import GAPS, Series, series_cases
 from ...cases.spectrum import revolutions_per_hour
 from ...cases.sweep import SUMMARIES, stack_designs
 from ...design import rows_of
 from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ...element.frame import LOAD_UNITS, MOTION_UNITS
 from ...files.column_list import MOST_CASES, read_list
-from ...files.quantity import QUANTITIES, SceneError, kind_of, to_si
+from ...files.quantity import QUANTITIES, SceneError, kind_of, scene_number, to_si
 from ...files.scene_errors import error_at
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
+from ...files.series_file import Record, read_record
 from ...files.table import Table, text_of
 from ...life.life import LIFE_OUTPUTS, Life
 from ...numerics.labels import stated_axes
-from ...numerics.units import unit_of
+from ...numerics.units import CELSIUS, unit_of
 from ...numerics.warning import Warning
 from ...statics.solution import Solution
 from ..bearing.read_scene import (
@@ -50,9 +52,16 @@ OPERATING = {
         for name, unit in zip(FREEDOMS, MOTION_UNITS, strict=True)
     },
     **{f"operating.{ring}_speed": kind_of(unit_of(Speed, ring)) for ring in RINGS},
+    "oscillation.amplitude": "angle",
+    "oscillation.frequency": "frequency",
+    "lubricant.temperature": "temperature",
+    "life.viscosity": "kinematic viscosity",
     "hours": kind_of(unit_of(Cases, "hours")),
 }
 """Keys that may vary without changing the design, with their quantity kinds."""
+
+_OILS = "lubricant.temperature", "life.viscosity"
+_SWING = "oscillation.amplitude", "oscillation.frequency"
 
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
 """Tables of the scene whose keys define the design."""
@@ -106,6 +115,8 @@ class CaseTable:
             of the scene where it is not a number.
         outputs: Names of the outputs to keep, or `None` for the default.
         warnings: Warnings of suspicious but possible values, of all designs.
+        series: The record in time whose cases these are, or `None`.
+        row_name: What messages call its rows.
         inputs: The scene as it was read, in SI (`Scene.inputs`), with its cases as
             written.
     """
@@ -118,6 +129,8 @@ class CaseTable:
     outputs: tuple[str, ...] | None
     warnings: tuple[Warning, ...]
     inputs: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+    series: Series | None = dataclasses.field(default=None, repr=False)
+    row_name: Callable[[int], str] = "case {}".format
 
 
 @dataclasses.dataclass(frozen=True)
@@ -153,7 +166,15 @@ class CasesKeys(Keys):
     )
     file: str | None = scene_key(
         "path of a CSV with a row for each case, its header such as"
-        " `operating.load.Fy [kN]`"
+        " `operating.load.Fy [kN]`; or, CSV or Parquet, of a record with a column"
+        " `time`, each row of which holds until the next one"
+    )
+    gaps: str = scene_key(
+        "gaps and rows without a number in a record: `refuse`; `leave_out`, not"
+        " counted; `hold`, as the row before them",
+        choices=GAPS,
+        default="refuse",
+        needs=("file",),
     )
     spectrum: Any = scene_key(
         "a table for each case, with its `hours`",
@@ -171,17 +192,30 @@ class CasesKeys(Keys):
             problem = "must have one of `grid`, `file` or `spectrum`"
             raise self.table.own_error(problem)
 
-    def columns(self, path: Path) -> list["VariedKey"]:
-        """Return the values of each key that varies."""
-        if self.grid is not None:
+    def columns(self, path: Path) -> tuple[list["VariedKey"], Record | None]:
+        """Return the values of each key that varies, and a record in time."""
+        record = None
+        if self.file is not None:
+            kinds = {key: kind for key, kind in OPERATING.items() if key != "hours"}
+            record = read_record(self.table, path.parent, kinds)
+        if record is not None:
+            found = [_as_written(*column) for column in record.columns.items()]
+        elif "gaps" in self.table:
+            problem = "is of a record in time, a `file` with a column `time`"
+            raise self.table.error("gaps", problem)
+        elif self.grid is not None:
             found = _grid(self.table, self.grid)
         elif self.spectrum is not None:
             found = _spectrum(self.table, self.spectrum)
         else:
             lists = read_list(self.table, path.parent, OPERATING).items()
-            found = [VariedKey(key, v, np.arange(len(v))) for key, v in lists]
+            found = list(itertools.starmap(_as_written, lists))
         self.table.finish()
-        return found
+        return [column for column in found if column.key != "time"], record
+
+
+def _as_written(key, values) -> "VariedKey":
+    return VariedKey(key, values, np.arange(len(values)))
 
 
 def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
@@ -205,14 +239,20 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
         )
     keys = read_keys(CasesKeys, Table(data, path).table("cases"))
     table, outputs = keys.table, keys.outputs
-    columns = keys.columns(path)
+    columns, record = keys.columns(path)
+    named = "case {}".format if record is None else record.row_name
     data = _fill_first_values(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
         _check_key(table, column.key, scene)
     design_groups, design, made, warned = _designs(data, path, columns, scene)
     _check_outputs(table, outputs, design_groups)
-    cases = _cases(table, scene, columns, design)
+    cases, series = _cases(table, scene, columns, design, named), None
+    if record is not None:
+        with table.building(time="file"):
+            time = record.columns["time"]
+            series = series_cases(time, cases, gaps=keys.gaps, row_name=named)
+        cases = series.cases
     if any(np.any(x) for x in (cases.inner_speed, cases.outer_speed) if x is not None):
         numerics = Table(data, path).table("numerics")
         check_equilibrium(numerics, scene.element, Speed(1.0, 1.0))
@@ -228,6 +268,8 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
         outputs=outputs,
         warnings=_merge_warnings(scene.warnings, warned),
         inputs=_inputs(scene, columns, _with_path(data["cases"], path)),
+        series=series,
+        row_name=named,
     )
 
 
@@ -238,8 +280,14 @@ def _fill_first_values(
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
     for column in columns:
-        if _makes_design(column.key) and not _has_key(data, column.key):
-            assign(begun, column.key, column.values[column.index[0]], file)
+        oil = column.key in _OILS and column.key.partition(".")[0] in data
+        if (_makes_design(column.key) or oil) and not _has_key(data, column.key):
+            value = column.values[column.index[0]]
+            if isinstance(column.values, np.ndarray):
+                kind = OPERATING[column.key]
+                known = column.values[np.isfinite(column.values)]
+                value = f"{float(known[:1].sum())!r} {QUANTITIES[kind][0]}"
+            assign(begun, column.key, value, file)
     return begun
 
 
@@ -535,7 +583,7 @@ def _changes_fit(data, key) -> bool:
     return "fit" in data and key.endswith("_speed")
 
 
-def _cases(table, scene, columns, design) -> Cases:
+def _cases(table, scene, columns, design, named) -> Cases:
     count = columns[0].index.size
     load = np.tile(np.array(scene.load), (count, 1))
     prescribed: dict[str, Any] = {
@@ -546,7 +594,7 @@ def _cases(table, scene, columns, design) -> Cases:
         for ring in RINGS:
             value = float(getattr(scene.speed, ring))
             speeds[f"{ring}_speed"] = np.full(count, value)
-    hours = None
+    hours, more = None, {}
     for column in columns:
         if column.key not in OPERATING:
             continue
@@ -554,14 +602,85 @@ def _cases(table, scene, columns, design) -> Cases:
         name = column.key.rpartition(".")[2]
         if column.key == "hours":
             hours = values
+        elif column.key in (*_OILS, *_SWING):
+            more[column.key] = values
         elif name in LOADS:
             load[:, LOADS.index(name)] = values
         elif name in FREEDOMS:
             prescribed[name] = values
         else:
             speeds[name] = values
+    if any(key in more for key in _SWING):
+        speeds |= _oscillation(table, more, speeds, named, count)
+    viscosity = _viscosities(table, scene, more)
     with table.building():
-        return Cases(load, prescribed=prescribed, hours=hours, design=design, **speeds)
+        whole = dict(hours=hours, design=design, viscosity=viscosity, **speeds)
+        return Cases(load, prescribed=prescribed, **whole)
+
+
+def _oscillation(table, more, speeds, named, count) -> dict[str, Any]:
+    """Return amplitudes and mean speeds of cases that oscillate; others have 0 deg."""
+    for key in _SWING:
+        if key not in more:
+            raise table.error(key, f"is missing; {' and '.join(_SWING)} belong together")
+    swing, frequency = (more[key] for key in _SWING)
+    still = np.zeros(count)
+    turning = speeds.get("inner_speed", still), speeds.get("outer_speed", still)
+    wrong = {
+        _SWING[0]: (
+            (swing < 0) | (swing > np.pi + 1e-9),
+            swing,
+            "0 (turning) to 180 deg, half of the whole swing",
+        ),
+        _SWING[1]: ((frequency < 0) | ((swing > 0) & (frequency == 0)), frequency, ""),
+    }
+    for key, (cases, values, allowed) in wrong.items():
+        if cases.any():
+            k = int(np.argmax(cases))
+            value = scene_number(values[k], OPERATING[key])
+            allowed = allowed or "above 0 Hz where there is an amplitude"
+            raise table.error(key, f"is {value} in {named(k)}; it must be {allowed}")
+    both = (swing > 0) & ((turning[0] != 0) | (turning[1] != 0))
+    if both.any():
+        k = int(np.argmax(both))
+        swings, turns = (
+            scene_number(*pair)
+            for pair in ((swing[k], "angle"), (turning[0][k] or turning[1][k], "speed"))
+        )
+        problem = f"is {swings} in {named(k)}, where a ring turns with {turns}"
+        raise table.error(_SWING[0], f"{problem}; one or the other, with 0 rpm or 0 deg")
+    mean = np.where(swing > 0, 2.0 / np.pi * swing * frequency, 0.0)
+    return {"inner_speed": turning[0] + mean, "oscillation": swing}
+
+
+def _viscosities(table, scene, more) -> np.ndarray | None:
+    """Return the viscosity of the oil in each case, if it varies [m²/s]."""
+    given = [key for key in _OILS if key in more]
+    if not given:
+        return None
+    if len(given) > 1:
+        raise table.error(given[0], f"stands beside {given[1]}; choose one")
+    (key,) = given
+    if scene.life is None or scene.life.viscosity is None:
+        problem = "changes the modified life alone, which needs `life.contamination`"
+        raise table.error(key, problem)
+    values, where = np.unique(more[key], return_inverse=True)
+    found, allowed = values, "above 0 and below 1 m²/s"
+    if key == "lubricant.temperature":
+        if scene.oil is None:
+            raise table.error(key, "needs the oil of [lubricant]")
+        allowed = "from -60 to 250 °C, with a viscosity below 1 m²/s"
+        found = np.asarray(jax.vmap(scene.oil.lubricant.kinematic_viscosity)(values))
+        if len(values) > 1 and np.ptp(found) == 0:
+            raise table.error(key, "varies, and the law of [lubricant] does not know it")
+        found = np.where((values < 213.15) | (values > 523.15), -1.0, found)
+    wrong = (found <= 0) | (found >= 1)
+    if wrong.any():
+        worst = float(values[np.argmax(wrong)])
+        shown = f"{worst - CELSIUS:.6g} °C", f"{1e6 * worst:.6g} mm²/s"
+        value = shown[key == "life.viscosity"]
+        raise table.error(key, f"is {value} in a case; it must be {allowed}")
+    return found[where]
 
 
 def _numbers(table, column):
