@@ -24,6 +24,11 @@ an oscillation:
   ((1 - c + k) k^e + (c - k) (k + 1)^e)/c^e of the even one: c^(1 - e) below the critical
   amplitude, where part of the raceway bears nothing (Rumbarger), and 1 to 0.7 % above.
 
+The product of both is within 4 % of the share of 7 rolling elements followed one by
+one over the swing, 1 % of 20; on a ring that does not turn against the load it is exact
+(`tests/life/test_oscillation.py`). Life goes with θ^-0.9 of balls and θ^(-8/9) of
+rollers below the critical amplitude, the load factors θ^(3/10) and θ^(2/9) of NREL DG03.
+
 Sources: Lundberg and Palmgren (1947); Harris, Rumbarger and Butterfield (2009, NREL
     DG03); Houpert (1999); Houpert and Menck (2022), J. Tribol. 144, 071601.
 """
@@ -85,8 +90,9 @@ def mean_of_swing(
         spread: e as a fraction.
     """
     turn, n, d = 2.0 * jnp.pi, *spread
+    count = jnp.asarray(count, wear.dtype)
     step = turn / count
-    place = jnp.arange(wear.shape[0])
+    place = jnp.arange(wear.shape[0], dtype=wear.dtype)
     first = jnp.mod(amplitude, step)
     first = jnp.minimum(first, step - first)
 
