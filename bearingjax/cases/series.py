@@ -28,6 +28,9 @@ LONG = 10.0
 _NAMED = 3
 """Gaps that are named each; of others the number is told."""
 
+_SAME = 1e-9
+"""Difference below which extremes are alike, relative to the largest [1]."""
+
 SERIES_OUTPUTS = (
     "damage",
     "raceway_damage",
@@ -50,8 +53,8 @@ class Series(Printable):
     """
 
     cases: Cases
-    case: Int[np.ndarray, " row"]
-    hours: Float[np.ndarray, " row"] = eqx.field(metadata=unit("h"))
+    case: Int[np.ndarray, " time"]
+    hours: Float[np.ndarray, " time"] = eqx.field(metadata=unit("h"))
     gaps: tuple[str, ...] = eqx.field(static=True)
 
 
@@ -75,7 +78,7 @@ class SeriesLife(Printable):
     damage: float = eqx.field(metadata=unit("1"))
     raceway_damage: Float[np.ndarray, "row raceway=2"] = eqx.field(metadata=unit("1"))
     life_hours: float = eqx.field(metadata=unit("h"))
-    row_damage: Float[np.ndarray, " row"] = eqx.field(metadata=unit("1"))
+    row_damage: Float[np.ndarray, " time"] = eqx.field(metadata=unit("1"))
     static_safety: float = eqx.field(metadata=unit("1"))
     peak_pressure: float = eqx.field(metadata=unit("Pa"))
     largest_load: float = eqx.field(metadata=unit("N"))
@@ -115,18 +118,20 @@ def series_cases(
     allowed = f"({cases.count},), a time for each row, of two at least"
     of_shape("series_cases", "time", fits, allowed, time)
     columns = _columns(cases)
-    hours, found = _held(time, columns, gaps, row_name)
-    if found and gaps == "refuse":
+    hours, told = _held(time, columns, gaps, row_name)
+    if told and gaps == "refuse":
         raise ValueError(
-            f"series_cases: `time` has gaps: {'; '.join(_told(found))}. Leave them out,"
+            f"series_cases: `time` has gaps: {'; '.join(told)}. Leave them out,"
             " or let the rows before them hold (`gaps`)."
         )
     if not hours.any():
-        raise ValueError("series_cases: `cases` has no row without a gap; one at least.")
+        raise ValueError(
+            "series_cases: `cases` has no row without a gap; one at least."
+        )
     case, first, spent = _alike(list(columns.values()), hours)
     taken = {name: _taken(getattr(cases, name), first) for name in vars(cases)}
     merged = with_fields(cases, **{**taken, "hours": spent})
-    return Series(merged, case, hours, _told(found))
+    return Series(merged, case, hours, told)
 
 
 def _columns(cases: Cases) -> dict[str, np.ndarray]:
@@ -151,7 +156,7 @@ def _held(time, columns, gaps, row_name):
     for name, values in {"time": time, **columns}.items():
         lost = np.flatnonzero(~np.isfinite(values) & ~bad)
         bad[lost] = True
-        found += [(k, f"{row_name(k)}: {name} is no finite number") for k in lost]
+        found += [(k, f"{name} is no finite number") for k in lost]
     rows = np.flatnonzero(np.isfinite(time))
     steps = np.diff(time[rows])
     back = np.flatnonzero(steps <= 0)
@@ -163,7 +168,7 @@ def _held(time, columns, gaps, row_name):
     long = steps > LONG * usual
     for k in np.flatnonzero(long):
         words = f"{shown_time(steps[k])} until the next row; {shown_time(usual)} are"
-        found.append((rows[k], f"{row_name(int(rows[k]))}: {words} usual"))
+        found.append((rows[k], f"{words} usual"))
     steps = np.append(steps, usual)
     if gaps == "leave_out":
         lost = np.append(long | (np.diff(rows) > 1), False)
@@ -174,7 +179,11 @@ def _held(time, columns, gaps, row_name):
         before = np.maximum.accumulate(np.where(bad, -1, np.arange(time.size)))
         kept = before >= 0
         held = np.bincount(before[kept], held[kept], time.size)
-    return np.where(bad, 0.0, held) / 3600.0, sorted(found)
+    found = [(int(k), words) for k, words in sorted(found)]
+    named = tuple(f"{row_name(k)}: {words}" for k, words in found[:_NAMED])
+    more = len(found) - len(named)
+    told = (*named, f"and {more} more") if more else named
+    return np.where(bad, 0.0, held) / 3600.0, told
 
 
 def shown_time(seconds: float) -> str:
@@ -186,13 +195,6 @@ def shown_time(seconds: float) -> str:
     units = (31557600.0, "a"), (86400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s")
     size, name = next((u for u in units if seconds >= u[0]), units[-1])
     return f"{seconds / size:.4g} {name}"
-
-
-def _told(found) -> tuple[str, ...]:
-    """The first gaps, and how many more there are."""
-    words = tuple(text for _, text in found[:_NAMED])
-    more = len(found) - len(words)
-    return (*words, f"and {more} more") if more else words
 
 
 def _alike(columns, hours):
@@ -246,8 +248,12 @@ def series_life(series: Series, solved: Sweep) -> SeriesLife:
     row = {}
     extremes = {"damage": rate, "static_safety": -solved.static_safety}
     extremes |= {name: getattr(solved, name) for name in SERIES_OUTPUTS[3:]}
+    rows = np.flatnonzero(counted)
     for name, values in extremes.items():
-        row[name] = int(np.flatnonzero(counted)[np.argmax(values[case])])
+        most = np.max(values)
+        # Residuals of the solver choose no row.
+        alike = values[case] >= most - _SAME * np.abs(most)
+        row[name] = int(rows[np.argmax(alike)])
     total = float(hours.sum())
     return SeriesLife(
         hours=total,

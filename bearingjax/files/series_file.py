@@ -11,7 +11,6 @@ import numpy as np
 
 from ..numerics.units import shown_count
 from .column_list import MOST_CASES, split_title, unit_of_column
-from .quantity import SceneError
 from .table import Table
 from .table_file import read_table
 from .text_file import read_columns, read_text
@@ -104,7 +103,9 @@ def _cells_at_once(text):
     titles = [title.strip().strip('"') for title in head.split(mark)] if mark else []
     if not titles or len(set(titles)) < len(titles) or "\n\n" in rest.rstrip("\n"):
         return None
-    kinds = [(f"f{k}", _INSTANT if t == "time" else float) for k, t in enumerate(titles)]
+    kinds = [
+        (f"f{k}", _INSTANT if t == "time" else float) for k, t in enumerate(titles)
+    ]
     plain: dict[str, Any] = dict(delimiter=mark, comments=None, ndmin=1, quotechar='"')
     try:
         with warnings.catch_warnings():

@@ -248,9 +248,9 @@ LIFE_KINDS: dict[str, Kind] = {
     ),
     "short_swing": Kind(
         1.0,
-        "critical amplitude {size:.3g} times that of the oscillation: no rolling element"
-        " reaches the track of the next one on the outer raceway, and wear (false"
-        " brinelling), which no rating counts, decides rather than fatigue",
+        "critical amplitude {size:.3g} times that of the oscillation: no rolling"
+        " element reaches the track of the next one on the outer raceway, and wear"
+        " (false brinelling), which no rating counts, decides rather than fatigue",
     ),
     "no_hours": Kind(
         0.0,

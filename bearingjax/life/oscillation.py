@@ -21,13 +21,14 @@ an oscillation:
   outer or inner ring. c = θ/θ_c of these arcs lie over a point in the mean, with the
   critical amplitude θ_c = 2π/(Z (1 ∓ γ)). The places are taken as the same for life:
   k or k + 1 arcs lie over a point, k = ⌊c⌋. The mean of D^e is then
-  ((1 - c + k) k^e + (c - k) (k + 1)^e)/c^e of the even one: c^(1 - e) below the critical
-  amplitude, where part of the raceway bears nothing (Rumbarger), and 1 to 0.7 % above.
+  ((1 - c + k) k^e + (c - k) (k + 1)^e)/c^e of the even one: c^(1 - e) below the
+  critical amplitude, where part of the raceway bears nothing (Rumbarger), and at most
+  1 % more than 1 above.
 
 The product of both is within 4 % of the share of 7 rolling elements followed one by
 one over the swing, 1 % of 20; on a ring that does not turn against the load it is exact
-(`tests/life/test_oscillation.py`). Life goes with θ^-0.9 of balls and θ^(-8/9) of
-rollers below the critical amplitude, the load factors θ^(3/10) and θ^(2/9) of NREL DG03.
+(`tests/life/test_oscillation.py`). Below the critical amplitude life goes with θ^-0.9
+of balls and θ^(-8/9) of rollers: load factors θ^(3/10) and θ^(2/9), as NREL DG03 has.
 
 Sources: Lundberg and Palmgren (1947); Harris, Rumbarger and Butterfield (2009, NREL
     DG03); Houpert (1999); Houpert and Menck (2022), J. Tribol. 144, 071601.

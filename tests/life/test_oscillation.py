@@ -114,7 +114,9 @@ def test_row_in_oscillation_between_its_limits():
     angle, rating = bearing.contact_angle, jnp.asarray(2e4)
     critical = np.asarray(critical_amplitudes(bearing, angle))
     gamma = 11.5 / 43.5 * np.cos(0.7)
-    np.testing.assert_allclose(critical * 7 / (2 * np.pi), 1 / (1 - gamma * np.array([1, -1])))
+    np.testing.assert_allclose(
+        critical * 7 / (2 * np.pi), 1 / (1 - gamma * np.array([1, -1]))
+    )
     loads = jnp.asarray(np.abs(np.random.default_rng(2).normal(size=(7, 2, 1))) * 1e3)
     inner = jnp.asarray([0.0, 1.0])
 

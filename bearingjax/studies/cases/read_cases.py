@@ -622,7 +622,9 @@ def _oscillation(table, more, speeds, named, count) -> dict[str, Any]:
     """Return amplitudes and mean speeds of cases that oscillate; others have 0 deg."""
     for key in _SWING:
         if key not in more:
-            raise table.error(key, f"is missing; {' and '.join(_SWING)} belong together")
+            raise table.error(
+                key, f"is missing; {' and '.join(_SWING)} belong together"
+            )
     swing, frequency = (more[key] for key in _SWING)
     still = np.zeros(count)
     turning = speeds.get("inner_speed", still), speeds.get("outer_speed", still)
@@ -648,7 +650,9 @@ def _oscillation(table, more, speeds, named, count) -> dict[str, Any]:
             for pair in ((swing[k], "angle"), (turning[0][k] or turning[1][k], "speed"))
         )
         problem = f"is {swings} in {named(k)}, where a ring turns with {turns}"
-        raise table.error(_SWING[0], f"{problem}; one or the other, with 0 rpm or 0 deg")
+        raise table.error(
+            _SWING[0], f"{problem}; one or the other, with 0 rpm or 0 deg"
+        )
     mean = np.where(swing > 0, 2.0 / np.pi * swing * frequency, 0.0)
     return {"inner_speed": turning[0] + mean, "oscillation": swing}
 
@@ -672,7 +676,9 @@ def _viscosities(table, scene, more) -> np.ndarray | None:
         allowed = "from -60 to 250 °C, with a viscosity below 1 m²/s"
         found = np.asarray(jax.vmap(scene.oil.lubricant.kinematic_viscosity)(values))
         if len(values) > 1 and np.ptp(found) == 0:
-            raise table.error(key, "varies, and the law of [lubricant] does not know it")
+            raise table.error(
+                key, "varies, and the law of [lubricant] does not know it"
+            )
         found = np.where((values < 213.15) | (values > 523.15), -1.0, found)
     wrong = (found <= 0) | (found >= 1)
     if wrong.any():
