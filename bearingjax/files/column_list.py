@@ -1,7 +1,9 @@
-"""A list of cases: a CSV file with keys and units in its header."""
+"""A list of cases: a table, CSV or Parquet, with keys and units in its header."""
 
+import io
 import math
 import re
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,14 +12,19 @@ import numpy as np
 
 from .quantity import QUANTITIES, SceneError, to_si
 from .table import Table, as_written
-from .text_file import read_columns
+from .table_file import read_table
+from .text_file import read_columns, read_text
 
 MOST_CASES = 10**7
 """Most cases of a scene: 1 kB of memory each, with the default outputs."""
 
 
 def read_list(
-    table: Table, folder: Path, kinds: Mapping[str, str], what: str = "cases"
+    table: Table,
+    folder: Path,
+    kinds: Mapping[str, str],
+    what: str = "cases",
+    record: bool = False,
 ) -> dict[str, Any]:
     """Read the columns of a list of cases.
 
@@ -27,6 +34,9 @@ def read_list(
         kinds: Quantity kinds of keys whose columns are converted to SI; other columns
             are settings as written in a scene.
         what: Name of the rows in error messages.
+        record: Whether a column `time`, in a unit or of instants (ISO 8601), makes it a
+            record: cells that are no numbers are NaN then, instants seconds since the
+            first, and `line` has the lines of the rows.
 
     Returns:
         Values by key, in order.
@@ -37,21 +47,23 @@ def read_list(
     name, given = table.text("file"), table.raw("file")
     if name is None:
         raise table.error("file", f"{given!r} is not the name of a file")
-    rows = _rows(table, name, folder / name, what)
-    (_, header), *cells = rows
-    lines = [line for line, _ in cells]
-    columns = zip(*(row for _, row in cells), strict=True)
+    header, columns, lines = _columns(table, name, folder / name, what, record)
     found: dict[str, Any] = {}
-    for title, values in zip(header, columns, strict=True):
-        key, unit = split_title(table, name, title)
+    heads = [_head(table, name, title) for title in header]
+    timed = record and any(key == "time" for key, _ in heads)
+    for (key, unit), values in zip(heads, columns, strict=True):
         if key in found:
             raise table.error("file", f"{name}: names a column twice, {key}")
-        kind = kinds.get(key)
-        found[key] = _cells(table, name, key, kind, unit, values, lines)
-    return found
+        kind = "time" if timed and key == "time" else kinds.get(key)
+        if timed and key == "time" and unit is None:
+            found[key] = _seconds(values)
+        else:
+            where = None if timed else lines
+            found[key] = _cells(table, name, key, kind, unit, values, where)
+    return found | ({"line": lines} if timed else {})
 
 
-def split_title(table: Table, name: str, title: str) -> tuple[str, str | None]:
+def _head(table, name, title) -> tuple[str, str | None]:
     """Split a column title into key and unit."""
     match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
     if match is not None:
@@ -60,12 +72,19 @@ def split_title(table: Table, name: str, title: str) -> tuple[str, str | None]:
     raise table.error("file", problem)
 
 
-def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
-    """Read the non-empty lines of a list, each with its line number."""
+def _columns(table, name, path, what, record) -> tuple[Any, Any, Any]:
+    """Read titles, columns of cells, and the line of each row."""
     try:
-        rows = read_columns(path)
-    except ValueError as error:
+        if record and path.suffix.lower() == ".parquet":
+            found = read_table(path)
+            count = len(next(iter(found.values()), ()))
+            return list(found), list(found.values()), np.arange(1, count + 1)
+        plain = _plain_columns(path) if record else None
+        rows = [] if plain else read_columns(path)
+    except (ValueError, ImportError, OSError) as error:
         raise table.error("file", f"{name}: {error}") from error
+    if plain:
+        return plain
     if len(rows) < 2:
         raise table.error(
             "file", f"{name}: has no {what}; a header and rows are wanted"
@@ -79,58 +98,88 @@ def _rows(table, name, path, what) -> list[tuple[int, list[str]]]:
         if len(row) != wanted:
             problem = f"{name}: line {line} has {len(row)} values, not {wanted}"
             raise table.error("file", problem)
-    return rows
+    (_, header), *cells = rows
+    columns = zip(*(row for _, row in cells), strict=True)
+    return header, list(columns), np.array([line for line, _ in cells])
+
+
+def _plain_columns(path):
+    """Read a record whose cells are numbers or instants, a million rows in a second or
+    two; `None` if it is another file."""
+    head, _, rest = read_text(path).partition("\n")
+    mark = next((m for m in ";\t," if m in head), ",")
+    titles = head.split(mark)
+    if not head.startswith("time") or "\n\n" in rest.rstrip("\n"):
+        return None
+    kinds = [(str(k), "U40" if t == "time" else float) for k, t in enumerate(titles)]
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # without rows
+            given: Any = {"delimiter": mark, "comments": None, "ndmin": 1}
+            rows = np.loadtxt(io.StringIO(rest), dtype=kinds, **given)
+    except (ValueError, UserWarning):
+        return None
+    if rows.size > MOST_CASES:
+        return None
+    return titles, [rows[name] for name, _ in kinds], np.arange(2, 2 + rows.size)
+
+
+def _seconds(values) -> np.ndarray:
+    """Seconds of instants since the first, NaN of cells that are none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of offsets, which count
+        found = np.array([_instant(str(value)) for value in values], "datetime64[us]")
+    known = found[~np.isnat(found)]
+    return (found - (known[0] if known.size else found)) / np.timedelta64(1, "s")
+
+
+def _instant(text):
+    try:
+        return np.datetime64(text.strip(), "us")
+    except ValueError:
+        return np.datetime64("nat")
 
 
 def _cells(table, name, key, kind, unit, values, lines):
     """Convert the cells of a column: SI numbers of a kind, or design settings."""
     if kind is not None:
-        factor, zero = unit_of_column(table, name, key, kind, unit)
+        factor, zero = _unit(table, name, key, kind, unit)
         return np.array(_numbers(table, name, key, values, lines)) * factor + zero
-    empty = [line for line, value in zip(lines, values, strict=True) if not value]
-    if empty:
-        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
+    values = [str(value) for value in values]
+    if "" in values:
+        line = values.index("") + 2 if lines is None else lines[values.index("")]
+        raise table.error("file", f"{name}: line {line}: {key} is empty")
     if unit is not None:
         return [f"{value.strip()} {unit}" for value in values]
     return [_parse_value(value.strip()) for value in values]
 
 
-def unit_of_column(
-    table: Table, name: str, key: str, kind: str, unit: str | None
-) -> tuple[float, float]:
-    """Return factor and zero by which the numbers of a column become SI.
-
-    Args:
-        table: Table that names the file.
-        name: The file.
-        key: Key of the column.
-        kind: Kind of its quantity.
-        unit: Unit in its header, if it has one.
-
-    Raises:
-        SceneError: For no unit, or one of another kind.
-    """
+def _unit(table, name, key, kind, unit) -> tuple[float, float]:
+    """Return factor and zero that make the numbers of a column SI."""
     if unit is None:
         example = f"{key} [{QUANTITIES[kind][1]}]"
         problem = f'{name}: {key} has no unit; head the column "{example}"'
         raise table.error("file", problem)
     try:
-        zero = to_si(f"0 {unit}", kind)
-        return to_si(f"1 {unit}", kind) - zero, zero
+        one, zero = (to_si(f"{k} {unit}", kind) for k in (1, 0))
     except SceneError as error:
         problem = f"{name}: the unit of {key}: {error}"
         raise table.error("file", problem) from error
+    return one - zero, zero
 
 
-def _numbers(table, name, key, values, lines) -> list[float]:
+def _numbers(table, name, key, values, lines) -> Any:
     numbers = []
-    for line, value in zip(lines, values, strict=True):
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fi":
+        return values.astype(float)
+    for k, value in enumerate(values):
         try:
-            number = float(value.replace("−", "-"))
+            number = float(str(value).replace("−", "-"))
         except ValueError:
             number = math.nan
-        if not math.isfinite(number):
-            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
+        if lines is not None and not math.isfinite(number):
+            what = f"{value!r} is not a finite number"
+            problem = f"{name}: line {lines[k]}: {key}: {what}"
             if "," in value:
                 problem += "; write a decimal point"
             raise table.error("file", problem)

@@ -97,22 +97,13 @@ class LifeRun(Shown):
     def warnings(self) -> list[Warning]:
         """Warnings of the scene, of its cases and of their lives."""
         found = all_warnings(self.table, self.solved)
-        series = self.table.series
-        if series is None:
+        if (series := self.table.series) is None:
             return found
-
-        def by_row(match):
-            return f"worst in {self.name_of(int(match[1]))}"
-
-        found = [
-            dataclasses.replace(w, words=re.sub(r"worst case (\d+)", by_row, w))
-            for w in found
-        ]
-        if series.gaps:
-            how = self.table.inputs["cases"].get("gaps")
-            words = f"the record has gaps ({how}): {'; '.join(series.gaps)}"
-            found.append(Warning("gaps", words))
-        return found
+        for k, one in enumerate(found):  # cases of a record are called by a row
+            words = re.sub(r"case (\d+)$", lambda m: self.name_of(int(m[1])), one)
+            found[k] = dataclasses.replace(one, words=words)
+        words = f"the record has gaps: {'; '.join(series.gaps)}"
+        return found + ([Warning("gaps", words)] if series.gaps else [])
 
     def name_of(self, case: int) -> str:
         """Return what reports call a case; of a record the first row that has it."""
@@ -267,19 +258,12 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         if run.record is None:
             found["damage_share"] = run.asked.damage_share
         else:
-            found["record"] = _record_as_dict(run)
+            record = {k: v for k, v in vars(run.record).items() if k != "row_damage"}
+            found["record"] = {**record, "gaps": list(run.table.series.gaps)}
     if run.record is None:
         found["columns"] = life_columns(run, exact=True)
     found["counts"] = run.solved.counts()
     return run_json(found, run.warnings, run.table.inputs)
-
-
-def _record_as_dict(run) -> dict[str, Any]:
-    """Return the use of a life in a record; rows are counted from 0."""
-    found = {k: v for k, v in vars(run.record).items() if k != "row_damage"}
-    series = run.table.series
-    found |= {"rows": series.case.size, "cases": series.cases.count}
-    return found | {"gaps": list(series.gaps)}
 
 
 def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
@@ -380,33 +364,26 @@ def _record_in_words(run) -> list[Part]:
     record, series = run.record, run.table.series
     if record is None:
         return []
-    several = len(record.raceway_damage) > 1
-    alone = [
-        f"{ring} {damage:.4g}" + (f" of row {k}" if several else "")
-        for k, pair in enumerate(record.raceway_damage)
-        for ring, damage in zip(RINGS, pair, strict=True)
-    ]
-    where = {name: run.table.row_name(k) for name, k in record.row.items()}
-    swings = run.table.cases.oscillation
-    parts: list[Part] = [
+    hours = float(np.sum(run.table.cases.hours))
+    rows = {name: run.table.row_name(k) for name, k in record.rows.items()}
+    most = [np.max(run.solved.outputs[k]) for k in ("peak_pressure", "largest_load")]
+    alone = zip(RINGS, record.raceway_damage.T, strict=True)
+    parts = [f"{ring} {' and '.join(f'{x:.4g}' for x in of)}" for ring, of in alone]
+    found: list[Part] = [
         "",
-        f"record of {shown_count(series.case.size, 'row')}, {record.hours:.6g} h"
-        f" ({record.hours / _YEAR:.4g} a) that count: damage {record.damage:.4g}; it is"
-        f" 1 after {record.life_hours / _YEAR:.4g} a of the same",
-        f"damage of each raceway by itself: {', '.join(alone)}; rolling elements are"
-        " rated with the raceways",
-        f"most damage in an hour in {where['damage']}; least static safety"
-        f" {life_number(record.static_safety)} in {where['static_safety']}; largest"
-        f" contact pressure {1e-6 * record.peak_pressure:.5g} MPa in"
-        f" {where['peak_pressure']}; largest load of a rolling element"
-        f" {record.largest_load:.5g} N in {where['largest_load']}",
+        f"record of {shown_count(series.case.size, 'row')}, {hours:.6g} h"
+        f" ({hours / _YEAR:.4g} a) that count: damage {record.damage:.4g}; 1 after"
+        f" {record.life_hours / _YEAR:.4g} a of the same; most of it in an hour in"
+        f" {rows['damage']}",
+        f"damage of each raceway by itself: {', '.join(parts)}; the standard rates"
+        " rolling elements with them",
+        f"largest contact pressure {1e-6 * most[0]:.5g} MPa in {rows['peak_pressure']},"
+        f" largest load of a rolling element {most[1]:.5g} N in {rows['largest_load']}",
     ]
-    if swings is not None and np.any(swings):
-        parts.append(
-            "oscillations count by their way to and fro (2π rad are a revolution), with"
-            " the film of their mean speed, of which ISO 281 says nothing"
-        )
-    return parts
+    if np.any(run.table.cases.oscillation):
+        words = "oscillations count by their way, 2π rad a revolution, with the film of"
+        found.append(f"{words} their mean speed, of which ISO 281 says nothing")
+    return found
 
 
 def _on_seats(run) -> str:
@@ -430,11 +407,8 @@ def _by_case(run) -> list[Part]:
     order, shares = run.worst_cases(CASES_SHOWN)
     solved, hours = run.solved, run.table.cases.hours
     spent = [None] * len(order) if hours is None else np.asarray(hours)[order]
-    heading, *names = "case", *order
-    if run.record is not None:
-        names = [run.name_of(int(k)) for k in order]
-        heading = names[0].partition(" ")[0]
-        names = [int(name.partition(" ")[2]) for name in names]
+    words = [run.name_of(int(k)).split() for k in order]
+    heading, names = words[0][0], [int(number) for _, number in words]
     columns = [
         Column(heading, names),
         Column("hours", spent),

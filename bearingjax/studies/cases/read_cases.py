@@ -24,11 +24,10 @@ from ...design import rows_of
 from ...element import FREEDOMS, LOADS, RINGS, BearingElement, Speed
 from ...element.frame import LOAD_UNITS, MOTION_UNITS
 from ...files.column_list import MOST_CASES, read_list
-from ...files.quantity import QUANTITIES, SceneError, kind_of, scene_number, to_si
+from ...files.quantity import QUANTITIES, SceneError, kind_of, to_si
 from ...files.scene_errors import error_at
 from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, read_keys, scene_key
-from ...files.series_file import Record, read_record
 from ...files.table import Table, text_of
 from ...life.life import LIFE_OUTPUTS, Life
 from ...numerics.labels import stated_axes
@@ -55,12 +54,10 @@ OPERATING = {
     "oscillation.amplitude": "angle",
     "oscillation.frequency": "frequency",
     "lubricant.temperature": "temperature",
-    "life.viscosity": "kinematic viscosity",
     "hours": kind_of(unit_of(Cases, "hours")),
 }
 """Keys that may vary without changing the design, with their quantity kinds."""
 
-_OILS = "lubricant.temperature", "life.viscosity"
 _SWING = "oscillation.amplitude", "oscillation.frequency"
 
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
@@ -166,8 +163,8 @@ class CasesKeys(Keys):
     )
     file: str | None = scene_key(
         "path of a CSV with a row for each case, its header such as"
-        " `operating.load.Fy [kN]`; or, CSV or Parquet, of a record with a column"
-        " `time`, each row of which holds until the next one"
+        " `operating.load.Fy [kN]`; with a column `time` (CSV or Parquet) of a record,"
+        " each row of which holds until the next one"
     )
     gaps: str = scene_key(
         "gaps and rows without a number in a record: `refuse`; `leave_out`, not"
@@ -192,30 +189,26 @@ class CasesKeys(Keys):
             problem = "must have one of `grid`, `file` or `spectrum`"
             raise self.table.own_error(problem)
 
-    def columns(self, path: Path) -> tuple[list["VariedKey"], Record | None]:
-        """Return the values of each key that varies, and a record in time."""
-        record = None
-        if self.file is not None:
-            kinds = {key: kind for key, kind in OPERATING.items() if key != "hours"}
-            record = read_record(self.table, path.parent, kinds)
-        if record is not None:
-            found = [_as_written(*column) for column in record.columns.items()]
-        elif "gaps" in self.table:
-            problem = "is of a record in time, a `file` with a column `time`"
-            raise self.table.error("gaps", problem)
-        elif self.grid is not None:
+    def columns(self, path: Path) -> tuple[list["VariedKey"], dict[str, Any]]:
+        """Return the values of each key that varies; time and lines of a record."""
+        lists, record = {}, {}
+        if self.grid is not None:
             found = _grid(self.table, self.grid)
         elif self.spectrum is not None:
             found = _spectrum(self.table, self.spectrum)
         else:
-            lists = read_list(self.table, path.parent, OPERATING).items()
-            found = list(itertools.starmap(_as_written, lists))
+            lists = read_list(self.table, path.parent, OPERATING, record=True)
+            if "line" in lists:
+                record = {k: lists.pop(k) for k in ("time", "line")}
+            found = [VariedKey(k, v, np.arange(len(v))) for k, v in lists.items()]
+        if "gaps" in self.table and not record:
+            problem = "is of a record in time, a `file` with a column `time`"
+            raise self.table.error("gaps", problem)
+        if record and (not lists or "hours" in lists or len(record["time"]) < 2):
+            problem = "is a record in time: it has two rows at least, and no `hours`"
+            raise self.table.error("file", problem)
         self.table.finish()
-        return [column for column in found if column.key != "time"], record
-
-
-def _as_written(key, values) -> "VariedKey":
-    return VariedKey(key, values, np.arange(len(values)))
+        return found, record
 
 
 def read_cases(source: str | Path, settings: Iterable[str] = ()) -> CaseTable:
@@ -240,7 +233,9 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     keys = read_keys(CasesKeys, Table(data, path).table("cases"))
     table, outputs = keys.table, keys.outputs
     columns, record = keys.columns(path)
-    named = "case {}".format if record is None else record.row_name
+    named = "case {}".format
+    if record:
+        lines, named = record["line"], lambda row: f"line {lines[row]}"
     data = _fill_first_values(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
@@ -248,10 +243,10 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     design_groups, design, made, warned = _designs(data, path, columns, scene)
     _check_outputs(table, outputs, design_groups)
     cases, series = _cases(table, scene, columns, design, named), None
-    if record is not None:
+    if record:
+        how: Any = {"gaps": keys.gaps, "row_name": named}
         with table.building(time="file"):
-            time = record.columns["time"]
-            series = series_cases(time, cases, gaps=keys.gaps, row_name=named)
+            series = series_cases(record["time"], cases, **how)
         cases = series.cases
     if any(np.any(x) for x in (cases.inner_speed, cases.outer_speed) if x is not None):
         numerics = Table(data, path).table("numerics")
@@ -280,14 +275,8 @@ def _fill_first_values(
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
     for column in columns:
-        oil = column.key in _OILS and column.key.partition(".")[0] in data
-        if (_makes_design(column.key) or oil) and not _has_key(data, column.key):
-            value = column.values[column.index[0]]
-            if isinstance(column.values, np.ndarray):
-                kind = OPERATING[column.key]
-                known = column.values[np.isfinite(column.values)]
-                value = f"{float(known[:1].sum())!r} {QUANTITIES[kind][0]}"
-            assign(begun, column.key, value, file)
+        if _makes_design(column.key) and not _has_key(data, column.key):
+            assign(begun, column.key, column.values[column.index[0]], file)
     return begun
 
 
@@ -602,7 +591,7 @@ def _cases(table, scene, columns, design, named) -> Cases:
         name = column.key.rpartition(".")[2]
         if column.key == "hours":
             hours = values
-        elif column.key in (*_OILS, *_SWING):
+        elif column.key in (*_SWING, "lubricant.temperature"):
             more[column.key] = values
         elif name in LOADS:
             load[:, LOADS.index(name)] = values
@@ -612,80 +601,46 @@ def _cases(table, scene, columns, design, named) -> Cases:
             speeds[name] = values
     if any(key in more for key in _SWING):
         speeds |= _oscillation(table, more, speeds, named, count)
-    viscosity = _viscosities(table, scene, more)
+    temperature = more.get("lubricant.temperature")
+    if temperature is not None:
+        speeds["viscosity"] = _viscosities(table, scene, temperature)
     with table.building():
-        whole = dict(hours=hours, design=design, viscosity=viscosity, **speeds)
-        return Cases(load, prescribed=prescribed, **whole)
+        return Cases(load, prescribed=prescribed, hours=hours, design=design, **speeds)
 
 
 def _oscillation(table, more, speeds, named, count) -> dict[str, Any]:
     """Return amplitudes and mean speeds of cases that oscillate; others have 0 deg."""
     for key in _SWING:
         if key not in more:
-            raise table.error(
-                key, f"is missing; {' and '.join(_SWING)} belong together"
-            )
+            raise table.error(key, f"is missing beside the other of {_SWING}")
     swing, frequency = (more[key] for key in _SWING)
-    still = np.zeros(count)
-    turning = speeds.get("inner_speed", still), speeds.get("outer_speed", still)
-    wrong = {
-        _SWING[0]: (
-            (swing < 0) | (swing > np.pi + 1e-9),
-            swing,
-            "0 (turning) to 180 deg, half of the whole swing",
-        ),
-        _SWING[1]: ((frequency < 0) | ((swing > 0) & (frequency == 0)), frequency, ""),
-    }
-    for key, (cases, values, allowed) in wrong.items():
-        if cases.any():
-            k = int(np.argmax(cases))
-            value = scene_number(values[k], OPERATING[key])
-            allowed = allowed or "above 0 Hz where there is an amplitude"
-            raise table.error(key, f"is {value} in {named(k)}; it must be {allowed}")
-    both = (swing > 0) & ((turning[0] != 0) | (turning[1] != 0))
-    if both.any():
-        k = int(np.argmax(both))
-        swings, turns = (
-            scene_number(*pair)
-            for pair in ((swing[k], "angle"), (turning[0][k] or turning[1][k], "speed"))
-        )
-        problem = f"is {swings} in {named(k)}, where a ring turns with {turns}"
-        raise table.error(
-            _SWING[0], f"{problem}; one or the other, with 0 rpm or 0 deg"
-        )
-    mean = np.where(swing > 0, 2.0 / np.pi * swing * frequency, 0.0)
-    return {"inner_speed": turning[0] + mean, "oscillation": swing}
-
-
-def _viscosities(table, scene, more) -> np.ndarray | None:
-    """Return the viscosity of the oil in each case, if it varies [m²/s]."""
-    given = [key for key in _OILS if key in more]
-    if not given:
-        return None
-    if len(given) > 1:
-        raise table.error(given[0], f"stands beside {given[1]}; choose one")
-    (key,) = given
-    if scene.life is None or scene.life.viscosity is None:
-        problem = "changes the modified life alone, which needs `life.contamination`"
-        raise table.error(key, problem)
-    values, where = np.unique(more[key], return_inverse=True)
-    found, allowed = values, "above 0 and below 1 m²/s"
-    if key == "lubricant.temperature":
-        if scene.oil is None:
-            raise table.error(key, "needs the oil of [lubricant]")
-        allowed = "from -60 to 250 °C, with a viscosity below 1 m²/s"
-        found = np.asarray(jax.vmap(scene.oil.lubricant.kinematic_viscosity)(values))
-        if len(values) > 1 and np.ptp(found) == 0:
-            raise table.error(
-                key, "varies, and the law of [lubricant] does not know it"
-            )
-        found = np.where((values < 213.15) | (values > 523.15), -1.0, found)
-    wrong = (found <= 0) | (found >= 1)
+    inner, outer = (speeds.get(f"{r}_speed", np.zeros(count)) for r in RINGS[::-1])
+    wrong = (swing < 0) | (swing > np.pi + 1e-9)
+    turns = (inner != 0) | (outer != 0) | (frequency <= 0)
+    wrong |= (swing > 0) & turns & np.isfinite(inner + outer + frequency)
     if wrong.any():
-        worst = float(values[np.argmax(wrong)])
-        shown = f"{worst - CELSIUS:.6g} °C", f"{1e6 * worst:.6g} mm²/s"
-        value = shown[key == "life.viscosity"]
-        raise table.error(key, f"is {value} in a case; it must be {allowed}")
+        k = int(np.argmax(wrong))
+        problem = f"is {np.degrees(swing[k]):.6g} deg in {named(k)}; it must be 0"
+        allowed = "or, at rings of 0 rpm and a frequency above 0 Hz, up to 180 deg"
+        raise table.error(_SWING[0], f"{problem} {allowed}, half of the whole swing")
+    mean = np.where(swing > 0, 2.0 / np.pi * swing * frequency, 0.0)
+    return {"inner_speed": inner + mean, "oscillation": swing}
+
+
+def _viscosities(table, scene, temperature) -> np.ndarray:
+    """Return the viscosity of the oil in each case [m²/s]."""
+    key, oil = "lubricant.temperature", scene.oil
+    if oil is None or scene.life is None or scene.life.viscosity is None:
+        problem = "changes the life alone, which needs [lubricant] and"
+        raise table.error(key, f"{problem} `life.contamination`")
+    values, where = np.unique(temperature, return_inverse=True)
+    found = np.asarray(jax.vmap(oil.lubricant.kinematic_viscosity)(values))
+    wrong = (abs(values - 368.15) > 155.0) | (found >= 1)
+    if wrong.any():
+        given = f"is {values[np.argmax(wrong)] - CELSIUS:.6g} °C in a case"
+        raise table.error(key, f"{given}; it must be -60 to 250 °C, the oil no glass")
+    if len(values) > 1 and np.ptp(found) == 0:
+        raise table.error(key, "varies, but not the viscosity of [lubricant]")
     return found[where]
 
 
