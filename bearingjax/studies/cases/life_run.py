@@ -51,6 +51,9 @@ from .sweep_run import add_hours, all_warnings, design_columns, run_cases
 _YEAR = 8766.0
 """Hours of a year [h]."""
 
+_LARGEST = "peak_pressure", "largest_load"
+"""Outputs of which a record tells the largest."""
+
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
 
@@ -196,7 +199,7 @@ def run_life(
     judged = scene.life is not None and scene.life.requires
     parts = ["damage_share", "limit_ratio"]
     alike = table.cases.design, table.cases.viscosity, table.cases.oscillation
-    if judged and alike == (None, None, None) and table.series is None:
+    if judged and table.series is None and all(given is None for given in alike):
         outputs += parts
     if table.series is not None:
         outputs += [name for name in SERIES_OUTPUTS if name not in outputs]
@@ -259,7 +262,9 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
             found["damage_share"] = run.asked.damage_share
         else:
             record = {k: v for k, v in vars(run.record).items() if k != "row_damage"}
-            found["record"] = {**record, "gaps": list(run.table.series.gaps)}
+            record |= {k: np.max(run.solved.outputs[k]) for k in _LARGEST}
+            hours = np.sum(run.table.cases.hours)
+            found["record"] = {**record, "hours": hours, "gaps": run.table.series.gaps}
     if run.record is None:
         found["columns"] = life_columns(run, exact=True)
     found["counts"] = run.solved.counts()
@@ -366,7 +371,7 @@ def _record_in_words(run) -> list[Part]:
         return []
     hours = float(np.sum(run.table.cases.hours))
     rows = {name: run.table.row_name(k) for name, k in record.rows.items()}
-    most = [np.max(run.solved.outputs[k]) for k in ("peak_pressure", "largest_load")]
+    most = [np.max(run.solved.outputs[k]) for k in _LARGEST]
     alone = zip(RINGS, record.raceway_damage.T, strict=True)
     parts = [f"{ring} {' and '.join(f'{x:.4g}' for x in of)}" for ring, of in alone]
     found: list[Part] = [
