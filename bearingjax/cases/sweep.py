@@ -21,7 +21,7 @@ from ..design.bearing_set import bearings_of
 from ..design.checks import is_traced, must_be, of_class
 from ..design.places import has_empty_places, with_places
 from ..element.bearing_element import BearingElement, check_element
-from ..life.life import LIFE_OUTPUTS, MORE_OUTPUTS, LifeConditions
+from ..life.life import LIFE_OUTPUTS, LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
 from ..numerics.labels import make_dataset
@@ -277,7 +277,8 @@ def _output_function(outputs: Any) -> tuple[Any, tuple[str, ...]]:
     names = _check_outputs(outputs)
     if names is None:
         return Keep(None), ()
-    lives = tuple(name for name in names if name in (*LIFE_OUTPUTS, *MORE_OUTPUTS))
+    of_life = *LIFE_OUTPUTS, "limit_ratio", "raceway_damage"
+    lives = tuple(name for name in names if name in of_life)
     return Keep(tuple(name for name in names if name not in lives)), lives
 
 

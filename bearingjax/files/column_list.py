@@ -58,8 +58,8 @@ def read_list(
         if timed and key == "time" and unit is None:
             found[key] = _seconds(values)
         else:
-            where = None if timed else lines
-            found[key] = _cells(table, name, key, kind, unit, values, where)
+            given = key, kind, unit, values, lines, timed
+            found[key] = _cells(table, name, *given)
     return found | ({"line": lines} if timed else {})
 
 
@@ -140,46 +140,40 @@ def _instant(text):
         return np.datetime64("nat")
 
 
-def _cells(table, name, key, kind, unit, values, lines):
+def _cells(table, name, key, kind, unit, values, lines, timed):
     """Convert the cells of a column: SI numbers of a kind, or design settings."""
     if kind is not None:
-        factor, zero = _unit(table, name, key, kind, unit)
-        return np.array(_numbers(table, name, key, values, lines)) * factor + zero
+        if unit is None:
+            example = f"{key} [{QUANTITIES[kind][1]}]"
+            problem = f'{name}: {key} has no unit; head the column "{example}"'
+            raise table.error("file", problem)
+        try:
+            one, zero = (to_si(f"{k} {unit}", kind) for k in (1, 0))
+        except SceneError as error:
+            problem = f"{name}: the unit of {key}: {error}"
+            raise table.error("file", problem) from error
+        numbers = np.array(_numbers(table, name, key, values, lines, timed))
+        return numbers * (one - zero) + zero
     values = [str(value) for value in values]
-    if "" in values:
-        line = values.index("") + 2 if lines is None else lines[values.index("")]
-        raise table.error("file", f"{name}: line {line}: {key} is empty")
+    empty = [line for line, value in zip(lines, values, strict=True) if not value]
+    if empty:
+        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
     if unit is not None:
         return [f"{value.strip()} {unit}" for value in values]
     return [_parse_value(value.strip()) for value in values]
 
 
-def _unit(table, name, key, kind, unit) -> tuple[float, float]:
-    """Return factor and zero that make the numbers of a column SI."""
-    if unit is None:
-        example = f"{key} [{QUANTITIES[kind][1]}]"
-        problem = f'{name}: {key} has no unit; head the column "{example}"'
-        raise table.error("file", problem)
-    try:
-        one, zero = (to_si(f"{k} {unit}", kind) for k in (1, 0))
-    except SceneError as error:
-        problem = f"{name}: the unit of {key}: {error}"
-        raise table.error("file", problem) from error
-    return one - zero, zero
-
-
-def _numbers(table, name, key, values, lines) -> Any:
+def _numbers(table, name, key, values, lines, timed) -> Any:
     numbers = []
     if isinstance(values, np.ndarray) and values.dtype.kind in "fi":
         return values.astype(float)
-    for k, value in enumerate(values):
+    for line, value in zip(lines, values, strict=True):
         try:
             number = float(str(value).replace("−", "-"))
         except ValueError:
             number = math.nan
-        if lines is not None and not math.isfinite(number):
-            what = f"{value!r} is not a finite number"
-            problem = f"{name}: line {lines[k]}: {key}: {what}"
+        if not timed and not math.isfinite(number):
+            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
             if "," in value:
                 problem += "; write a decimal point"
             raise table.error("file", problem)

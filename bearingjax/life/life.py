@@ -35,15 +35,7 @@ from ..numerics.implicit import unless_failed
 from ..numerics.labels import to_xarray
 from ..numerics.power import positive_power
 from ..numerics.shown import Printable
-from ..numerics.types import (
-    Number,
-    Real,
-    RealOrNone,
-    Scalar,
-    as_real,
-    in_numpy,
-    with_fields,
-)
+from ..numerics.types import Real, RealOrNone, Scalar, in_numpy, with_fields
 from ..numerics.units import meaning, real, unit
 from ..statics.empty_places import solution_with_empty_places, spread_elements
 from ..statics.service_warning import turns_against_load
@@ -107,9 +99,6 @@ LIFE_OUTPUTS = (
     "damage_share",
 )
 """Numbers of a `Life` that a sweep may keep."""
-
-MORE_OUTPUTS = "limit_ratio", "raceway_damage"
-"""Numbers besides from which verdicts and the use of a life follow."""
 
 _MILLION = 1e6
 _RATED = "published for the `designation`, else from the geometry"
@@ -362,7 +351,7 @@ def rating_life(
     *,
     speed: Speed | None = None,
     lamina_load: Float[Array | np.ndarray, "element 2 lamina"] | None = None,
-    oscillation: Number | None = None,
+    oscillation: Scalar | float | None = None,
 ) -> Life:
     """Rating life of a solved bearing by ISO 281 and ISO/TS 16281.
 
@@ -387,9 +376,8 @@ def rating_life(
 
     Raises:
         TypeError: For a bearing in place of an element, or text in place of numbers.
-        ValueError: For conditions or an amplitude out of range, sets of unlike rows,
-            several solutions at once (map over them), or fewer than 30 laminae of a
-            roller.
+        ValueError: For numbers out of range, sets of unlike rows, several solutions at
+            once (map over them), or fewer than 30 laminae of a roller.
 
     Source: ISO 281:2007; ISO/TS 16281:2008 (`reference_life`); ISO 76:2006;
         oscillations as in `life.oscillation`, with the film of their mean speed.
@@ -436,7 +424,7 @@ def rating_life(
     if oscillation is not None:
         ends = "oscillation", 0.0, np.pi + 1e-9, oscillation, "rad"
         in_range("rating_life", *ends, include_low=True)
-        oscillation = as_real(oscillation)
+        oscillation = jnp.asarray(oscillation, solution.force.dtype)
     given = bearing, solution, lamina_load
     if are_known(given):
         # One program for all numbers of rolling elements.
@@ -527,7 +515,7 @@ def _life(bearing, solution, *others) -> Life:
     return unless_failed(_life_of, (bearing, solution, *others), solution.converged)
 
 
-def _life_of(bearing, solution, lamina_load, conditions, speed, swing) -> Life:
+def _life_of(bearing, solution, lamina_load, conditions, speed, swing=None) -> Life:
     speed = solution.speed if speed is None else speed
     loads = lamina_load
     if loads is None:
@@ -607,14 +595,10 @@ def _life_of(bearing, solution, lamina_load, conditions, speed, swing) -> Life:
     hours = None
     if turns is not None:
         hours = _lifetime(damage * turns * (3600.0 / (2.0 * jnp.pi)))
-    alone = positive_power(jnp.sum(share, axis=2), d, n) / (_MILLION * a1)
+    alone = positive_power(jnp.sum(share, axis=2), d, n)
+    fields["raceway_damage"] = alone / (_MILLION * a1)
     return Life(
-        **fields,
-        **modified,
-        damage=damage,
-        raceway_damage=alone,
-        life_hours=hours,
-        reliability_factor=a1,
+        **fields, **modified, damage=damage, life_hours=hours, reliability_factor=a1
     )
 
 
@@ -632,7 +616,7 @@ class _RowPart(NamedTuple):
     thrust: Array
 
 
-def _rows(bearing, row_sizes, loads, rated, turning, swing) -> list[_RowPart]:
+def _rows(bearing, row_sizes, loads, rated, turning, swing=None) -> list[_RowPart]:
     """Fatigue of every row, as bearings of their own."""
     ends, parts = np.cumsum(row_sizes), []
     alone = row_ratings(bearing, rated)

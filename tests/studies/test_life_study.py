@@ -228,6 +228,8 @@ def two_cases():
         warnings=[],
         inputs={},
         settings=settings,
+        series=None,
+        row_name="case {}".format,
     )
     known = {
         name: bj.spectrum_life(cases, 1 / lives)
