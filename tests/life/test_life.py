@@ -488,7 +488,7 @@ def test_four_points_live_as_one_row_by_axial_and_as_two_by_radial_load():
         rated = bj.ratings(bearing, dynamic_capacity=c, fatigue_load_limit=900.0)
         oil = jnp.asarray(1.5), jnp.asarray(0.5)  # κ and e_C
         rows = _rows(bearing, sizes, loads, rated, turning)
-        tired = sum(_modified_damage(*row, *oil, BALLS) for row in rows)
+        tired = sum(_modified_damage(*row, *oil, BALLS).sum() for row in rows)
         return jnp.stack([sum(row.fatigue.share.sum() for row in rows), tired])
 
     of_four = numbers(four, (14,), jnp.asarray(np.concatenate([right, left], 2)), 7e4)
