@@ -58,6 +58,7 @@ OPERATING = {
 }
 """Keys that may vary without changing the design, with their quantity kinds."""
 
+_OIL = "lubricant.temperature"
 _SWING = "oscillation.amplitude", "oscillation.frequency"
 
 DESIGN = ("bearing", "set", "contact", "fit", "temperature")
@@ -189,7 +190,9 @@ class CasesKeys(Keys):
             problem = "must have one of `grid`, `file` or `spectrum`"
             raise self.table.own_error(problem)
 
-    def columns(self, path: Path) -> tuple[list["VariedKey"], dict[str, Any]]:
+    def columns(
+        self, path: Path, may_record: bool = True
+    ) -> tuple[list["VariedKey"], dict[str, Any]]:
         """Return the values of each key that varies; time and lines of a record."""
         lists, record = {}, {}
         if self.grid is not None:
@@ -197,7 +200,8 @@ class CasesKeys(Keys):
         elif self.spectrum is not None:
             found = _spectrum(self.table, self.spectrum)
         else:
-            lists = read_list(self.table, path.parent, OPERATING, record=True)
+            known = {k: v for k, v in OPERATING.items() if may_record or k != _OIL}
+            lists = read_list(self.table, path.parent, known, record=may_record)
             if "line" in lists:
                 record = {k: lists.pop(k) for k in ("time", "line")}
             found = [VariedKey(k, v, np.arange(len(v))) for k, v in lists.items()]
@@ -445,7 +449,7 @@ def _range(table, key, data) -> Any:
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 10**6:
         raise table.error(path, f"`count` is {count!r}; a whole number from 2 to 10^6")
     ends = [data["start"], data["stop"]]
-    if key in OPERATING:
+    if key in OPERATING and key != _OIL:
         start, stop = _numbers(table, VariedKey(key, ends, np.arange(2)))
         return np.linspace(start, stop, count)
     # The kind of design numbers is not known here: the unit is kept.
@@ -591,7 +595,7 @@ def _cases(table, scene, columns, design, named) -> Cases:
         name = column.key.rpartition(".")[2]
         if column.key == "hours":
             hours = values
-        elif column.key in (*_SWING, "lubricant.temperature"):
+        elif column.key in (*_SWING, _OIL):
             more[column.key] = values
         elif name in LOADS:
             load[:, LOADS.index(name)] = values
@@ -601,7 +605,7 @@ def _cases(table, scene, columns, design, named) -> Cases:
             speeds[name] = values
     if any(key in more for key in _SWING):
         speeds |= _oscillation(table, more, speeds, named, count)
-    temperature = more.get("lubricant.temperature")
+    temperature = more.get(_OIL)
     if temperature is not None:
         speeds["viscosity"] = _viscosities(table, scene, temperature)
     with table.building():
@@ -629,7 +633,7 @@ def _oscillation(table, more, speeds, named, count) -> dict[str, Any]:
 
 def _viscosities(table, scene, temperature) -> np.ndarray:
     """Return the viscosity of the oil in each case [m²/s]."""
-    key, oil = "lubricant.temperature", scene.oil
+    key, oil = _OIL, scene.oil
     if oil is None or scene.life is None or scene.life.viscosity is None:
         problem = "changes the life alone, which needs [lubricant] and"
         raise table.error(key, f"{problem} `life.contamination`")

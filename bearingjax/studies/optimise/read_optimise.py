@@ -227,6 +227,9 @@ def read_bearing_optimisation(
         if makers:
             problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
             raise top.error("cases", problem)
+        if not (cases.viscosity is None is cases.oscillation):
+            problem = "vary the oil or oscillate, which [optimise] does not know"
+            raise top.error("cases", problem)
         # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
     else:

@@ -278,7 +278,8 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     known: dict[str, Any] = {}
     columns: list[VariedKey] = []
     if "cases" in data:
-        columns = read_keys(CasesKeys, Table(data, path).table("cases")).columns(path)
+        keys = read_keys(CasesKeys, Table(data, path).table("cases"))
+        columns, _ = keys.columns(path, may_record=False)
     elsewhere = ("cases", "optimise")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
