@@ -5,17 +5,29 @@ temperature of a machine that follows the wind, written as CSV and read as a sce
 it. No two rows are alike, so every row is solved, with its own a_ISO, all its warnings
 and the damage of each raceway; nothing is binned or interpolated. The parts are timed
 by the processor's clock of one core, as others use the machine: reading and merging,
-the solves, the sum. "plain solves" is the same load solved by the sweep of 10 000 rows
-alone, without lives or warnings: the baseline of the ratio.
+the solves, the sum. "plain solves" is a sweep of 10 000 of the rows alone, without
+lives or warnings: the baseline of the ratio, 1 of it in 20 from first contact.
 
 The error is that of the damage of some rows against `solve_load` and `rating_life` one
 by one. Memory is the most that the process had.
 
-README: 1.05 million distinct rows, 20 years: not run yet |  |
+README: 20 years of ten minutes, 1.05 million rows, all different: 193 s of a core that
+others used too, 184 µs a row, and 4 s to read; damage within 3e-11 of single solves;
+1.9 GiB | 2 minutes | **missed** 1.6-fold
 
 Last run:
 
-not run yet
+                CPU s  clock s  CPU µs a row     ratio
+read and merge   3.84     9.55          3.65    0.0161
+solve and rate    193      829           184     0.812
+sum             0.132    0.636         0.126  0.000557
+plain solves      238        -           226         1
+
+1051920 rows, 1051917 of them different, 1051917 solved; damage 12.2846, within 2.8e-11
+of single solves; 1.87 GiB
+
+one core, a quarter of it: others had the rest; AMD EPYC, 2 cores, load average 9.2;
+devices: 1 cpu; jax 0.10.1
 """
 
 import os

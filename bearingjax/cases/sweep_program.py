@@ -98,7 +98,7 @@ class Task(eqx.Module):
             oiled = self.life
             if case.viscosity is not None and oiled.viscosity is not None:
                 oiled = with_fields(oiled, viscosity=case.viscosity)
-            swing = case.oscillation
+            swing: Any = case.oscillation
             life = rating_life(solution.element, solution, oiled, oscillation=swing)
             lives = life_outputs(life, self.lives)
             kept |= {name: nan_if_failed(v) for name, v in lives.items()}

@@ -258,12 +258,12 @@ def spectrum_as_dict(run: LifeRun) -> dict[str, Any]:
         found["static_safety"] = np.min(run.solved.static_safety)
         found["life_hours"] = run.asked.life_hours
         found |= verdict_as_dict(run.table.scene.life, run.verdict)
-        if run.record is None:
+        if run.record is None or run.table.series is None:
             found["damage_share"] = run.asked.damage_share
         else:
             record = {k: v for k, v in vars(run.record).items() if k != "row_damage"}
             record |= {k: np.max(run.solved.outputs[k]) for k in _LARGEST}
-            hours = np.sum(run.table.cases.hours)
+            hours = run.table.series.hours.sum()
             found["record"] = {**record, "hours": hours, "gaps": run.table.series.gaps}
     if run.record is None:
         found["columns"] = life_columns(run, exact=True)
@@ -369,7 +369,7 @@ def _record_in_words(run) -> list[Part]:
     record, series = run.record, run.table.series
     if record is None:
         return []
-    hours = float(np.sum(run.table.cases.hours))
+    hours = series.hours.sum()
     rows = {name: run.table.row_name(k) for name, k in record.rows.items()}
     most = [np.max(run.solved.outputs[k]) for k in _LARGEST]
     alone = zip(RINGS, record.raceway_damage.T, strict=True)
