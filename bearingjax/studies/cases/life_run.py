@@ -144,6 +144,8 @@ class LifeRun(Shown):
         case, hours = int(np.argmin(safety)), self.table.cases.hours
         spent = hours is not None and float(hours[case]) == 0.0
         which = f"{self.name_of(case)}{', of 0 h' if spent else ''}"
+        if self.record is not None:
+            which = self.table.row_name(self.record.rows["static_safety"])
         return f"{life_number(safety[case])} ({which})"
 
     def worst_cases(self, most: int) -> tuple[np.ndarray, np.ndarray]:
