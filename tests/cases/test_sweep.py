@@ -478,7 +478,7 @@ def test_outputs_of_a_function_are_a_dict_of_arrays():
 
     def outputs(kept):
         task = sweep_program.Task(bj.Support(), SolveOptions(), lambda _: kept, False)
-        return task.outputs(solution)
+        return task.outputs(solution, bj.Cases(np.zeros((1, 6))))
 
     with pytest.raises(TypeError, match="`outputs` returns a list; .* dict of arrays"):
         outputs([1.0])
