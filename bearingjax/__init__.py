@@ -42,6 +42,7 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
   `LifeConditions`.
 - Oil and friction: `Lubricant`, `films`, `friction_torque`.
 - Whether an answer holds: `Result`, `SolveError`, `warnings`.
+- Numbers from measurements: `identify`.
 - Scene files: `run`, `read_scene`, `SceneError`.
 - The program: `keep_programs`, `__version__`.
 
@@ -177,6 +178,7 @@ if _TYPE_CHECKING:
         studies,
         validation,
     )
+    from .decide import identify
     from .files import SceneError
     from .studies.bearing.read_scene import load_bearing, read_scene
     from .studies.study import run
@@ -198,8 +200,8 @@ __all__ = [
     "preload", "solve_load", "Support", "linearise", "refine", "sweep", "Cases",
     "stack_designs", "spectrum_life", "ratings", "dynamic_capacity", "static_capacity",
     "rating_life", "LifeConditions", "Lubricant", "films", "friction_torque", "Result",
-    "SolveError", "warnings", "run", "read_scene", "SceneError", "keep_programs",
-    "__version__",
+    "SolveError", "warnings", "identify", "run", "read_scene", "SceneError",
+    "keep_programs", "__version__",
 ]  # fmt: skip
 
 
@@ -208,6 +210,7 @@ _LATE = dict.fromkeys(
     "decide files noise optimise plot report rotor shafts skid studies validation".split()
 ) | {
     "SceneError": "files",
+    "identify": "decide",
     "load_bearing": "studies.bearing.read_scene",
     "read_scene": "studies.bearing.read_scene",
     "run": "studies.study",

@@ -86,7 +86,7 @@ def test_imports_of_modules_form_no_circle():
 
 
 STUDIES = (
-    *"bearing solve cases contact noise skid rotor shaft optimise".split(),
+    *"bearing solve cases contact noise skid rotor shaft optimise identify".split(),
     "catalogue",
     "programs",
     "validate",

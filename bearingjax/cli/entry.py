@@ -16,6 +16,7 @@ from ..studies.catalogue import command as catalogue
 from ..studies.catalogue import examples_command as examples
 from ..studies.catalogue import new_command as new
 from ..studies.contact import command as contact
+from ..studies.identify import command as identify
 from ..studies.noise import command as noise
 from ..studies.optimise import command as optimise
 from ..studies.options import add_quiet
@@ -37,6 +38,7 @@ _SOLVING = (
     sweep,
     compare,
     optimise,
+    identify,
     life,
     contact,
     skid,

@@ -4,7 +4,7 @@ import io
 import math
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ def read_list(
     kinds: Mapping[str, str],
     what: str = "cases",
     record: bool = False,
+    blank: Collection[str] = (),
 ) -> dict[str, Any]:
     """Read the columns of a list of cases.
 
@@ -32,11 +33,12 @@ def read_list(
         table: `[cases]`, or another table with the name of a `file`.
         folder: Folder of the scene.
         kinds: Quantity kinds of keys whose columns are converted to SI; other columns
-            are settings as written in a scene.
+            are settings as written in a scene. An empty kind is that of pure numbers.
         what: Name of the rows in error messages.
         record: Whether a column `time`, in a unit or of instants (ISO 8601), makes it a
             record: cells that are no numbers are NaN then, instants seconds since the
             first, and `line` has the lines of the rows.
+        blank: Keys whose empty cells are NaN.
 
     Returns:
         Values by key, in order.
@@ -58,7 +60,7 @@ def read_list(
         if timed and key == "time" and unit is None:
             found[key] = _seconds(values)
         else:
-            given = key, kind, unit, values, lines, timed
+            given = key, kind, unit, values, lines, timed, key in blank
             found[key] = _cells(table, name, *given)
     return found | ({"line": lines} if timed else {})
 
@@ -140,8 +142,13 @@ def _instant(text):
         return np.datetime64("nat")
 
 
-def _cells(table, name, key, kind, unit, values, lines, timed):
+def _cells(table, name, key, kind, unit, values, lines, timed, blank):
     """Convert the cells of a column: SI numbers of a kind, or design settings."""
+    if kind == "" and unit is None:
+        return np.array(_numbers(table, name, key, values, lines, timed, blank))
+    if kind == "":
+        problem = f"{name}: {key} is a pure number; it has no unit, [{unit}]"
+        raise table.error("file", problem)
     if kind is not None:
         if unit is None:
             example = f"{key} [{QUANTITIES[kind][1]}]"
@@ -152,7 +159,7 @@ def _cells(table, name, key, kind, unit, values, lines, timed):
         except SceneError as error:
             problem = f"{name}: the unit of {key}: {error}"
             raise table.error("file", problem) from error
-        numbers = np.array(_numbers(table, name, key, values, lines, timed))
+        numbers = np.array(_numbers(table, name, key, values, lines, timed, blank))
         return numbers * (one - zero) + zero
     values = [str(value) for value in values]
     empty = [line for line, value in zip(lines, values, strict=True) if not value]
@@ -163,11 +170,14 @@ def _cells(table, name, key, kind, unit, values, lines, timed):
     return [_parse_value(value.strip()) for value in values]
 
 
-def _numbers(table, name, key, values, lines, timed) -> Any:
+def _numbers(table, name, key, values, lines, timed, blank) -> Any:
     numbers = []
     if isinstance(values, np.ndarray) and values.dtype.kind in "fi":
         return values.astype(float)
     for line, value in zip(lines, values, strict=True):
+        if blank and not value.strip():
+            numbers.append(math.nan)
+            continue
         try:
             number = float(str(value).replace("−", "-"))
         except ValueError:

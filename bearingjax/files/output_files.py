@@ -154,7 +154,8 @@ def _name_in_errors(path: Path):
 
 
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
-    """Return the files read by a scene: itself, cases, profiles, bearings of a rotor.
+    """Return the files read by a scene: itself, cases, measurements, profiles, bearings
+    of a rotor.
 
     Args: as `read_scene`.
 
@@ -163,9 +164,10 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
-    cases = data.get("cases")
-    name = text_of(cases.get("file")) if isinstance(cases, dict) else None
-    listed = [path.parent / name] if isinstance(name, str) else []
+    tables = (("cases", "file"), ("identify", "data"))
+    owners = ((data.get(table), key) for table, key in tables)
+    names = (text_of(one.get(key)) for one, key in owners if isinstance(one, dict))
+    listed = [path.parent / name for name in names if isinstance(name, str)]
     named = *listed, *profile_files(data, path), *bearing_files(data, path)
     return [path, *(one for one in named if "\0" not in str(one))]  # refused later
 

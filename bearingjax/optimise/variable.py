@@ -190,8 +190,15 @@ def with_values(element: Design, paths: Sequence[Sequence[str]], values: Any) ->
     return with_numbers(element, {path: v for several, v in pairs for path in several})
 
 
-def check_variables(element: Design, variables: Sequence[Variable]) -> list[float]:
+def check_variables(
+    element: Design, variables: Sequence[Variable], owner: str = "optimise"
+) -> list[float]:
     """Raise unless the design allows the start and each bound by itself.
+
+    Args:
+        element: The design.
+        variables: Its variables.
+        owner: Function that was called, for messages.
 
     Returns:
         The first values [SI].
@@ -202,13 +209,13 @@ def check_variables(element: Design, variables: Sequence[Variable]) -> list[floa
             number is named twice.
     """
     if not variables:
-        raise ValueError("optimise: `variables` is empty; name at least one.")
-    all_of_class("optimise", "variables", variables, Variable, "Variables")
+        raise ValueError(f"{owner}: `variables` is empty; name at least one.")
+    all_of_class(owner, "variables", variables, Variable, "Variables")
     start = [variable.start_in(element) for variable in variables]
     paths = [path for variable in variables for path in variable.path]
     twice = sorted({path for path in paths if paths.count(path) > 1})
     if twice:
-        raise ValueError(f"optimise: {', '.join(twice)} is a variable twice.")
+        raise ValueError(f"{owner}: {', '.join(twice)} is a variable twice.")
     where = [variable.path for variable in variables]
     with_values(element, where, start)
     for k, variable in enumerate(variables):

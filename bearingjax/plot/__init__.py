@@ -7,8 +7,8 @@ Names
 -----
 
 - Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`,
-  `optimise_overview`, `noise_overview`, `skid_overview`, `rotor_overview`,
-  `shaft_overview`, `validation_overview`.
+  `optimise_overview`, `identify_overview`, `noise_overview`, `skid_overview`,
+  `rotor_overview`, `shaft_overview`, `validation_overview`.
 - Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
 - A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
@@ -33,6 +33,7 @@ from .contact_stress import contact_stress
 from .drawings.drawing import drawing
 from .drawings.section import cross_section
 from .drawings.sections import cross_sections
+from .identify_overview import identify_overview
 from .life import life_overview
 from .load import load_displacement, load_zone, stiffness_over_speed
 from .noise import (
@@ -77,8 +78,9 @@ from .validation import validation_overview
 
 __all__ = [
     "overview", "sweep_overview", "life_overview", "contact_overview",
-    "optimise_overview", "noise_overview", "skid_overview", "rotor_overview",
-    "shaft_overview", "validation_overview", "drawing", "cross_section",
+    "optimise_overview", "identify_overview", "noise_overview", "skid_overview",
+    "rotor_overview", "shaft_overview", "validation_overview", "drawing",
+    "cross_section",
     "cross_sections", "rotor_section", "profile", "load_zone",
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",

@@ -47,6 +47,7 @@ from .contact.read import (
     RollerKeys,
     SliceLawKeys,
 )
+from .identify.read_identify import IdentifyKeys
 from .noise.read import VibrationKeys
 from .noise.read_deviations import DeviationsKeys
 from .optimise.read_optimise import OptimiseKeys
@@ -127,6 +128,7 @@ def _bearing_scene() -> dict[str, Any]:
         "output": _ref("output"),
         "cases": _ref("cases"),
         "optimise": table_schema(OptimiseKeys),
+        "identify": table_schema(IdentifyKeys),
         "cage": table_schema(Cage),
         "dynamics": table_schema(DynamicsKeys),
         "deviations": table_schema(DeviationsKeys),

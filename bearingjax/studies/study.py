@@ -11,6 +11,8 @@ from .cases.read_cases import read_cases
 from .cases.sweep_run import run_cases
 from .contact.read import read_contact
 from .contact.run import run_contact
+from .identify.read_identify import read_identification
+from .identify.run import run_identification
 from .noise.read import read_noise
 from .noise.run import run_noise
 from .optimise.read_shaft_optimise import read_optimisation
@@ -45,6 +47,7 @@ STUDIES = {
     "noise": Study(frozenset({"vibration"}), read_noise, run_noise),
     "skid": Study(frozenset({"dynamics"}), read_skid, run_skid),
     "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
+    "identify": Study(frozenset({"identify"}), read_identification, run_identification),
     "life": Study(frozenset({"cases", "life"}), read_cases, run_life),
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),
@@ -78,13 +81,13 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         By the tables of the scene: `ShaftRun` of [shaft.NAME], `OptimisedDesign` if it
         has [optimise] too, `RotorRun` of [rotor], a list of `SliceComparison` of
         [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `OptimisedDesign`
-        of [optimise], `LifeRun` of [cases] and [life], `Sweep` of [cases], else the
-        `Solution` of the bearing under its load. Read its result code: a failed solve
-        does not raise, except at the start of an optimisation.
+        of [optimise], `Identified` of [identify], `LifeRun` of [cases] and [life],
+        `Sweep` of [cases], else the `Solution` of the bearing under its load. Read its
+        result code: a failed solve does not raise, except at the start of a search.
 
     Raises:
         SceneError: If the scene cannot be read.
-        SolveError: If the design from which an optimisation starts does not solve.
+        SolveError: If the design from which a search starts does not solve.
     """
     settings = list(settings)
     study = STUDIES[study_of(source, settings)]

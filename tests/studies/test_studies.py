@@ -62,6 +62,7 @@ SCENES = {
     "sweep": "load_map",
     "compare": "tapered",
     "optimise": "fujiwara_kawase",
+    "identify": "identify_clearance",
     "life": "life_spectrum",
     "contact": "taper_contact",
     "skid": "skid_axial",
@@ -74,6 +75,7 @@ STATUS = {
     " a result for each case), 130 interrupted (what is solved is kept).",
     "compare": "0 all solved, 2 bad input, 3 some not solved.",
     "optimise": "0 optimised, 2 bad input, 3 not solved or not converged.",
+    "identify": "0 identified, 2 bad input, 3 not solved or not converged.",
     "rotor": "0 solved, 2 bad input, 3 not solved, or only in part.",
     "shaft": "0 solved, 2 bad input, 3 not solved, or only in part.",
 }

@@ -210,7 +210,7 @@ def scene_of(
     """
     top = Table(data, path, places=places)
     # Tables of other commands.
-    top.skip("cases", "optimise", "cage", "dynamics")
+    top.skip("cases", "optimise", "identify", "cage", "dynamics")
     top.skip("deviations", "vibration")
     table = top.table("bearing", required=True)
     table.know(*other_keys)
@@ -237,8 +237,8 @@ def scene_of(
     scene = _scene(top, path.stem, bearing, preload, catalogue, warned)
     top.finish()
     warned = scene.warnings
-    # Bearings of machines and of sweeps may get their speeds elsewhere.
-    alone = places is None and "cases" not in data
+    # Bearings of machines, sweeps and measurements may get their speeds elsewhere.
+    alone = places is None and not {"cases", "identify"} & data.keys()
     if alone and scene.speed is None:
         warned += control_warnings(data)
     return dataclasses.replace(scene, inputs=top.echo(), warnings=warned)

@@ -243,10 +243,12 @@ def case_table(data: dict[str, Any], path: Path) -> CaseTable:
     data = _fill_first_values(data, columns, path.name)
     scene = scene_of(data, path)
     for column in columns:
-        _check_key(table, column.key, scene)
+        check_varied_key(table, column.key, scene)
     design_groups, design, made, warned = _designs(data, path, columns, scene)
     _check_outputs(table, outputs, design_groups)
-    cases, series = _cases(table, scene, columns, design, named), None
+    count = columns[0].index.size
+    cases = cases_of_columns(table, scene, columns, design, count, named)
+    series = None
     if record:
         how: Any = {"gaps": keys.gaps, "row_name": named}
         with table.building(time="file"):
@@ -279,7 +281,7 @@ def _fill_first_values(
     varied interference need not be repeated in [fit]."""
     begun = copy.deepcopy(data)
     for column in columns:
-        if _makes_design(column.key) and not _has_key(data, column.key):
+        if makes_design(column.key) and not _has_key(data, column.key):
             assign(begun, column.key, column.values[column.index[0]], file)
     return begun
 
@@ -297,7 +299,7 @@ def _has_key(data: dict[str, Any], key: str) -> bool:
     return True
 
 
-def _makes_design(key: str) -> bool:
+def makes_design(key: str) -> bool:
     """Whether a key belongs to a table that defines the design."""
     return "." in key and key.partition(".")[0] in DESIGN
 
@@ -381,7 +383,8 @@ def _is_whole(field) -> bool:
     return "unit" in field.metadata and all(size.isdecimal() for size in sizes)
 
 
-def _check_key(table, key, scene):
+def check_varied_key(table: Table, key: str, scene: Scene) -> None:
+    """Raise SceneError unless a key of the scene can vary from case to case."""
     if key in OPERATING:
         name = key.rpartition(".")[2]
         if key.startswith("operating.prescribed.") and name in (scene.free or ()):
@@ -391,7 +394,7 @@ def _check_key(table, key, scene):
             problem = f"{name} acts on {freedom}, which is prescribed; choose one"
             raise table.error(key, problem)
         return
-    if _makes_design(key):
+    if makes_design(key):
         return
     allowed = ", ".join(
         ["operating.load.Fx", "operating.prescribed.ux", "operating.inner_speed"]
@@ -576,8 +579,24 @@ def _changes_fit(data, key) -> bool:
     return "fit" in data and key.endswith("_speed")
 
 
-def _cases(table, scene, columns, design, named) -> Cases:
-    count = columns[0].index.size
+def cases_of_columns(
+    table: Table,
+    scene: Scene,
+    columns: Iterable[VariedKey],
+    design: Any,
+    count: int,
+    named: Callable[[int], str] = "case {}".format,
+) -> Cases:
+    """Return so many cases: those of the scene, with what varies.
+
+    Args:
+        table: For errors.
+        scene: The scene.
+        columns: What varies.
+        design: Which of several designs each case has, or `None`.
+        count: Number of cases.
+        named: Name of a case in errors.
+    """
     load = np.tile(np.array(scene.load), (count, 1))
     prescribed: dict[str, Any] = {
         name: np.full(count, value) for name, value in scene.prescribed.items()

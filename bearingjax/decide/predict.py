@@ -1,0 +1,235 @@
+"""Results of cases as a function of the numbers of a design."""
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Float
+
+from ..cases.cases import Cases
+from ..cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD, label_output
+from ..cases.sweep import SUMMARIES, Keep, n_designs
+from ..cases.sweep_program import Task
+from ..design import rows_of
+from ..design.bearing_set import bearings_of
+from ..design.places import element_places, with_places
+from ..element.bearing_element import BearingElement
+from ..files.table import not_among
+from ..fits import radial_clearance
+from ..life.life import LIFE_OUTPUTS, Life, LifeConditions
+from ..numerics.labels import stated_axes
+from ..numerics.result import Result
+from ..numerics.types import with_fields
+from ..optimise.design_problem import CHUNK
+from ..optimise.system import Design, describe_failure, prepare, solved_case
+from ..optimise.variable import with_values
+from ..statics import Installed, Solution, SolveOptions, Support
+from ..statics.preload import remaining_preload
+from ..statics.solution import solution_kind
+
+_STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD)
+_COUNTED = ("element", "row")
+"""Axes whose length is that of the bearing."""
+
+
+class Place(NamedTuple):
+    """Where a number of a case stands: in which output of a sweep, at which entry,
+    counted along all axes; and its SI unit, empty for a pure number."""
+
+    output: str
+    entry: int
+    unit: str
+
+
+class CaseModel(eqx.Module):
+    """Numbers of solved cases, as a function of numbers of the design.
+
+    A number is named as its column in the table of a sweep, without the unit:
+    "displacement_inner_uz", "peak_pressure", "life_hours"; of the moving ring
+    "displacement_uz" and "stiffness_uz" will do. Those of a failed case are NaN.
+
+    Attributes:
+        design: The bearing, an element or on its seats (`Installed`); several of one
+            structure, from `stack`, among which `Cases(design=...)` chooses.
+        support: As in `sweep`.
+        options: Numerics of the load solves.
+        life: Conditions of a life among the numbers.
+        paths: Dotted paths of the numbers that are given, a sequence each.
+        places: The numbers that are returned, by name.
+
+    Traced: all numbers. Static: paths, places.
+
+    Raises:
+        TypeError: If the design is another object.
+    """
+
+    design: Any
+    support: Support = Support()
+    options: SolveOptions = SolveOptions()
+    life: LifeConditions | None = None
+    paths: tuple[tuple[str, ...], ...] = eqx.field(static=True, default=())
+    places: tuple[tuple[str, Place], ...] = eqx.field(static=True, default=())
+
+    def __check_init__(self):
+        if not isinstance(self.design, BearingElement | Installed):
+            raise TypeError(
+                f"CaseModel: `design` is {type(self.design).__name__}; it must be a"
+                " BearingElement or Installed; of a shaft or a rotor give a function"
+                " (values, cases) -> numbers by name."
+            )
+
+    def design_of(self, case: Any = 0) -> Any:
+        """Return one of several designs, or the only one; `case` is its number."""
+        if n_designs(_drawing(self.design)) is None:
+            return self.design
+        return jax.tree.map(lambda leaf: leaf[case], self.design)
+
+    def place(self, name: str) -> Place:
+        """Return where a number stands.
+
+        Raises:
+            ValueError: If there is none of this name.
+        """
+        known = dict(self._known(name))
+        if name not in known:
+            raise ValueError(not_among(name, [*known] or [n for n, _ in self._axes()]))
+        return known[name]
+
+    def for_numbers(
+        self, paths: Sequence[Sequence[str]], names: Sequence[str]
+    ) -> "CaseModel":
+        """Return the model as a function of numbers of the design, of some names.
+
+        Rows have `PLACES`, so that bearings of a kind share one program.
+
+        Args:
+            paths: Dotted paths of each number in the design.
+            names: Names of the numbers that are wanted.
+
+        Raises:
+            ValueError: As `place`.
+        """
+        model = self
+        if n_designs(_drawing(self.design)) is None:
+            model = dataclasses.replace(self, design=_with_places(self.design))
+        found = tuple((name, model.place(name)) for name in names)
+        return dataclasses.replace(model, paths=tuple(map(tuple, paths)), places=found)
+
+    def __call__(
+        self, values: Float[Array, " number"], cases: Cases
+    ) -> dict[str, Float[Array, " case"]]:
+        """The numbers by name (case,) [SI], at numbers of the design [SI]."""
+        shared = self._made(values, None) if cases.design is None else None
+
+        def numbers(case):
+            design = self._made(values, case.design) if shared is None else shared
+            return self._numbers(solved_case(design, case, self.support, self.options))
+
+        if cases.count <= CHUNK:
+            return jax.vmap(numbers)(cases)
+        return lax.map(numbers, cases, batch_size=CHUNK)
+
+    def why_failed(self, values: Any, cases: Cases, case: int) -> str:
+        """Reason why a case fails at concrete numbers, in words."""
+        one = jax.tree.map(lambda leaf: leaf[case], cases)
+        design = self._made(np.asarray(values), one.design)
+        solved = solved_case(design, one, self.support, self.options)
+        label = Result(int(solved.result)).label
+        return f"case {case}: {label}: {describe_failure(design, solved)}"
+
+    def _made(self, values, number) -> Design:
+        design = self.design_of(0 if number is None else number)
+        return prepare(with_values(design, self.paths, values), None)
+
+    def _numbers(self, solution: Solution) -> dict[str, Array]:
+        wanted = dict.fromkeys(place.output for _, place in self.places)
+        lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
+        life = LifeConditions() if lives and self.life is None else self.life
+        keep = Keep(tuple(name for name in wanted if name not in (*lives, *_STATES)))
+        task = Task(self.support, self.options, keep, False, lives, life)
+        kept = task.outputs(solution)
+        if OPERATING_CLEARANCE in wanted:
+            row = rows_of(solution.element.bearing)[0].bearing
+            kept[OPERATING_CLEARANCE] = radial_clearance(row)
+        if OPERATING_PRELOAD in wanted:
+            given = solution.element, solution.speed
+            kept[OPERATING_PRELOAD] = remaining_preload(*given, throw=False)
+        found, real = {}, solution.displacement.dtype
+        for name, place in self.places:
+            value = jnp.ravel(kept[place.output])[place.entry].astype(real)
+            found[name] = jnp.where(solution.converged, value, jnp.nan)
+        return found
+
+    def _axes(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield outputs of a case with their axes, but for those along a roller."""
+        for kind in (solution_kind(_drawing(self.design).choices), Life):
+            for field in dataclasses.fields(kind):
+                axes = stated_axes(field.type)
+                known = kind is not Life or field.name in LIFE_OUTPUTS
+                if known and "unit" in field.metadata and axes is not None:
+                    if all(a in _COUNTED or "=" in a for a in axes):
+                        yield field.name, axes
+        yield from dict.fromkeys((*SUMMARIES, *_STATES), ()).items()
+
+    def _known(self, name: str) -> Iterator[tuple[str, Place]]:
+        """Yield the numbers of the outputs with which a name begins, by name."""
+        rows = bearings_of(_drawing(self.design_of()).bearing)
+        places, counts = (
+            sum(r.n_places for r in rows),
+            [int(r.n_elements) for r in rows],
+        )
+        sizes = {"element": places, "row": len(rows)}
+        there = np.arange(places)  # behind the elements of a row may be empty places
+        if sum(counts) < places:
+            there = element_places(tuple(counts))[0]
+        own = f"{self.support.moving_ring}_"
+        for output, axes in self._axes():
+            if name != output and not name.startswith(f"{output}_"):
+                continue
+            shape = [sizes.get(a) or int(a.rpartition("=")[2]) for a in axes]
+            entries = np.arange(math.prod(shape)).reshape(1, *shape)
+            entries = entries[:, there] if axes[:1] == ("element",) else entries
+            for header, labels, column in label_output(output, entries).columns(output):
+                title, _, unit = header.removesuffix("]").partition(" [")
+                place = Place(output, int(column[0]), unit)
+                yield title, place
+                if labels and all(label.startswith(own) for label in labels):
+                    short = [label.removeprefix(own) for label in labels]
+                    short = short[:1] if len(set(short)) == 1 else short
+                    yield "_".join([output, *short]), place
+
+
+def stack(designs: Sequence[Design]) -> Any:
+    """Return designs of one structure as one, whose numbers have a leading axis.
+
+    Args:
+        designs: Elements, or bearings on their seats.
+
+    Raises:
+        ValueError: If there are none, or their structures differ.
+    """
+    padded = [_with_places(design) for design in designs]
+    kinds = {
+        (jax.tree.structure(one), tuple(np.shape(x) for x in jax.tree.leaves(one)))
+        for one in padded
+    }
+    if len(kinds) != 1:
+        problem = "of one structure: classes, parts and rows must be the same"
+        raise ValueError(f"stack: {len(padded)} designs; they must be {problem}.")
+    return jax.tree.map(lambda *leaves: jax.device_put(np.stack(leaves)), *padded)
+
+
+def _drawing(design: Any) -> BearingElement[Any]:
+    return design.drawing if isinstance(design, Installed) else design
+
+
+def _with_places(design: Any) -> Any:
+    if isinstance(design, Installed):
+        return with_fields(design, drawing=_with_places(design.drawing))
+    return with_fields(design, bearing=with_places(design.bearing))

@@ -1,0 +1,1 @@
+"""Numbers of a bearing from measurements."""

@@ -1,0 +1,267 @@
+"""The [identify] table of a scene, and its measured table."""
+
+import copy
+import dataclasses
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...cases.cases import Cases
+from ...decide import CaseModel, stack
+from ...files.column_list import read_list
+from ...files.quantity import SceneError, kind_of
+from ...files.scene_file import assign, find_scene, parse_bearing
+from ...files.schema import Keys, read_keys, scene_key
+from ...files.table import Table
+from ...files.text_file import read_columns
+from ...life.life import LIFE_OUTPUTS
+from ...numerics.units import unit_of
+from ...optimise import Variable
+from ..bearing.life_ratings import life_conditions
+from ..bearing.read_fit import read_temperature
+from ..bearing.read_scene import Scene, scene_of
+from ..cases.read_cases import (
+    OPERATING,
+    VariedKey,
+    cases_of_columns,
+    check_varied_key,
+    makes_design,
+)
+from ..optimise.read_optimise import installed_numbers, read_variables
+
+ERROR = ".error"
+"""Ends the header of a column of standard deviations."""
+
+_WARMER = 100.0
+"""A larger error of a temperature was written as one, in °C [K]."""
+
+
+def _tables(about: str, **rest: Any) -> Any:
+    """Return a key for a table of keys that are names."""
+    json = {"type": "object"}
+    return scene_key(about, reader=lambda t, name: t.table(name), json=json, **rest)
+
+
+class IdentifyKeys(Keys):
+    about = "[identify]: numbers of the bearing from measurements"
+
+    data: str | None = scene_key(
+        "path of a CSV with a row for each case: conditions by their keys, measured"
+        " numbers by their column in the table of a sweep, each with its unit",
+        otherwise="that of `--data`",
+    )
+    unknowns: Any = _tables(
+        "numbers that are not known, by their key in the scene, in quotes:"
+        " `{ from, to, start, prior, prior_error }`"
+    )
+    errors: Any = _tables(
+        "standard deviation of the readings of each column, unless the table has it",
+        default=None,
+    )
+    errors_known: bool = scene_key(
+        "whether the standard deviations hold; if not, up to a factor", default=True
+    )
+    wanted: tuple[str, ...] | None = scene_key(
+        "results that are predicted with their bands, or unknowns, which further"
+        " readings should tell better",
+        otherwise="all unknowns",
+    )
+    candidates: Any = _tables(
+        "readings that could be taken, each with its standard deviation", default=None
+    )
+
+
+@dataclasses.dataclass(frozen=True)
+class Identification:
+    """What [identify] asks for, as in `decide.identify`.
+
+    Attributes:
+        scene: The scene without [identify].
+        model, cases, unknowns, readings, errors, wanted, candidates, errors_known: As
+            in `decide.identify`; unknowns are named as in the scene.
+        units: SI units of all numbers, by name.
+        inputs: The scene as it was read, in SI, with [identify].
+    """
+
+    scene: Scene
+    model: CaseModel
+    cases: Cases
+    unknowns: tuple[Variable, ...]
+    readings: dict[str, Any]
+    errors: dict[str, Any] | None
+    wanted: tuple[str, ...]
+    candidates: dict[str, float] | None
+    errors_known: bool
+    units: dict[str, str]
+    inputs: dict[str, Any] = dataclasses.field(repr=False)
+
+
+def read_identification(
+    source: str | Path, settings: Iterable[str] = ()
+) -> Identification:
+    """Read a scene with [identify], and its measured table.
+
+    Args, raises: as `read_scene`.
+    """
+    path = find_scene(source)
+    data = parse_bearing(path, settings)
+    if "identify" not in data:
+        raise SceneError(f"{path.name}: `identify` is missing; it names `unknowns`")
+    top = Table(data, path)
+    if "cases" in data:
+        problem = "stands beside [identify], whose cases are the rows of its data"
+        raise top.error("cases", problem)
+    keys = read_keys(IdentifyKeys, top.table("identify"))
+    table, wanted = keys.table, keys.wanted or ()
+    if keys.data is None:
+        raise table.error("data", "is missing; name the measured table, or give --data")
+    held = Table({"file": keys.data}, path, "identify", {"file": "identify.data"})
+    scene = scene_of(data, path)
+    model = CaseModel(scene.installed, scene.support, scene.solve_options)
+    columns, readings, units = _measured(held, path, model)
+    table.fill("data", str((path.parent / keys.data).resolve()))
+    for column in columns:
+        if column.key in keys.unknowns:
+            problem = "is a column of the measured table too"
+            raise keys.unknowns.error(column.key, problem)
+        check_varied_key(held, column.key, scene)
+    designs, design = _designs(data, path, columns, scene)
+    unknowns, priors = _unknowns(keys.unknowns, designs[0], installed_numbers(scene))
+    units |= {one.name: unit_of(designs[0], one.path[0]) for one in unknowns}
+    for name in wanted:
+        if name not in units:
+            units[name] = _unit(table, "wanted", model, name)
+    for name in () if keys.candidates is None else keys.candidates.keys():
+        if name not in units:
+            units[name] = _unit(keys.candidates, name, model, name)
+    lives = {*readings, *wanted} & {*LIFE_OUTPUTS}
+    with held.building():
+        model = dataclasses.replace(
+            model,
+            design=stack(designs) if len(designs) > 1 else designs[0],
+            life=life_conditions(scene) if lives else None,
+        )
+    count = len(next(iter(readings.values())))
+    errors = _errors(table, keys.errors, readings, units)
+    if errors is None and priors:
+        raise table.error("errors", "are missing; beside a prior they must be known")
+    candidates = _positive_numbers(keys.candidates, units)
+    table.finish()
+    return Identification(
+        scene,
+        model,
+        cases_of_columns(held, scene, columns, design, count),
+        unknowns,
+        readings | {name: value for name, (value, _) in priors.items()},
+        errors and errors | {name: error for name, (_, error) in priors.items()},
+        wanted,
+        candidates or None,
+        keys.errors_known,
+        units,
+        {**scene.inputs, "identify": table.echo()},
+    )
+
+
+def _measured(held: Table, path: Path, model: CaseModel) -> Any:
+    """Return conditions, measured columns with those of their errors, and units."""
+    name, kinds, units = str(held.text("file")), dict(OPERATING), {}
+    try:
+        header = read_columns(path.parent / name)[0][1]
+    except (ValueError, IndexError):
+        header = []  # told by `read_list`
+    for title in header:
+        key = title.partition("[")[0].strip()
+        if key not in OPERATING and not makes_design(key.removesuffix(ERROR)):
+            unit = _unit(held, "file", model, key.removesuffix(ERROR), f"{name}: ")
+            units[key.removesuffix(ERROR)] = unit
+            kinds[key] = kind_of(unit) if unit else ""
+    blank = kinds.keys() - OPERATING.keys()
+    found = read_list(held, path.parent, kinds, "readings", blank)
+    read = {key: values for key, values in found.items() if key in blank}
+    alone = [key for key in read if key.removesuffix(ERROR) not in read]
+    if alone or not read:
+        problem = (
+            f"{alone[0]} has no column of readings" if alone else "measures nothing"
+        )
+        raise held.error("file", f"{name}: {problem}")
+    rest = [(key, values) for key, values in found.items() if key not in read]
+    columns = [VariedKey(key, v, np.arange(len(v))) for key, v in rest]
+    return columns, read, units
+
+
+def _unit(table: Any, key: str, model: CaseModel, name: str, head: str = "") -> str:
+    try:
+        unit = model.place(name).unit
+        if unit:
+            kind_of(unit)
+        return unit
+    except ValueError as error:
+        raise table.error(key, f"{head}{error}") from error
+    except KeyError:
+        raise table.error(key, f"{head}{name} cannot be measured") from None
+
+
+def _designs(data, path, columns, scene) -> tuple[list[Any], np.ndarray | None]:
+    """Return the bearings that the cases have, and which one each has."""
+    varied = [c for c in columns if makes_design(c.key)]
+    if not varied:
+        return [scene.installed], None
+    rows = list(zip(*(map(str, c.values) for c in varied), strict=True))
+    number = {row: k for k, row in enumerate(dict.fromkeys(rows))}
+    designs = []
+    for row in number:
+        changed = copy.deepcopy(data)
+        settings = {c.key: c.values[rows.index(row)] for c in varied}
+        for key, value in settings.items():
+            assign(changed, key, value, path.name)
+        designs.append(scene_of(changed, path, settings).installed)
+    return designs, np.array([number[row] for row in rows])
+
+
+def _unknowns(table: Table, design: Any, numbers) -> Any:
+    """Return the unknowns, and their priors with errors by name."""
+    if not table.keys():
+        raise table.own_error("is empty; name one unknown at least")
+    unknowns, priors = read_variables(table, design, numbers), {}
+    for one in unknowns:
+        part, unit = table.table(one.name), unit_of(design, one.path[0])
+        error = part.real("prior_error", unit, None)
+        if unit == "K":
+            prior = read_temperature(part, "prior", None)
+        else:
+            prior = part.real("prior", unit, None)
+        if (prior is None) != (error is None):
+            given, other = ("prior", "prior_error")[:: 1 if error is None else -1]
+            raise part.error(given, f"is given without `{other}`")
+        if unit == "K" and error is not None and error > _WARMER:
+            raise part.error("prior_error", "is a difference; write it in K")
+        if prior is not None:
+            priors[one.name] = prior, _positive(part, "prior_error", unit)
+    return unknowns, priors
+
+
+def _errors(table: Table, given: Table | None, read: dict, units: dict) -> Any:
+    """Take the columns of errors out of those that were read; return all errors."""
+    found = {k.removesuffix(ERROR): read.pop(k) for k in [*read] if k.endswith(ERROR)}
+    for name in () if given is None else given.keys():
+        if name not in read or name in found:
+            twice = "has a column of its own" if name in found else "is not measured"
+            raise given.error(name, twice)  # pyright: ignore
+    found |= _positive_numbers(given, units)
+    if found and (lacking := [name for name in read if name not in found]):
+        raise table.error("errors", f"has no standard deviation of {lacking[0]}")
+    return found or None
+
+
+def _positive_numbers(table: Table | None, units: dict[str, str]) -> dict[str, float]:
+    names = () if table is None else table.keys()
+    return {name: _positive(table, name, units[name]) for name in names}
+
+
+def _positive(table: Any, name: str, unit: str) -> float:
+    value = table.real(name, unit)
+    if not value > 0:
+        raise table.error(name, f"{table.raw(name)} is not above 0")
+    return value

@@ -1,0 +1,167 @@
+"""Identify numbers of the bearing of a scene, and report them."""
+
+from typing import Any
+
+import numpy as np
+
+from ...cases.sweep_table import case_columns
+from ...decide.identify import Identified, identify
+from ...files.scene_errors import scene_errors
+from ...numerics.labels import column_header
+from ...numerics.units import CELSIUS, display_unit, shown_count
+from ...report.json_output import run_json
+from ...report.report_model import Column, Grid, Report
+from ..bearing.credibility import credibility_section
+from .read_identify import Identification
+
+_MOST, _LONGEST = 5, 40
+"""Most residuals and further readings, and most predictions, that are shown."""
+
+
+def run_identification(task: Identification) -> Identified:
+    """Identify the unknowns of a scene.
+
+    Args:
+        task: From `read_identification`.
+
+    Raises:
+        SolveError: If a measured case does not solve at the start.
+        SceneError: For readings that cannot tell the unknowns.
+    """
+    with scene_errors(f"{task.scene.name}: [identify]"):
+        return identify(
+            task.model,
+            task.cases,
+            task.unknowns,
+            task.readings,
+            task.errors,
+            wanted=task.wanted,
+            candidates=task.candidates,
+            known_errors=task.errors_known,
+        )
+
+
+def _rows(heads: str, rows: list[tuple], units: Any = None, last: int = 0) -> Grid:
+    """Return a table by rows; its last columns have units, one for each row."""
+    names, columns = heads.split(", "), list(zip(*rows, strict=True))
+    pairs = enumerate(zip(names, columns, strict=True))
+    first = len(names) - last
+    return Grid([Column(n, v, units if k >= first else "") for k, (n, v) in pairs])
+
+
+def identification_report(task: Identification, found: Identified) -> Report:
+    """Return the readable report.
+
+    Args:
+        task: From `read_identification`.
+        found: Its result, converged.
+    """
+    read = found.residual.items()
+    rows = [(n, k) for n, v in read for k in np.flatnonzero(np.isfinite(v)).tolist()]
+    head = (
+        f"{task.scene.name}: {shown_count(len(found.names), 'number')} from"
+        f" {shown_count(len(rows), 'reading')} in"
+        f" {shown_count(task.cases.count, 'case')}; {found.message}"
+    )
+    told = list(found.untold) or ["the readings tell every unknown"]
+    missed, error, value = found.residual, found.error, found.prediction
+    rows = sorted(rows, key=lambda at: -abs(missed[at[0]] / error[at[0]])[at[1]])[
+        :_MOST
+    ]
+    largest = [(n, k, missed[n][k], error[n][k]) for n, k in rows]
+    names = [Column("", found.names), *map(Column, found.names, found.correlation.T)]
+    sections: dict[str, Any] = {
+        "Estimates": [head, "", _estimates(task, found)],
+        "Correlations": [Grid(names)],
+        "What the readings tell": told,
+        "Fit": [
+            _fit_words(found),
+            "",
+            _rows(
+                "largest residuals, case, measured less predicted, error",
+                largest,
+                [task.units[name] for name, *_ in largest],
+                2,
+            ),
+        ],
+    }
+    wanted = [name for name in task.wanted if name not in found.names]
+    if wanted:
+        at = [(n, k) for n in wanted for k in range(value[n].size)][:_LONGEST]
+        rows = [(n, k, value[n][k], found.prediction_error[n][k]) for n, k in at]
+        units = [task.units[name] for name, _ in at]
+        grid = _rows("prediction, case, value, standard error", rows, units, 2)
+        sections["Predictions"] = [grid]
+    of = ", ".join(task.wanted) or "all unknowns, on average"
+    best = [(n, k, f"{100 * drop:.3g} %") for n, k, drop in found.candidates[:_MOST]]
+    sections["Further readings"] = [
+        f"share of the variance of {of} that one more reading would take away",
+        _rows("reading, case, share", best),
+    ]
+    bearing = "", task.scene.element, task.cases.load
+    sections["Credibility"] = credibility_section("solve", [bearing])
+    return Report(sections, [*task.scene.warnings, *found.warnings])
+
+
+def _estimates(task: Identification, found: Identified) -> Grid:
+    rows = []
+    given = found.names, found.estimate, found.standard_error, found.interval
+    for name, value, error, ends in zip(*given, strict=True):
+        unit = task.units[name]
+        factor, shown = display_unit(unit, float(abs(value)))
+        zero, shown = (CELSIUS, "°C") if unit == "K" else (0.0, shown)
+        value, *ends = (factor * (x - zero) for x in (value, *ends))
+        rows.append((name, value, factor * error, *ends, shown))
+    return _rows("unknown, estimate, standard error, 95 % from, to, unit", rows)
+
+
+def _fit_words(found: Identified) -> str:
+    words = f"chi-square {found.chi_square:.4g} with"
+    words += f" {shown_count(found.degrees_of_freedom, 'degree')} of freedom"
+    if np.isfinite(found.probability):
+        return (
+            f"{words}: so large by chance in {100 * found.probability:.3g} % of cases"
+        )
+    if found.error_scale != 1.0:
+        words += f"; the errors are {found.error_scale:.3g} times the stated ones"
+    return words
+
+
+def identification_as_dict(task: Identification, found: Identified) -> dict[str, Any]:
+    """Return the JSON, in SI.
+
+    Args:
+        task: From `read_identification`.
+        found: Its result.
+    """
+    numbers = {name: getattr(found, name) for name in _IN_JSON.split()}
+    for name in ("estimate", "standard_error", "interval"):
+        numbers[name] = dict(zip(found.names, numbers[name].tolist(), strict=True))
+    numbers["candidates"] = [one._asdict() for one in found.candidates]
+    warned = [*task.scene.warnings, *found.warnings]
+    return run_json(numbers, warned, task.inputs)
+
+
+_IN_JSON = """result message estimate standard_error interval correlation identifiable
+untold singular_values residual error prediction prediction_error chi_square
+degrees_of_freedom probability error_scale nonlinearity"""
+
+
+def identification_columns(task: Identification, found: Identified) -> dict[str, Any]:
+    """Return the table, a row for each case: conditions, what was measured, what is
+    predicted; priors are none of its columns.
+
+    Args:
+        task: From `read_identification`.
+        found: Its result.
+    """
+    columns: dict[str, Any] = dict(case_columns(task.cases))
+    for name, values in found.prediction.items():
+        parts = {".predicted": values, ".predicted_error": found.prediction_error[name]}
+        if name in found.residual:
+            parts = {"": task.readings[name], **parts}
+            parts |= {".residual": found.residual[name], ".error": found.error[name]}
+        if name not in found.names:
+            unit = task.units[name]
+            columns |= {column_header(name + k, unit): v for k, v in parts.items()}
+    return columns

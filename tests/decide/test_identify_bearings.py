@@ -1,0 +1,247 @@
+"""Numbers of bearings, pairs and rotors from measurements."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from published import inputs, theirs
+from tolerances import DIFFERENCE
+
+import bearingjax as bj
+from bearingjax.decide import CaseModel, stack
+from bearingjax.decide.identify import _read_call
+from bearingjax.optimise import Variable
+
+CASE = "nsk_preloaded_pairs"
+PATHS = (
+    ["bearing.contact_angle"],
+    ["bearing.outer_osculation", "bearing.inner_osculation"],
+)
+NAMES = "stiffness_uz", "displacement_uz"
+
+
+class Pair(eqx.Module):
+    """Rigidity and clearance of a pair under preloads: the fourth is the last unknown,
+    and the last case is the load under which the maker measures clearance."""
+
+    bearing: CaseModel
+
+    def __call__(self, values, cases):
+        load = cases.load.at[3, 2].set(values[2])
+        cases = eqx.tree_at(lambda c: c.load, cases, load)
+        one = self.bearing(values[:2], cases)
+        moved = one["displacement_uz"]
+        return {
+            "rigidity": 2.0 * one["stiffness_uz"][:-1],
+            "clearance": -2.0 * (moved[:-1] - moved[-1]),
+        }
+
+
+def nsk(row):
+    """Model, cases, unknowns, printed rigidities and clearances of a pair."""
+    bore, outside, angle, diameter, count = (
+        inputs(CASE, name)[row]
+        for name in (
+            "bore", "outside_diameter", "contact_angle", "ball_diameter", "n_balls"
+        )
+    )  # fmt: skip
+    bearing = bj.AngularContactBallBearing(
+        int(count),
+        0.5 * (bore + outside),
+        diameter,
+        contact_angle=angle,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+    )
+    model = CaseModel(bj.BearingElement(bearing), bj.Support(free=["uz"]))
+    loads = [*inputs(CASE, "preload")[row], inputs(CASE, "measuring_load")[row]]
+    cases = bj.Cases([[0.0, 0.0, force, 0.0, 0.0, 0.0] for force in loads])
+    ends = np.radians([-4.0, 4.0]) + angle
+    unknowns = [
+        Variable("angle", *ends, start=angle),
+        Variable("osculation", 0.505, 0.56, start=0.52),
+        Variable("preload", 0.5 * loads[3], 2.0 * loads[3], start=0.8 * loads[3]),
+    ]
+    printed = {
+        "rigidity": theirs(CASE, "axial rigidity of the pair")[row],
+        "clearance": theirs(CASE, "measured axial clearance")[row],
+        "angle": angle,
+    }
+    return Pair(model.for_numbers(PATHS, NAMES)), cases, unknowns, printed
+
+
+def errors_of(printed):
+    """Those of rounding, to 1 N/um, 1 um and whole degrees, and 1 % for what is not
+    known of the maker's formula."""
+    units = {"rigidity": 1e6, "clearance": 1e-6, "angle": np.radians(1.0)}
+    return {
+        name: np.hypot(units[name] / 12**0.5, 0.01 * (name != "angle") * values)
+        for name, values in printed.items()
+    }
+
+
+PAIRS = {"7010C": 7, "7034C": 10, "7010A5": 13, "7020A5": 15}
+"""With 19 to 22 balls: one program."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PAIRS)
+def test_preload_and_inside_of_printed_pairs(name):
+    """From four rigidities and clearances, with error bars: osculation near 0.52, the
+    contact angle as printed, and the highest preload, which is not told."""
+    model, cases, unknowns, printed = nsk(PAIRS[name])
+    found = bj.identify(model, cases, unknowns, printed, errors_of(printed))
+    assert found.converged and found.identifiable
+    angle, osculation, preload = found.estimate
+    error = found.standard_error
+    assert abs(angle - printed["angle"]) < np.radians(0.5)
+    assert 0.518 < osculation < 0.524 and error[1] < 0.003
+    known = float(cases.load[3, 2])
+    assert abs(preload - known) < 2.0 * error[2] < 0.1 * known
+    assert found.probability > 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PAIRS)
+def test_fourth_rigidity_from_three(name):
+    """Within 1 % of the printed one, and within twice the band and its own error."""
+    model, cases, unknowns, printed = nsk(PAIRS[name])
+    error = errors_of(printed)
+    read = {
+        key: np.where(np.arange(4) < 3, values, np.nan) if key != "angle" else values
+        for key, values in printed.items()
+    }
+    read["preload"], error["preload"] = cases.load[3, 2], 1e-3 * cases.load[3, 2]
+    found = bj.identify(model, cases, unknowns, read, error, wanted=["rigidity"])
+    value, band = found.prediction["rigidity"][3], found.prediction_error["rigidity"][3]
+    off = printed["rigidity"][3] - value
+    assert abs(off) < 0.01 * value
+    assert abs(off) < 2.0 * np.hypot(band, error["rigidity"][3])
+    # A reading of what is wanted tells most of it.
+    assert found.candidates[0].name == "rigidity"
+
+
+@pytest.mark.slow
+def test_slopes_of_cases_match_central_differences():
+    model, cases, unknowns, printed = nsk(PAIRS["7010C"])
+    error = errors_of(printed)
+    given = _read_call(model, cases, unknowns, printed, error, ())
+    at = np.array([0.45, 0.3, 0.4])
+    slopes = given.fit(at, 1).slopes
+    for k in range(3):
+        step = 1e-4 * np.eye(3)[k]
+        near, far = (
+            given.fit(at + n * step, 1).numbers - given.fit(at - n * step, 1).numbers
+            for n in (1, 2)
+        )
+        change = given.split((8.0 * near - far) / 12e-4)
+        for name, ours in given.split(slopes[:, k]).items():
+            most = DIFFERENCE * max(abs(ours).max(), 1e-12)
+            np.testing.assert_allclose(ours, change[name], atol=most, err_msg=name)
+
+
+def test_names_of_numbers():
+    bearing = bj.DeepGrooveBallBearing(
+        9, 39e-3, 7.938e-3, outer_osculation=0.525, inner_osculation=0.52
+    )
+    model = CaseModel(bj.BearingElement(bearing))
+    assert model.place("displacement_uz") == model.place("displacement_inner_uz")
+    whole = model.place("stiffness_inner_uy_inner_uy")
+    assert model.place("stiffness_uy") == whole and whole.unit == "N/m"
+    assert model.place("stiffness_uy_gx").unit == "N"
+    assert model.place("roller_load_8_inner").unit == "N"
+    assert model.place("life_hours").unit == "h"
+    assert model.place("operating_radial_clearance").unit == "m"
+    # Behind the elements stand empty places, whose number is not counted.
+    kept = model.for_numbers([], ["roller_load_8_inner"])
+    assert dict(kept.places)["roller_load_8_inner"].entry == 17
+    with pytest.raises(ValueError, match="did you mean `displacement_inner_uz`"):
+        model.place("displacement_iner_uz")
+    with pytest.raises(ValueError, match="'roller_load_9_inner' is not known"):
+        model.place("roller_load_9_inner")
+    with pytest.raises(ValueError, match="one of .*displacement, force"):
+        model.place("wobble")
+    with pytest.raises(TypeError, match="of a shaft or a rotor give a function"):
+        CaseModel(bearing)
+    with pytest.raises(ValueError, match="0 designs; they must be of one structure"):
+        stack([])
+
+
+ANGLE = "bearing.contact_angle"
+REFUSED = {
+    "name": (
+        dict(readings={"displacement_iner_uz": 0.0}),
+        "did you mean `displacement",
+    ),
+    "cases": (dict(cases=np.zeros((3, 6))), "`cases` is a ndarray"),
+    "path": (dict(unknowns=[Variable("bearing.angle", 0.1, 0.5)]), "has no number"),
+    "twice": (dict(unknowns=[Variable(ANGLE, 0.2, 0.5)] * 2), "is a variable twice"),
+    "start": (
+        dict(unknowns=[Variable(ANGLE, 0.3, 0.5)]),
+        "must lie between its bounds",
+    ),
+    "bound": (dict(unknowns=[Variable(ANGLE, 0.1, 2.0)]), "which the design does not"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_identify_rejects_for_a_design(name):
+    changes, words = REFUSED[name]
+    bearing = bj.AngularContactBallBearing(
+        12,
+        53.5e-3,
+        12.7e-3,
+        contact_angle=0.26,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
+    )
+    given = dict(
+        model=bj.BearingElement(bearing),
+        cases=bj.Cases([[0.0, 0.0, 1e3, 0.0, 0.0, 0.0]]),
+        unknowns=[Variable(ANGLE, 0.2, 0.5)],
+        readings={"displacement_uz": 1e-5},
+        errors=1e-7,
+    )
+    with pytest.raises((ValueError, TypeError), match=words):
+        bj.identify(**{**given, **changes})
+
+
+def spindle(values, speeds):
+    """Natural frequencies of a rotor on two bearings in elastic housings: a contact
+    is as stiff as the root of third order of its load."""
+    preload, housing = values
+    stiffness = 1e8 * (preload / 300.0) ** (1.0 / 3.0)
+    mount = bj.rotor.Housing(3.0, [housing] * 3, [0.0] * 3)
+    supports = [
+        bj.rotor.LinearSupport.isotropic(k, stiffness, 0.5 * stiffness, housing=mount)
+        for k in (0, 2)
+    ]
+    shaft = bj.rotor.Shaft(
+        [0.0, 0.125, 0.5], 0.025, material=bj.Material(2.1e11, 0.3, 7850)
+    )
+    disc = bj.rotor.Disc(1, 10.0, 0.2, 0.1)
+    rotor = bj.rotor.Rotor(shaft, [disc], supports, rigid=True)
+    found = jax.vmap(lambda speed: bj.rotor.modes(rotor, speed).frequency[:6])(speeds)
+    return {"frequency": jnp.ravel(found)}
+
+
+@pytest.mark.slow
+def test_preload_and_housing_of_a_rotor_from_natural_frequencies():
+    """At three speeds, to 0.2 Hz; one mode alone does not tell both."""
+    speeds, true = jnp.array([0.0, 500.0, 1000.0]), jnp.array([250.0, 3e8])
+    exact = np.asarray(jax.jit(spindle)(true, speeds)["frequency"])
+    noise = 0.2 * np.random.default_rng(5).standard_normal(exact.size)
+    unknowns = [
+        Variable("preload", 50.0, 1000.0, start=500.0),
+        Variable("housing stiffness", 5e7, 1e9, start=1e8),
+    ]
+    given = speeds, unknowns
+    found = bj.identify(spindle, *given, {"frequency": exact + noise}, 0.2)
+    assert found.converged and found.identifiable
+    assert np.all(abs(found.estimate - true) < 3.0 * found.standard_error)
+    assert np.all(found.standard_error < 0.1 * true)
+    one = np.where(np.arange(exact.size) % 6 == 0, exact, np.nan)
+    alone = bj.identify(spindle, *given, {"frequency": one}, 20.0)
+    assert not alone.identifiable
+    assert "trade" in alone.untold[0]

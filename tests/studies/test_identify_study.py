@@ -1,0 +1,212 @@
+"""[identify] in scenes, its measured table, and what its command makes of it."""
+
+import numpy as np
+import pytest
+from runs import Runs, Study
+from tolerances import SOLVER
+
+import bearingjax as bj
+from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.studies.identify.read_identify import read_identification
+from bearingjax.studies.identify.run import run_identification
+
+FREE = "operating.free=['ux', 'uy']"
+SCENE, OUT = "identify_clearance", "displacement_inner_uy"
+STUDIES = {
+    "clearance": Study(
+        ("identify", SCENE),
+        files={
+            "--json": "a.json",
+            "--table": "a.csv",
+            "--plot": "a.png",
+            "--report": "a.html",
+        },
+        unsolved={
+            "crushed": (
+                ("--set", "operating.load.Fx=1e12 N", "--set", FREE),
+                "start_not_solved",
+                "identify: the start fails: case 0: non_finite: Numbers that are not",
+            )
+        },
+        slow=(True, True),
+    )
+}
+
+
+class TestRuns(Runs):
+    """Exit status, files, warnings, the run from its JSON, unsolved runs."""
+
+
+@pytest.mark.slow
+def test_numbers_of_the_run(written):
+    """The readings were made with 12 um and 0.525, and errors of 0.2 um."""
+    numbers = written("clearance").numbers
+    names = "bearing.radial_internal_clearance", "bearing.inner_osculation"
+    for name, true in zip(names, (12e-6, 0.525), strict=True):
+        low, high = numbers["interval"][name]
+        assert low < true < high
+        half = 0.5 * (high - low) / numbers["standard_error"][name]
+        np.testing.assert_allclose(half, 1.959964, rtol=1e-6)
+    assert numbers["identifiable"] is True and numbers["untold"] == []
+    read = np.array(written("clearance").column(f"{OUT} [m]"))
+    predicted = np.array(written("clearance").column(f"{OUT}.predicted [m]"))
+    missed = np.array(numbers["residual"][OUT], float)
+    np.testing.assert_allclose(missed[:5], (read - predicted)[:5], rtol=1e-6)
+    assert np.isnan(missed[5])
+    # The load that was not tried tells most of the stiffness.
+    assert numbers["candidates"][0]["case"] == 5
+    out = written("clearance").done.out
+    assert "the readings tell every unknown" in out and "chi-square 5.5" in out
+    # A solve with the numbers found, one by one.
+    bearing = bj.DeepGrooveBallBearing(
+        9,
+        39e-3,
+        7.938e-3,
+        outer_osculation=0.525,
+        inner_osculation=numbers["estimate"][names[1]],
+        radial_internal_clearance=numbers["estimate"][names[0]],
+    )
+    for k, load in enumerate((-100.0, -3000.0)):
+        solved = bj.solve_load(
+            bj.BearingElement(bearing),
+            [0.0, load, 0.0, 0.0, 0.0, 0.0],
+            support=bj.Support(free=["uy"]),
+        )
+        own = numbers["prediction"][OUT][(0, 4)[k]]
+        np.testing.assert_allclose(solved.displacement[7], own, rtol=SOLVER)
+
+
+def measured(tmp_path, text, *settings):
+    path = tmp_path / "m.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_identification(SCENE, [f"identify.data={path}", *settings])
+
+
+def test_measured_table_has_errors_blanks_and_conditions(tmp_path):
+    text = f"operating.load.Fy [kN];{OUT} [mm];{OUT}.error [um];stiffness_uy [N/um];"
+    text += "stiffness_uy.error [N/um]\n-1;0,02;0,3;;\n-2;;;80;4\n"
+    task = measured(tmp_path, text, "identify.errors=unset")
+    np.testing.assert_allclose(task.cases.load[:, 1], [-1e3, -2e3])
+    np.testing.assert_allclose(task.readings[OUT], [2e-5, np.nan])
+    np.testing.assert_allclose(task.errors[OUT], [3e-7, np.nan])
+    np.testing.assert_allclose(task.readings["stiffness_uy"], [np.nan, 8e7])
+    assert task.units[OUT] == "m" and task.units["stiffness_uy"] == "N/m"
+    assert [one.start for one in task.unknowns] == [None, None]
+
+
+def test_designs_of_cases_are_stacked(tmp_path):
+    text = f"bearing.outer_osculation,operating.load.Fy [N],{OUT} [um]\n"
+    text += "0.52,-100,-9\n0.53,-100,-10\n0.52,-200,-12\n"
+    task = measured(tmp_path, text)
+    assert task.cases.design.tolist() == [0, 1, 0]
+    drawing = task.model.design.drawing.bearing
+    np.testing.assert_allclose(drawing.outer_osculation, [0.52, 0.53])
+
+
+HEAD = "operating.load.Fy [N]"
+TABLES = {
+    "unknown column": (
+        f"{HEAD},displacement_iner_uy [um]\n-1,1\n",
+        "'displacement_iner_uy' is not known (did you mean `displacement_inner_uy`?)",
+    ),
+    "another unit": (f"{HEAD},{OUT} [N]\n-1,1\n", "'1 N' is not a length"),
+    "no unit": (f"{HEAD},{OUT}\n-1,1\n", f"{OUT} has no unit; head the column"),
+    "blank condition": (f"{HEAD},{OUT} [um]\n,1\n", "'' is not a finite number"),
+    "NaN": (f"{HEAD},{OUT} [um]\n-1,nan\n", "line 2: displacement_inner_uy: 'nan'"),
+    "nothing measured": (f"{HEAD}\n-1\n", "measures nothing"),
+    "error alone": (f"{HEAD},{OUT}.error [um]\n-1,1\n", "has no column of readings"),
+    "unit of a count": (
+        f"{HEAD},n_loaded [m],{OUT} [um]\n-1,1,1\n",
+        "n_loaded is a pure number",
+    ),
+    "unit of a life": (
+        f"{HEAD},basic_rating_life [rev]\n-1,1\n",
+        "basic_rating_life cannot be measured",
+    ),
+    "unknown as condition": (
+        f"bearing.inner_osculation,{OUT} [um]\n0.52,1\n",
+        "is a column of the measured table too",
+    ),
+    "errors twice": (
+        f"{HEAD},{OUT} [um],{OUT}.error [um]\n-1,1,1\n",
+        "has a column of its own",
+    ),
+    "errors of one alone": (
+        f"{HEAD},{OUT} [um],stiffness_uy [N/m]\n-1,1,1\n",
+        "has no standard deviation of stiffness_uy",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_measured_table_that_is_refused(tmp_path, name):
+    text, words = TABLES[name]
+    with pytest.raises(SceneError) as stop:
+        measured(tmp_path, text)
+    assert words in str(stop.value) and "identify_clearance.toml" in str(stop.value)
+
+
+def test_too_few_readings_are_told_with_the_scene(tmp_path):
+    task = measured(tmp_path, f"{HEAD},{OUT} [um]\n-100,-10\n")
+    words = "identify_clearance.*1 readings for 2 unknowns"
+    with pytest.raises(SceneError, match=words):
+        run_identification(task)
+
+
+def test_data_option_is_taken_from_where_one_stands(run, tmp_path, monkeypatch):
+    """And not from the folder of the scene."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.csv").write_text(f"{HEAD},wobble [um]\n-1,1\n", "utf-8")
+    done = run("identify", SCENE, "--data", "m.csv")
+    assert done.status == 2 and "wobble" in done.err
+    done = run("identify", SCENE, "--data", "m.csv", "--table", "m.csv")
+    assert done.status == 2 and "--table would overwrite it" in done.err
+    scene = shipped_scenes()[SCENE].read_text("utf-8")
+    (tmp_path / "mine.toml").write_text(scene, "utf-8")
+    done = run("identify", "mine.toml")
+    assert done.status == 2 and "identify_clearance.csv: cannot be read" in done.err
+
+
+def test_conditions_of_temperature(tmp_path):
+    scene = tmp_path / "warm.toml"
+    scene.write_text(WARM, "utf-8")
+    (tmp_path / "m.csv").write_text(f"{HEAD},{OUT} [um]\n-100,1\n", "utf-8")
+    task, key = read_identification(scene), "temperature.inner_ring"
+    assert task.unknowns[0].path == ("conditions.inner_ring",)
+    np.testing.assert_allclose([task.readings[key], task.errors[key]], [333.15, 2.0])
+    scene.write_text(WARM.replace("2 K", "2 degC"), "utf-8")
+    with pytest.raises(SceneError, match="is a difference; write it in K"):
+        read_identification(scene)
+    scene.write_text(WARM.replace("errors =", "wanted = []\n#"), "utf-8")
+    with pytest.raises(SceneError, match="beside a prior they must be known"):
+        read_identification(scene)
+
+
+WARM = """
+[bearing]
+designation = "6205"
+
+[fit]
+shaft = "k5"
+housing = "H6"
+shaft_bore = "0 mm"
+housing_diameter = "80 mm"
+shaft_material = "steel"
+housing_material = "steel"
+
+[temperature]
+inner_ring = "60 degC"
+
+[operating]
+free = ["uy"]
+
+[identify]
+data = "m.csv"
+errors = { displacement_inner_uy = "0.5 um" }
+
+[identify.unknowns."temperature.inner_ring"]
+from = "20 degC"
+to = "90 degC"
+prior = "60 degC"
+prior_error = "2 K"
+"""
