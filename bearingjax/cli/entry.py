@@ -23,6 +23,7 @@ from ..studies.options import add_quiet
 from ..studies.programs import cache_command as cache
 from ..studies.programs import warm_command as warm
 from ..studies.rotor import command as rotor
+from ..studies.select import command as select
 from ..studies.shaft import command as shaft
 from ..studies.skid import command as skid
 from ..studies.solve import command as solve
@@ -45,6 +46,7 @@ _SOLVING = (
     rotor,
     shaft,
     noise,
+    select,
     validate,
 )
 """Commands that solve scenes; `execute` writes their outcome."""

@@ -9,9 +9,14 @@ Names
 
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`, `stack`.
+- A choice of bearing: `select`, `Requirements`, `Selection`.
 """
 
 from .identify import Candidate, Identified, identify
 from .predict import CaseModel, stack
+from .select import Requirements, Selection, select
 
-__all__ = ["identify", "Identified", "Candidate", "CaseModel", "stack"]
+__all__ = [
+    "identify", "Identified", "Candidate", "CaseModel", "stack", "select",
+    "Requirements", "Selection",
+]  # fmt: skip

@@ -154,8 +154,8 @@ def _name_in_errors(path: Path):
 
 
 def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
-    """Return the files read by a scene: itself, cases, measurements, profiles, bearings
-    of a rotor.
+    """Return the files that a scene reads: itself, tables, profiles, bearings of a
+    rotor.
 
     Args: as `read_scene`.
 
@@ -164,7 +164,7 @@ def scene_files(source: str | Path, settings: Iterable[str] = ()) -> list[Path]:
     """
     path = find_scene(source)
     data = parse_scene(path, settings)
-    tables = (("cases", "file"), ("identify", "data"))
+    tables = (("cases", "file"), ("identify", "data"), ("select", "file"))
     owners = ((data.get(table), key) for table, key in tables)
     names = (text_of(one.get(key)) for one, key in owners if isinstance(one, dict))
     listed = [path.parent / name for name in names if isinstance(name, str)]

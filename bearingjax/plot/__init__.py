@@ -8,7 +8,7 @@ Names
 
 - Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`,
   `optimise_overview`, `identify_overview`, `noise_overview`, `skid_overview`,
-  `rotor_overview`, `shaft_overview`, `validation_overview`.
+  `rotor_overview`, `shaft_overview`, `selection_overview`, `validation_overview`.
 - Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
 - A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
@@ -55,6 +55,7 @@ from .rotors.rotor_modes import campbell_diagram, mode_shapes
 from .rotors.rotor_motion import orbits, waterfall, waveforms
 from .rotors.rotor_page import rotor_overview
 from .rotors.rotor_response import linear_curve, response_curve, speed_curve
+from .selection import selection_overview
 from .shafts import shaft_overview
 from .skidding.skid import cage_speed, power_bars, skid_overview
 from .skidding.skid_contact import heat_map, sliding_map
@@ -79,9 +80,9 @@ from .validation import validation_overview
 __all__ = [
     "overview", "sweep_overview", "life_overview", "contact_overview",
     "optimise_overview", "identify_overview", "noise_overview", "skid_overview",
-    "rotor_overview", "shaft_overview", "validation_overview", "drawing",
-    "cross_section",
-    "cross_sections", "rotor_section", "profile", "load_zone",
+    "rotor_overview", "shaft_overview", "selection_overview", "validation_overview",
+    "drawing", "cross_section", "cross_sections", "rotor_section", "profile",
+    "load_zone",
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",
     "contact_stress", "contact_line_load", "centre_pressure", "acceleration_over_time",

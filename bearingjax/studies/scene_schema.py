@@ -54,6 +54,7 @@ from .optimise.read_optimise import OptimiseKeys
 from .optimise.read_shaft_optimise import ShaftOptimiseKeys
 from .rotor.mounts import SpringKeys
 from .rotor.read import RotorKeys
+from .select.read import select_schema
 from .shaft.read import (
     PART_CLASSES,
     DriveKeys,
@@ -82,9 +83,12 @@ def scene_schema() -> dict[str, Any]:
         "lubricant": table_schema(LubricantKeys),
         "output": table_schema(OutputKeys),
         "cases": table_schema(CasesKeys),
+        "operating": _merge("load, support and speeds", OperatingKeys, ControlKeys),
+        "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
     }
     head = {"$schema": DIALECT, "title": "Scene of bearingjax"}
     kinds = [_bearing_scene(), _contact_scene(), _rotor_scene(), _shaft_scene()]
+    kinds.append(_select_scene())
     return {**head, "anyOf": kinds, "$defs": defs}
 
 
@@ -119,8 +123,8 @@ def _bearing_scene() -> dict[str, Any]:
         "bearing": _ref("bearing"),
         "set": _ref("set"),
         "contact": _ref("contact"),
-        "operating": _merge("load, support and speeds", OperatingKeys, ControlKeys),
-        "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
+        "operating": _ref("operating"),
+        "numerics": _ref("numerics"),
         "fit": _ref("fit"),
         "temperature": _ref("temperature"),
         "lubricant": _ref("lubricant"),
@@ -135,6 +139,13 @@ def _bearing_scene() -> dict[str, Any]:
         "vibration": table_schema(VibrationKeys),
     }
     return object_schema(tables, ["bearing"], "a bearing")
+
+
+def _select_scene() -> dict[str, Any]:
+    """Schema of a choice of bearing: `select`."""
+    names = "contact operating numerics fit temperature lubricant life cases".split()
+    tables = {"select": select_schema()} | {name: _ref(name) for name in names}
+    return object_schema(tables, ["select"], "a choice of bearing")
 
 
 def _contact_scene() -> dict[str, Any]:

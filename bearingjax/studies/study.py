@@ -19,6 +19,8 @@ from .optimise.read_shaft_optimise import read_optimisation
 from .optimise.run import run_optimisation
 from .rotor.read import read_rotor
 from .rotor.run import run_rotor
+from .select.read import read_select
+from .select.run import run_select
 from .shaft.read import read_shafts
 from .shaft.run import run_shafts
 from .skid.read import read_skid
@@ -48,6 +50,7 @@ STUDIES = {
     "skid": Study(frozenset({"dynamics"}), read_skid, run_skid),
     "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
     "identify": Study(frozenset({"identify"}), read_identification, run_identification),
+    "select": Study(frozenset({"select"}), read_select, run_select),
     "life": Study(frozenset({"cases", "life"}), read_cases, run_life),
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),
@@ -81,9 +84,10 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         By the tables of the scene: `ShaftRun` of [shaft.NAME], `OptimisedDesign` if it
         has [optimise] too, `RotorRun` of [rotor], a list of `SliceComparison` of
         [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `OptimisedDesign`
-        of [optimise], `Identified` of [identify], `LifeRun` of [cases] and [life],
-        `Sweep` of [cases], else the `Solution` of the bearing under its load. Read its
-        result code: a failed solve does not raise, except at the start of a search.
+        of [optimise], `Identified` of [identify], `Selection` of [select], `LifeRun` of
+        [cases] and [life], `Sweep` of [cases], else the `Solution` of the bearing under
+        its load. Read its result code: a failed solve does not raise, except at the
+        start of a search.
 
     Raises:
         SceneError: If the scene cannot be read.

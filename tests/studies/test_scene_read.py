@@ -60,6 +60,8 @@ SHAFTS = {  # for `read_shafts`
     "shaft_wind_turbine",
 }
 
+SELECT = "select_gearbox"  # without a bearing, for `read_select`
+
 NOISE = {  # for `read_noise`, in the tests of the command
     "noise_cylindrical",
     "noise_deep_groove",
@@ -88,7 +90,10 @@ def read_text(folder, text, settings=()):
 
 
 def test_shipped_scenes_list_is_complete():
-    assert set(shipped_scenes()) == {*SHIPPED, CONTACT, *ROTORS, *SHAFTS, *NOISE}
+    assert set(shipped_scenes()) == {
+        *(*SHIPPED, CONTACT, SELECT),
+        *(*ROTORS, *SHAFTS, *NOISE),
+    }
 
 
 @pytest.mark.parametrize("name", sorted(SHAFTS))

@@ -20,6 +20,7 @@ from bearingjax.studies.contact.read import read_contact
 from bearingjax.studies.noise.read import read_noise
 from bearingjax.studies.rotor.read import read_rotor
 from bearingjax.studies.scene_schema import key_guide, scene_schema
+from bearingjax.studies.select.read import read_select
 from bearingjax.studies.shaft.read import read_shafts
 from bearingjax.studies.skid.read import read_skid
 
@@ -60,6 +61,8 @@ def test_schema_holds_for_shipped_scenes_and_their_echo(name, validator):
         found = read_contact(name)
     elif "vibration" in data:
         found = read_noise(name)
+    elif "select" in data:
+        found = read_select(name)
     elif "dynamics" in data:
         found = read_skid(name, steady=True)
     else:

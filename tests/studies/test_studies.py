@@ -22,6 +22,7 @@ TOLD = {
     "skid_roller": "skid",
     "fujiwara_kawase": "optimise",
     "life_spectrum": "life",
+    "select_gearbox": "select",
     "load_map": "sweep",
     "ball_pair": "solve",
 }
@@ -69,6 +70,7 @@ SCENES = {
     "rotor": "rotor_flexible",
     "shaft": "shaft_fan",
     "noise": "noise_four_point",
+    "select": "select_gearbox",
 }
 STATUS = {
     "sweep": "0 all solved, 2 bad input, 3 some not solved (the table holds"
@@ -78,6 +80,7 @@ STATUS = {
     "identify": "0 identified, 2 bad input, 3 not solved or not converged.",
     "rotor": "0 solved, 2 bad input, 3 not solved, or only in part.",
     "shaft": "0 solved, 2 bad input, 3 not solved, or only in part.",
+    "select": "0 chosen, 2 bad input, 3 none fits.",
 }
 ENDINGS = {
     "--plot": "a picture ends in .png, .pdf or .svg",

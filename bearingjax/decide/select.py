@@ -1,0 +1,559 @@
+"""A choice of bearing: requirements against the whole catalogue.
+
+What the catalogue prints sieves first. What is left is solved by one program for each
+kind of bearing, `_LANES` solves at a time, whatever the number of bearings and cases;
+it is compiled once, and kept from one process to the next.
+"""
+
+import contextlib
+import dataclasses
+import functools
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..cases.cases import Cases, solve_case
+from ..cases.spectrum import revolutions_per_hour, spectrum_life
+from ..cases.sweep import SUMMARIES
+from ..catalogue.entry import (
+    CLEARANCE,
+    CLEARANCES,
+    CatalogueEntry,
+    bearing_of_entry,
+    catalogue_entries,
+    class_clearance,
+)
+from ..design.bearing_set import bearings_of, with_bearings
+from ..design.checks import check, must_be, of_class, one_of
+from ..design.places import PLACES, places_for, with_places
+from ..element import FREEDOMS, BearingElement, Speed
+from ..element.frame import LOADS, RINGS
+from ..fits.fit_limits import CLEARANCE_CLASSES
+from ..friction.friction import friction_torque
+from ..life import LifeConditions
+from ..life.life import rating_life
+from ..life.life_warning import minimum_load
+from ..numerics.compiled.programs import program
+from ..numerics.labels import LabelledArray, make_dataset
+from ..numerics.result import Result
+from ..numerics.shown import Printable, Shown
+from ..numerics.types import with_fields
+from ..statics import Installed, SolveOptions, Support
+from ..statics.empty_places import points_of_kind
+from ..statics.support import axial_senses, check_held, restrained_freedoms
+
+_LANES = 64
+"""Solves of a batch."""
+
+_STEEL = 7850.0
+"""Density in the masses that are estimated [kg/m³]."""
+
+SIZES = ("bore", "outside_diameter", "width")
+NUMBERS = {
+    "bore": ("m", "exact", "d"),
+    "outside_diameter": ("m", "exact", "D"),
+    "width": ("m", "exact", "B, T of tapers, H of thrust bearings"),
+    "mass": ("kg", "most", "as printed, else estimated from the envelope"),
+    "limiting_speed": ("1", "most", "greatest speed over that of the catalogue"),
+    "reference_speed": ("1", "most", "greatest speed over that of the catalogue"),
+    "life_hours": ("h", "least", "modified; without oil the reference life times a1"),
+    "rating_life": ("rev", "least", "the same in revolutions"),
+    "basic_rating_life": ("rev", "least", "L10 of ISO 281"),
+    "static_safety": ("1", "least", "least C0/P0 of all cases"),
+    "minimum_load": ("N", "most", "0.01 C of balls, 0.02 C of rollers"),
+    "load_ratio": ("1", "least", "least load of a case that turns, over minimum_load"),
+    "peak_pressure": ("Pa", "most", "largest of all contacts and cases"),
+    "friction_torque": ("N m", "most", "by Palmgren, mean over the hours"),
+}
+for _name, _unit in zip(FREEDOMS, ("N/m",) * 3 + ("N m/rad",) * 2, strict=False):
+    _about = f"least of all cases in {_name}, the other freedoms held"
+    NUMBERS[f"stiffness_{_name}"] = (_unit, "least", _about)
+"""Numbers of a candidate: SI unit; sense of a bound by one number, which tells too what
+ranks first; meaning. The catalogue tells those before the lives."""
+
+
+def _as_cases(given: Any) -> Cases:
+    cases = given if isinstance(given, Cases) else Cases([given])
+    return jax.tree.map(np.asarray, cases)
+
+
+def _as_bounds(given: Any) -> Any:
+    """Pairs (least, greatest) of numbers alone, each in the sense of its name."""
+    pairs = {}
+    for name, ends in dict(given).items():
+        if not isinstance(ends, list | tuple):
+            sense = NUMBERS.get(name, ("", "exact"))[1]
+            ends = None if sense == "most" else ends, None if sense == "least" else ends
+        pairs[name] = tuple(None if end is None else float(end) for end in ends)
+    return pairs
+
+
+def _as_words(given: Any) -> Any:
+    return (given,) if isinstance(given, str) else tuple(given or ())
+
+
+class Requirements(Printable):
+    """What a bearing must do to be chosen by `select`.
+
+    Attributes:
+        load: `Cases`, whose damage adds up over their `hours`; or one load on the
+            moving ring, at rest (6,) [N, N m].
+        life: Conditions of the life, with that which is required; without ratings.
+        bounds: Of `NUMBERS` by name [SI]: a pair (least, greatest), either of which may
+            be `None`; or one number, which is the greatest mass, share of a speed,
+            pressure or friction, the exact size, and the least of all others.
+        types: Types that may be chosen; none named: all.
+        clearance_class: Class of radial clearance, "C3", of types that have classes;
+            `None`: CN, and other types too.
+        rank_by: Some of `NUMBERS`, of which the later ones tell ties apart; the least
+            first, of lives and the static safety the greatest.
+        support: What holds the rings, as in `sweep`.
+        options: Numerics of the solves.
+        supply: Oil supply, as `friction_torque` takes it.
+
+    Raises:
+        TypeError: If a part is of another kind, or a number is traced.
+        ValueError: For numbers that are not allowed or contradict each other; a life
+            in hours or with an oil, if nothing turns; no load at all.
+    """
+
+    load: Cases = eqx.field(converter=_as_cases)
+    life: LifeConditions = eqx.field(default_factory=LifeConditions)
+    bounds: dict[str, tuple[float | None, float | None]] = eqx.field(
+        converter=_as_bounds, default=()
+    )
+    types: tuple[str, ...] = eqx.field(converter=_as_words, default=())
+    clearance_class: str | None = None
+    rank_by: tuple[str, ...] = eqx.field(converter=_as_words, default=SIZES[1:])
+    support: Support = Support()
+    options: SolveOptions = eqx.field(default_factory=SolveOptions)
+    supply: str = "oil_bath"
+
+    def __check_init__(self):
+        of_class(self, "life", self.life, LifeConditions, "`LifeConditions`")
+        if self.clearance_class is not None:
+            one_of(self, "clearance_class", self.clearance_class, CLEARANCE_CLASSES)
+        for what in ("bounds", "rank_by"):
+            for name in getattr(self, what):
+                one_of(self, what, name, NUMBERS)
+        for name, ends in self.bounds.items():
+            known = [end for end in ends if end is not None]
+            ordered = bool(known) and 0 < known[0] <= known[-1] < np.inf
+            words = "finite and above 0, the least before the greatest"
+            check(self, name, ordered, words, ends, "")
+        cases, life, turning = self.load, self.life, bool(self.turns.any())
+        held = bool(cases.prescribed) or cases.fixed_displacement is not None
+        loads = np.isfinite(cases.load).all() and (held or np.any(cases.load))
+        largest, words = np.abs(cases.load).max(), "finite, and not zero in all cases"
+        check(self, "load", loads, words, largest, "N")
+        alone = cases.design is None
+        must_be(self, "load", "of several designs", alone, "cases without `design`")
+        check_held("Requirements", cases.load, self.support, cases.prescribed)
+        never = "dynamic_capacity", "static_capacity", "fatigue_load_limit"
+        for name in (*never, *(() if turning else ("required", "viscosity"))):
+            why = "as each bearing has its own" if name in never else "as nothing turns"
+            none = getattr(life, name) is None
+            must_be(self, "life", f"with {name}", none, f"without it, {why}")
+        oiled = life.viscosity is not None
+        for name, ok in {"life_hours": turning, "friction_torque": oiled}.items():
+            ok = ok or name not in (*self.bounds, *self.rank_by)
+            must_be(self, name, "given", ok, "left out without speed and oil")
+
+    @property
+    def turns(self) -> np.ndarray:
+        """Relative speed of the rings (case,) [rad/s]."""
+        turns = revolutions_per_hour(self.load, np)
+        return np.zeros(self.load.count) if turns is None else turns * np.pi / 1800.0
+
+    @property
+    def all_bounds(self) -> dict[str, Any]:
+        """The bounds, and the required life among them."""
+        lives = {"life_hours": self.life.required}
+        lives["rating_life"] = self.life.required_revolutions
+        given = {name: (low, None) for name, low in lives.items() if low is not None}
+        return self.bounds | _as_bounds(given)
+
+
+def unit_of_number(name: str) -> str:
+    """Return the SI unit of a column of a `Selection`; empty of a pure number."""
+    return NUMBERS.get(name, ("",))[0].replace("1", "")
+
+
+class Miss(NamedTuple):
+    """A requirement that is missed: the number that misses it, `None` if there is none,
+    and its limit [SI]; what they do not tell; how much of it is kept, below 1."""
+
+    requirement: str
+    value: float | None = None
+    limit: float | None = None
+    why: str = ""
+    share: float = 0.0
+
+
+def _missed(name: str, value: Any, ends: tuple[Any, Any]) -> Iterator[Miss]:
+    """Yield the bound that a value misses by more than round-off."""
+    value, (low, high), near = float(value), ends, 1.0 - 1e-9
+    if np.isnan(value):
+        yield Miss(name, None, low or high, "it is not known")
+    elif low is not None and value < near * low:
+        yield Miss(name, value, low, share=value / low)
+    elif high is not None and near * value > high:
+        yield Miss(name, value, high, share=high / value)
+
+
+def _missed_directions(asked: Requirements, bearing: Any) -> Iterator[Miss]:
+    """Yield the loads that no bearing of a kind carries."""
+    may, senses = restrained_freedoms(bearing), axial_senses(bearing)
+    sign = 1 if asked.support.moving_ring == "inner" else -1
+    for freedom, name, loads in zip(FREEDOMS, LOADS, asked.load.load.T, strict=True):
+        for load in (float(loads.max()), float(loads.min())):
+            if load and freedom not in may:
+                yield Miss(name, load, 0.0, f"it carries no {name}")
+            elif load and freedom == "uz" and sign * np.sign(load) not in senses:
+                side = "below" if load > 0 else "above"
+                yield Miss(name, load, 0.0, f"it carries {name} {side} 0 alone")
+    angle = float(bearings_of(bearing)[0].nominal_contact_angle)
+    moves = {*asked.support.freedoms(bearing)} - {*asked.load.prescribed}
+    if len(senses) == 1 and angle > 0 and "uz" in moves:
+        across, along = np.abs(asked.load.load[:, :2]).max(1), asked.load.load[:, 2]
+        if np.any((across > 0) & (along == 0)):
+            yield Miss("Fz", 0.0, 0.0, "it carries no radial load without Fz")
+
+
+@dataclasses.dataclass(frozen=True)
+class Selection(Shown):
+    """Every bearing that was looked at: those that fit, the best first; then those that
+    were solved and miss the least; then those that the catalogue excludes.
+
+    Attributes:
+        requirements: What was asked for.
+        table: Columns by name (candidate,), in SI: designation, type; `NUMBERS`, NaN
+            where they are not known; mass_printed; of what is missed, the most if it
+            was solved, requirement ("": it fits), value, limit, why.
+    """
+
+    requirements: Requirements
+    table: dict[str, np.ndarray]
+
+    def rows(self, fitting: bool) -> list[dict[str, Any]]:
+        """Return those that fit, or what the others miss, by name of the columns."""
+        missed = ("requirement", "value", "limit", "why")
+        names = [k for k in self.table if k not in missed]
+        names = names if fitting else ["designation", *missed]
+        places = np.flatnonzero((self.table["requirement"] == "") == fitting)
+        return [{k: self.table[k][place].item() for k in names} for place in places]
+
+    @property
+    def fits(self) -> list[dict[str, Any]]:
+        """Facts and numbers of bearings that do what is required, the best first."""
+        return self.rows(fitting=True)
+
+    @property
+    def excluded(self) -> list[dict[str, Any]]:
+        """The others, and what they miss: requirement, value, limit [SI], why."""
+        return self.rows(fitting=False)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of bearings that each requirement excludes, the most first."""
+        names = self.table["requirement"].tolist()
+        return dict(Counter(name for name in names if name).most_common())
+
+    @property
+    def smallest(self) -> str | None:
+        """Designation of what fits with the least outside diameter, then width."""
+        fits = self.fits
+        sizes = [(*(row[name] for name in SIZES[1:]), k) for k, row in enumerate(fits)]
+        return fits[min(sizes)[-1]]["designation"] if sizes else None
+
+    def shown_facts(self) -> Iterator[Any]:
+        """Yield how many fit, which is the smallest, and what excludes the others."""
+        yield 1, "fits", str(len(self.fits)), "bearings that do what is required"
+        yield 1, "smallest", str(self.smallest), "of these"
+        for name, count in self.counts.items():
+            yield 1, f"excluded by {name}", str(count), ""
+
+    def to_xarray(self) -> Any:
+        """Return all candidates as an `xarray.Dataset`, with units.
+
+        Raises:
+            ImportError: Without xarray.
+        """
+        make, along = LabelledArray, ("candidate",)
+        pairs = self.table.items()
+        return make_dataset({k: make(v, along, unit_of_number(k)) for k, v in pairs})
+
+    def to_pandas(self) -> Any:
+        """Return all candidates as a `pandas.DataFrame`; raises as `to_xarray`."""
+        return self.to_xarray().to_dataframe()
+
+
+def select(
+    requirements: Requirements,
+    *,
+    entries: Iterable[CatalogueEntry] | None = None,
+    install: Callable[[CatalogueEntry], Installed] | None = None,
+    progress: Callable[[str, float], Any] | None = None,
+) -> Selection:
+    """Choose among the bearings of the catalogue: what fits, and why others do not.
+
+    What the catalogue prints excludes first: type, envelope, direction of the load,
+    speeds. The others are solved under every case; of several requirements that one
+    misses the one that is missed the most is told.
+
+    Args:
+        requirements: What the bearing must do.
+        entries: Bearings to choose from; `None`: `catalogue_entries()`.
+        install: Bearing of an entry on its seats; one that it refuses by a `ValueError`
+            is excluded, with that text. `None`: as drawn.
+        progress: Called with words and the share that is done.
+
+    Returns:
+        Selection; what is not solved is excluded by "solved", with its result code.
+
+    Raises:
+        TypeError: For anything but `Requirements`.
+        ValueError: If there are no entries, none of a type, or all are refused.
+    """
+    of_class("select", "requirements", requirements, Requirements, "`Requirements`")
+    every = list(catalogue_entries() if entries is None else entries)
+    if not every:
+        raise ValueError("select: `entries` is empty; one bearing at least.")
+    asked, told = requirements, progress or (lambda words, share: None)
+    for name in asked.types:
+        one_of("select", "types", name, sorted({entry.type for entry in every}))
+    build = install or (lambda one: Installed(BearingElement(bearing_of_entry(one))))
+    table = _facts(asked, every)
+    misses, made = [*_sieve(asked, every, table)], {}
+    refused: list[ValueError] = []
+    for k, entry in enumerate(every):
+        if misses[k] is None:
+            try:
+                made[k] = _at_speeds(build(entry), asked.load)
+            except ValueError as error:
+                misses[k] = Miss("bearing", why=str(error))
+                refused.append(error)
+    if refused and not made:
+        raise refused[0]
+    found = _solve(asked, [*made.values()], told)
+    for number, k in enumerate(made):
+        mine = {name: values[number] for name, values in found.items()}
+        misses[k] = _judge(asked, mine, table, k)
+    missed = [miss or Miss("", share=2.0) for miss in misses]
+    table["designation"] = np.array([entry.designation for entry in every])
+    for name, dtype in zip(Miss._fields, (str, float, float, str), strict=False):
+        table[name] = np.array([getattr(miss, name) for miss in missed], dtype)
+    ranks = [
+        -table[name] if NUMBERS[name][1] == "least" else table[name]
+        for name in (*asked.rank_by, *SIZES[1:], "mass")
+    ]  # NaN comes last
+    solved, kept = np.isnan(table["rating_life"]), [-miss.share for miss in missed]
+    order = np.lexsort(np.stack([*ranks[::-1], kept, solved]))
+    return Selection(asked, {name: values[order] for name, values in table.items()})
+
+
+def _facts(asked: Requirements, every: list[CatalogueEntry]) -> dict[str, np.ndarray]:
+    """Return the table of a selection with what the catalogue tells; other masses are
+    that of a solid ring of the envelope, times the usual share of the type, or of all
+    types."""
+
+    def column(name, dtype: Any = float):
+        return np.array([getattr(entry, name) for entry in every], dtype)
+
+    table = {name: column(name, str) for name in ("designation", "type")}
+    table |= {name: np.full(len(every), np.nan) for name in NUMBERS}
+    table |= {name: column(name) for name in (*SIZES, "mass")}
+    known, usual = ~np.isnan(table["mass"]), _usual_masses()
+    for k in np.flatnonzero(~known):
+        share = usual.get(every[k].type, usual[""])
+        table["mass"][k] = share * _solid_mass(every[k])
+    for name in ("limiting_speed", "reference_speed"):
+        table[name] = asked.turns.max() / column(name)
+    return table | {"mass_printed": known}
+
+
+def _solid_mass(entry: CatalogueEntry) -> float:
+    """Return the mass of a solid ring of the envelope [kg]."""
+    across = entry.outside_diameter**2 - entry.bore**2
+    return _STEEL * 0.25 * np.pi * across * entry.width
+
+
+@functools.cache
+def _usual_masses() -> dict[str, float]:
+    """Return printed masses over those of solid rings, by type and of all ("") [1]."""
+    shares: dict[str, list[float]] = {}
+    for entry in catalogue_entries():
+        if entry.mass is not None:
+            for name in (entry.type, ""):
+                shares.setdefault(name, []).append(entry.mass / _solid_mass(entry))
+    return {name: float(np.median(values)) for name, values in shares.items()}
+
+
+def _sieve(
+    asked: Requirements, every: list[CatalogueEntry], table: dict[str, np.ndarray]
+) -> Iterator[Miss | None]:
+    """Yield what each entry misses unsolved; those left get the clearance class."""
+    directions: dict[Any, Miss | None] = {}
+    facts = {n: asked.bounds[n] for n in (*NUMBERS,)[:6] if n in asked.bounds}
+    wanted = asked.clearance_class
+    for k, entry in enumerate(every):
+        found = [m for n, x in facts.items() for m in _missed(n, table[n][k], x)]
+        if asked.types and entry.type not in asked.types:
+            found = [Miss("types", why=f"{entry.type} is not among them")]
+        if not found and wanted not in (None, entry.clearance_class):
+            try:
+                every[k] = entry = _of_class(entry, wanted)
+            except ValueError as error:
+                found = [Miss("clearance_class", why=str(error))]
+        if not found:
+            kind = entry.type, entry.design.get("arrangement"), "ribs" in entry.design
+            if kind not in directions:
+                missed = _missed_directions(asked, bearing_of_entry(entry))
+                directions[kind] = next(missed, None)
+            found = [directions[kind]]
+        yield found[0]
+
+
+def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
+    """Return an entry with another class of clearance."""
+    if entry.type not in CLEARANCES:
+        raise ValueError(f"{entry.type} has no classes")
+    middle, _ = class_clearance(entry.type, name, entry.bore, entry.taper)
+    changed: dict[str, Any] = {"design": {**entry.design, CLEARANCE: middle}}
+    changed["designation"] = f"{entry.designation}/{name}"
+    return dataclasses.replace(entry, **changed)
+
+
+def _at_speeds(bearing: Installed, cases: Cases) -> tuple[Any, np.ndarray]:
+    """Return the elements of a bearing, on its seats at each speed, and which of them
+    each case has (case,)."""
+    still = np.zeros(cases.count)
+    speeds = [
+        s if s is not None else still for s in (cases.inner_speed, cases.outer_speed)
+    ]
+    if bearing.mounting is None or not np.any(speeds):
+        return [_of_kind(bearing.element_at())], still.astype(int)
+    distinct, which = np.unique(np.stack(speeds, 1), axis=0, return_inverse=True)
+    pairs = [Speed(*pair) for pair in distinct.tolist()]
+    return [_of_kind(bearing.element_at(pair)) for pair in pairs], which.reshape(-1)
+
+
+def _of_kind(element: BearingElement) -> BearingElement:
+    """Return a bearing with the places of its kind, and without the shoulders of its
+    grooves, which some entries lack, and which change no number here."""
+    names, rows = ("outer_shoulder", "inner_shoulder"), []
+    for row in bearings_of(element.bearing):
+        bare = {name: None for name in names if hasattr(row, name)}
+        rows.append(with_fields(row, **bare))
+    # Places for most bearings: few programs compile sooner than many run.
+    most = max(PLACES[1], *(places_for(row.n_places) for row in rows))
+    bearing = with_places(with_bearings(element.bearing, rows), most)
+    return with_fields(element, bearing=bearing)
+
+
+def _solve(asked: Requirements, made: list[Any], told: Any) -> dict[str, np.ndarray]:
+    """Return numbers of bearings under all cases by name (bearing, case, …)."""
+    kinds, found = {}, {}
+    for number, (elements, which) in enumerate(made):
+        for k, element in enumerate(elements):
+            shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
+            key = jax.tree.structure(element), shapes
+            kinds.setdefault(key, []).append((number, element, which == k))
+    count, done = asked.load.count, 0
+    for designs in kinds.values():
+        numbers, elements, mine = zip(*designs, strict=True)
+        stack = jax.tree.map(lambda *a: np.stack(a), *elements)
+        design, case = np.nonzero(mine)
+        for begin in range(0, case.size, _LANES):
+            told("bearings under their loads", done / (len(made) * count))
+            d, c = (places[begin : begin + _LANES] for places in (design, case))
+            for name, values in _solve_batch(asked, stack, d, c).items():
+                room = np.empty((len(made), count, *values.shape[1:]), values.dtype)
+                room = found.setdefault(name, room)
+                room[np.array(numbers)[d], c] = values[: d.size]
+            done += d.size
+    return found
+
+
+def _solve_batch(asked: Requirements, stack, design, case) -> dict[str, np.ndarray]:
+    """Return numbers of up to `_LANES` solves: of a design each, under a case."""
+    more = _LANES - case.size
+    elements = jax.tree.map(lambda a: a[np.pad(design, (0, more))], stack)
+
+    def pad(values):  # a case of NaN ends at once
+        empty = np.full((more, *values.shape[1:]), np.nan)
+        return np.concatenate([values[case], empty])
+
+    cases = jax.tree.map(pad, with_fields(asked.load, hours=None))
+    points = points_of_kind(elements, asked.options.points)
+    options = with_fields(asked.options, points=points)
+    life = asked.life.without_requirement
+    out = _solve_kind(elements, cases, asked.support, options, life, asked.supply)
+    return {name: np.asarray(values) for name, values in out.items()}
+
+
+@program(quick=True, level=1, what="bearings of a kind under their loads")
+def _solve_kind(elements, cases, support, options, life, supply):
+    """Return numbers of bearings, each under a case, by name (lane, …)."""
+    first = 6 * RINGS.index(support.moving_ring)
+
+    def solve_one(element, case):
+        solution = solve_case(element, case, support, options)
+        rated = rating_life(element, solution, life)
+        torque = jnp.full_like(rated.damage, jnp.nan)
+        if life.viscosity is not None:
+            with contextlib.suppress(ValueError):  # of types without constants
+                torque = friction_torque(solution, life.viscosity, supply).torque
+        return {
+            "result": solution.result,
+            "damage": rated.damage,
+            "basic_rating_life": rated.basic_rating_life,
+            "static_safety": rated.static_safety,
+            "load": jnp.maximum(rated.equivalent_load, rated.reference_load),
+            "minimum_load": minimum_load(element.bearing, rated.ratings),
+            "peak_pressure": SUMMARIES["peak_pressure"](solution),
+            "friction_torque": torque,
+            "stiffness": jnp.diagonal(solution.stiffness)[first : first + 5],
+        }
+
+    return jax.vmap(solve_one)(elements, cases)
+
+
+def _judge(asked: Requirements, found, table, k: int) -> Miss | None:
+    """Write numbers of a bearing under all cases into the table, and return what it
+    misses the most."""
+    failed = np.flatnonzero(found["result"] != Result.CONVERGED)
+    if failed.size:
+        label = Result(int(found["result"][failed[0]])).label
+        return Miss("solved", why=f"{label} (case {failed[0]})")
+    cases, turning = asked.load, asked.turns > 0
+    used = spectrum_life(cases, found["damage"])
+    basic = spectrum_life(cases, 1.0 / found["basic_rating_life"])
+    loads = found["load"][turning] / found["minimum_load"][turning]
+    stiffness = dict(zip((*NUMBERS,)[-5:], found["stiffness"].T, strict=True))
+    numbers = {
+        "life_hours": np.nan if used.life_hours is None else used.life_hours,
+        "rating_life": used.rating_life,
+        "basic_rating_life": basic.rating_life,
+        "static_safety": found["static_safety"].min(),
+        "minimum_load": found["minimum_load"][0],
+        "load_ratio": loads.min(initial=np.inf),
+        "peak_pressure": found["peak_pressure"].max(),
+        "friction_torque": np.average(found["friction_torque"], weights=cases.hours),
+        **{name: values.min() for name, values in stiffness.items()},
+    }
+    misses = []
+    for name, value in numbers.items():
+        table[name][k] = value
+        low, high = asked.all_bounds.get(name, (None, None))
+        if low is not None:
+            misses += _missed(name, value, (low, None))
+        if high is not None:
+            greatest = stiffness[name].max() if name in stiffness else value
+            misses += _missed(name, greatest, (None, high))
+    return min(misses, key=lambda miss: miss.share, default=None)

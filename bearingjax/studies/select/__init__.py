@@ -1,0 +1,1 @@
+"""A choice of bearing among those of the catalogue."""
