@@ -208,7 +208,8 @@ __all__ = [
 
 # Imported at first use: packages, and names of the top level with their package.
 _LATE = dict.fromkeys(
-    "decide files noise optimise plot report rotor shafts skid studies validation".split()
+    "decide files noise optimise plot report rotor shafts skid studies"
+    " validation".split()
 ) | {
     "SceneError": "files",
     "identify": "decide",

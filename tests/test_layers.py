@@ -19,8 +19,8 @@ import bearingjax as bj
 PACKAGE = Path(bj.__file__).parent
 LAYERS = (
     "numerics files design fits contact lubrication element statics life"
-    " cases catalogue friction optimise skid rotor shafts noise decide validation report plot"
-    " studies cli"
+    " cases catalogue friction optimise skid rotor shafts noise decide validation"
+    " report plot studies cli"
 ).split()
 
 
@@ -91,6 +91,7 @@ STUDIES = (
     "identify",
     "catalogue",
     "programs",
+    "tolerances",
     "validate",
 )
 

@@ -29,6 +29,7 @@ from ..studies.skid import command as skid
 from ..studies.solve import command as solve
 from ..studies.solve import compare_command as compare
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
+from ..studies.tolerances import command as tolerances
 from ..studies.validate import command as validate
 from .about import citations, describe_version
 from .completion import SHELLS, completion_script
@@ -47,6 +48,7 @@ _SOLVING = (
     shaft,
     noise,
     select,
+    tolerances,
     validate,
 )
 """Commands that solve scenes; `execute` writes their outcome."""

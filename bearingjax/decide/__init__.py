@@ -10,13 +10,25 @@ Names
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`, `stack`.
 - A choice of bearing: `select`, `Requirements`, `Selection`.
+- What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`.
+- Their results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
 """
 
 from .identify import Candidate, Identified, identify
 from .predict import CaseModel, stack
+from .scatter import Scatter, within
 from .select import Requirements, Selection, select
+from .tolerance_effects import (
+    Misses,
+    Spread,
+    Tightening,
+    Tolerances,
+    tighten,
+    tolerances,
+)
 
 __all__ = [
     "identify", "Identified", "Candidate", "CaseModel", "stack", "select",
-    "Requirements", "Selection",
+    "Requirements", "Selection", "tolerances", "tighten", "Scatter", "within",
+    "Tolerances", "Spread", "Misses", "Tightening",
 ]  # fmt: skip

@@ -26,18 +26,21 @@ Names
 
 - The search: `optimise`, `SearchOptions`, `Variable`, `Constraint`, `design_numbers`.
 - Measures of load and pressure: `PeakPressure`, `MeanPressure`, `EdgeLoad`.
+- Measures of play: `OperatingClearance`, `OperatingPreload`.
 - Measures of stiffness: `Displacement`, `Stiffness`, `StiffnessTarget`.
-- Measures of life: `RatingLife`, `Damage`.
+- Measures of life: `RatingLife`, `Damage`, `StaticSafety`.
 - Results: `OptimisedDesign`, `Outcome`, `History`.
 """
 
 from .constraint import Constraint
 from .design_problem import Outcome
-from .life import Damage, RatingLife
+from .life import Damage, RatingLife, StaticSafety
 from .measure import (
     Displacement,
     EdgeLoad,
     MeanPressure,
+    OperatingClearance,
+    OperatingPreload,
     PeakPressure,
     Stiffness,
     StiffnessTarget,
@@ -48,5 +51,6 @@ from .variable import Variable, design_numbers
 __all__ = [
     "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers",
     "PeakPressure", "MeanPressure", "EdgeLoad", "Displacement", "Stiffness",
-    "StiffnessTarget", "RatingLife", "Damage", "OptimisedDesign", "Outcome", "History",
+    "StiffnessTarget", "OperatingClearance", "OperatingPreload", "RatingLife", "Damage",
+    "StaticSafety", "OptimisedDesign", "Outcome", "History",
 ]  # fmt: skip

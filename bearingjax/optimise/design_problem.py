@@ -152,10 +152,10 @@ class Problem:
 
     def _doubts(self, element, solution) -> Callable[[], list[Warning]]:
         lives = (m.warnings for m in self.measures if isinstance(m, OfLife))
-        asked = [partial(judge, element, solution) for judge in lives][:1]
+        asked = [partial(warn, element, solution) for warn in lives][:1]
         if isinstance(element, AbstractSystem):
             asked.append(partial(element.warnings, self.cases, solution))
-        return lambda: [text for judge in asked for text in judge()]
+        return lambda: [text for warn in asked for text in warn()]
 
     def run(self, unit: np.ndarray | jax.Array, slopes: bool) -> "Run":
         """Solve the cases of a design, with gradients or without."""
@@ -187,7 +187,7 @@ class Problem:
         whole: Any = design_at(unit)
         solution, moved = whole.solve_by_parts(self.cases, changes)
         given = self.measures, self.cases, whole, solution
-        measures, exact = _judge(*given)
+        measures, exact = judge(*given)
         jacobian = None if moved is None else _judge_changes(*given, changes, moved).T
         return Run(measures, exact, solution, jacobian)
 
@@ -251,7 +251,7 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
             solution = jax.vmap(solve_one)(cases)
         else:
             solution = jax.lax.map(solve_one, cases, batch_size=CHUNK)
-        values, exact = _judge(measures, cases, design, solution)
+        values, exact = judge(measures, cases, design, solution)
         return values, (values, exact, solution)
 
     if slopes:
@@ -263,7 +263,7 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
 
 
 @program(quick=True)
-def _judge(measures, cases, design, solution):
+def judge(measures, cases, design, solution):
     """Return the measures, smooth and exact."""
     values = [_scalar(m, m(design, cases, solution)) for m in measures]
     exact = [exact_of(m, design, cases, solution) for m in measures]
@@ -274,11 +274,11 @@ def _judge(measures, cases, design, solution):
 def _judge_changes(measures, cases, design, solution, *changes):
     """Return changes of the measures, smooth (change, measure)."""
 
-    def judge(design, solution):
-        return _judge(measures, cases, design, solution)[0]
+    def smooth(design, solution):
+        return judge(measures, cases, design, solution)[0]
 
     def push(*change):
-        return eqx.filter_jvp(judge, (design, solution), change)[1]
+        return eqx.filter_jvp(smooth, (design, solution), change)[1]
 
     return jax.vmap(push)(*changes)
 

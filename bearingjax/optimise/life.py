@@ -150,3 +150,33 @@ class Damage(OfLife):
     @property
     def unit(self) -> str:
         return "1/h" if self.hours else "1/rev"
+
+
+class StaticSafety(AbstractMeasure):
+    """Smallest static safety C0/P0 of all cases [1].
+
+    Attributes:
+        conditions: Life conditions; of them the static load rating.
+
+    Traced: conditions.
+    """
+
+    conditions: LifeConditions = eqx.field(default_factory=LifeConditions)
+
+    def __check_init__(self):
+        given = self.conditions
+        of_class(self, "conditions", given, LifeConditions, "LifeConditions")
+
+    def __call__(self, element, cases, solution):
+        def safety(one):
+            return rating_life(one.element, one, self.conditions).static_safety
+
+        return jnp.min(jax.vmap(safety)(loads_of(solution)))
+
+    @property
+    def label(self) -> str:
+        return "static safety"
+
+    @property
+    def unit(self) -> str:
+        return ""

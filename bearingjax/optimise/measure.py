@@ -16,10 +16,13 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ..design import rows_of
 from ..design.checks import check, number, one_of
 from ..element.frame import FREEDOMS, RINGS, STIFFNESS_UNITS
+from ..fits import Mounting, radial_clearance
 from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real, unit_of
+from ..statics.preload import remaining_preload
 from ..statics.solution import RollerSolution, Solution
 from .smooth import SMOOTHING_EXPONENT, smooth_maximum, smooth_minimum
 from .system import Design, loads_of
@@ -260,6 +263,48 @@ class Stiffness(AbstractSmooth):
     @property
     def unit(self) -> str:
         return unit_of(Solution, "stiffness", 2 * (FREEDOMS.index(self.freedom),))
+
+
+class OperatingClearance(AbstractMeasure):
+    """Smallest radial internal clearance in operation, of all cases [m].
+
+    Of a set, that of its first row.
+    """
+
+    def __call__(self, element, cases, solution):
+        def clearance(one):
+            return radial_clearance(rows_of(one.element.bearing)[0].bearing)
+
+        return jnp.min(jax.vmap(clearance)(loads_of(solution)))
+
+    @property
+    def label(self) -> str:
+        return "operating clearance"
+
+    @property
+    def unit(self) -> str:
+        return unit_of(Mounting, "radial_clearance")
+
+
+class OperatingPreload(AbstractMeasure):
+    """Smallest preload between the unloaded rows of a set in operation [N].
+
+    Of all cases, at their speeds; 0 where there is play.
+    """
+
+    def __call__(self, element, cases, solution):
+        def preload(one):
+            return remaining_preload(one.element, one.speed, throw=False)
+
+        return jnp.min(jax.vmap(preload)(loads_of(solution)))
+
+    @property
+    def label(self) -> str:
+        return "operating preload"
+
+    @property
+    def unit(self) -> str:
+        return "N"
 
 
 class StiffnessTarget(AbstractMeasure):

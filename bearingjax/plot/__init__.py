@@ -8,7 +8,8 @@ Names
 
 - Pages: `overview`, `sweep_overview`, `life_overview`, `contact_overview`,
   `optimise_overview`, `identify_overview`, `noise_overview`, `skid_overview`,
-  `rotor_overview`, `shaft_overview`, `selection_overview`, `validation_overview`.
+  `rotor_overview`, `shaft_overview`, `selection_overview`, `tolerance_overview`,
+  `validation_overview`.
 - Drawings: `drawing`, `cross_section`, `cross_sections`, `rotor_section`, `profile`.
 - A solved bearing: `load_zone`, `contact_angles`, `ellipses`, `pressure_map`,
   `pressure_profiles`, `load_displacement`, `stiffness_over_speed`.
@@ -75,14 +76,15 @@ from .skidding.skid_curves import (
     spin_over_time,
 )
 from .sweep import sweep_overview
+from .tolerances import tolerance_overview
 from .validation import validation_overview
 
 __all__ = [
     "overview", "sweep_overview", "life_overview", "contact_overview",
     "optimise_overview", "identify_overview", "noise_overview", "skid_overview",
-    "rotor_overview", "shaft_overview", "selection_overview", "validation_overview",
-    "drawing", "cross_section", "cross_sections", "rotor_section", "profile",
-    "load_zone",
+    "rotor_overview", "shaft_overview", "selection_overview", "tolerance_overview",
+    "validation_overview", "drawing", "cross_section", "cross_sections",
+    "rotor_section", "profile", "load_zone",
     "contact_angles", "ellipses", "pressure_map", "pressure_profiles",
     "load_displacement", "stiffness_over_speed", "contact_map", "contact_surface",
     "contact_stress", "contact_line_load", "centre_pressure", "acceleration_over_time",

@@ -65,6 +65,7 @@ from .shaft.read import (
 )
 from .shaft.read_heat import HeatKeys
 from .skid.read_dynamics import DynamicsKeys
+from .tolerances.read import ShaftToleranceKeys, ToleranceKeys
 
 
 def scene_schema() -> dict[str, Any]:
@@ -133,6 +134,7 @@ def _bearing_scene() -> dict[str, Any]:
         "cases": _ref("cases"),
         "optimise": table_schema(OptimiseKeys),
         "identify": table_schema(IdentifyKeys),
+        "tolerances": table_schema(ToleranceKeys),
         "cage": table_schema(Cage),
         "dynamics": table_schema(DynamicsKeys),
         "deviations": table_schema(DeviationsKeys),
@@ -229,6 +231,7 @@ def _shaft_scene() -> dict[str, Any]:
         "system": table_schema(SystemKeys),
         "heat": table_schema(HeatKeys),
         "optimise": table_schema(ShaftOptimiseKeys),
+        "tolerances": table_schema(ShaftToleranceKeys),
         "life": _ref("life"),
         "lubricant": _ref("lubricant"),
         "output": _ref("output"),

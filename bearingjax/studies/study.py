@@ -26,6 +26,8 @@ from .shaft.run import run_shafts
 from .skid.read import read_skid
 from .skid.run import run_skid
 from .solve.run import run_scene
+from .tolerances.read import read_tolerances
+from .tolerances.run import run_tolerances
 
 
 class Study(NamedTuple):
@@ -51,6 +53,7 @@ STUDIES = {
     "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
     "identify": Study(frozenset({"identify"}), read_identification, run_identification),
     "select": Study(frozenset({"select"}), read_select, run_select),
+    "tolerances": Study(frozenset({"tolerances"}), read_tolerances, run_tolerances),
     "life": Study(frozenset({"cases", "life"}), read_cases, run_life),
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),

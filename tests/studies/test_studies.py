@@ -71,6 +71,7 @@ SCENES = {
     "shaft": "shaft_fan",
     "noise": "noise_four_point",
     "select": "select_gearbox",
+    "tolerances": "tolerances_seats",
 }
 STATUS = {
     "sweep": "0 all solved, 2 bad input, 3 some not solved (the table holds"
@@ -81,6 +82,7 @@ STATUS = {
     "rotor": "0 solved, 2 bad input, 3 not solved, or only in part.",
     "shaft": "0 solved, 2 bad input, 3 not solved, or only in part.",
     "select": "0 chosen, 2 bad input, 3 none fits.",
+    "tolerances": "0 solved, 2 bad input, 3 not solved or not converged.",
 }
 ENDINGS = {
     "--plot": "a picture ends in .png, .pdf or .svg",

@@ -210,7 +210,7 @@ def scene_of(
     """
     top = Table(data, path, places=places)
     # Tables of other commands.
-    top.skip("cases", "optimise", "identify", "cage", "dynamics")
+    top.skip("cases", "optimise", "identify", "tolerances", "cage", "dynamics")
     top.skip("deviations", "vibration")
     table = top.table("bearing", required=True)
     table.know(*other_keys)

@@ -13,14 +13,17 @@ from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...fits.fits import WARM_PARTS
+from ...life.life import LifeConditions
 from ...numerics.units import unit_of
 from ...optimise import SearchOptions
 from ...optimise.constraint import Constraint
-from ...optimise.life import RatingLife
+from ...optimise.life import RatingLife, StaticSafety
 from ...optimise.measure import (
     Displacement,
     EdgeLoad,
     MeanPressure,
+    OperatingClearance,
+    OperatingPreload,
     PeakPressure,
     Stiffness,
     StiffnessTarget,
@@ -28,6 +31,7 @@ from ...optimise.measure import (
 from ...optimise.search import METHODS
 from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...optimise.variable import Variable, check_variables, design_numbers
+from ...statics.preload import is_opposed
 from ..bearing.life_ratings import life_conditions
 from ..bearing.read_design import PITCH_FOLLOWS, pitch_follows
 from ..bearing.read_fit import no_expansion, read_temperature
@@ -43,6 +47,8 @@ OBJECTIVES = (
     "rating_life",
 )
 
+MEASURES = (*OBJECTIVES, "clearance", "preload", "static_safety")
+"""What may be bounded."""
 
 OF_FITS = (
     "shaft_interference",
@@ -155,9 +161,9 @@ class BoundKeys(Keys):
 class ConstraintKeys(BoundKeys):
     about = "[[optimise.constraints]]: a bound on a measure"
 
-    measure: str = scene_key("what is bounded", choices=OBJECTIVES)
-    at_least: Any = bound_key("lower")
-    at_most: Any = bound_key("upper")
+    measure: str = scene_key("what is bounded", choices=MEASURES)
+    at_least: Any = bound_key("lower", "static_safety")
+    at_most: Any = bound_key("upper", "static_safety")
     freedom: str | None = _freedom("measure")
 
 
@@ -219,28 +225,44 @@ def read_bearing_optimisation(
     begun = _start_values(data)
     for key, value in begun.items():
         assign(data, key, value, path.name)
+    top, scene, cases, inputs = read_operated(data, path, "[optimise] finds one")
+    table = top.table("optimise")
+    task = _optimisation(top, table, scene, cases, set(begun))
+    table.finish()
+    inputs = {**inputs, "optimise": table.echo()}
+    return dataclasses.replace(task, inputs=inputs)
+
+
+def read_operated(
+    data: dict[str, Any], path: Path, problem: str
+) -> tuple[Table, Scene, Cases, dict[str, Any]]:
+    """Read a bearing and its operating cases; without [cases] the one of [operating].
+
+    Args:
+        data: The scene, parsed.
+        path: Its path.
+        problem: What is wrong about cases that vary the design.
+
+    Returns:
+        The scene's table, the scene, its cases of this one design, and its inputs.
+    """
     top = Table(data, path)
     if "cases" in data:
         listed = case_table(data, path)
         scene, cases, inputs = listed.scene, listed.cases, listed.inputs
         makers = [key for key in listed.varied if key.partition(".")[0] in DESIGN]
         if makers:
-            problem = f"{', '.join(makers)} vary the design; [optimise] finds one"
-            raise top.error("cases", problem)
+            words = f"{', '.join(makers)} vary the design; {problem}"
+            raise top.error("cases", words)
         if not (cases.viscosity is None is cases.oscillation):
-            problem = "vary the oil or oscillate, which [optimise] does not know"
-            raise top.error("cases", problem)
+            words = "vary the oil or oscillate, which `life` and `sweep` alone know"
+            raise top.error("cases", words)
         # On its seats a bearing has the clearance at the speeds of each case.
         cases = dataclasses.replace(cases, design=None)
     else:
         scene = scene_of(data, path)
         cases, inputs = _operating(scene), scene.inputs
-    scene = with_speed_warnings(scene, turns_of(cases))
-    table = top.table("optimise")
-    task = _optimisation(top, table, scene, cases, set(begun))
-    table.finish()
-    inputs = {**inputs, "optimise": table.echo()}
-    return dataclasses.replace(task, inputs=inputs)
+    return top, with_speed_warnings(scene, turns_of(cases)), cases, inputs
 
 
 def check_present(data: dict[str, Any], path: Path) -> None:
@@ -281,10 +303,10 @@ def _operating(scene: Scene) -> Cases:
 def _optimisation(
     top: Table, table: Table, scene: Scene, cases: Cases, begun: set[str]
 ) -> Optimisation:
-    keys, balls = read_keys(OptimiseKeys, table), scene.element.bearing.is_ball
+    keys = read_keys(OptimiseKeys, table)
     with table.building():
         PeakPressure(exponent=keys.exponent)
-    measured = _Measured(keys.exponent, balls, _life(scene, cases))
+    measured = measured_in(scene, cases, keys.exponent)
     objective = measured.objective(keys)
     table.table("variables", required=True)
     return Optimisation(
@@ -441,34 +463,57 @@ def _life(scene: Scene, cases: Cases) -> RatingLife | None:
     return RatingLife(life_conditions(scene), True)
 
 
-class _Measured(NamedTuple):
+def measured_in(scene: Scene, cases: Cases, exponent: float) -> "Measured":
+    """Return what can be measured of the bearing of a scene.
+
+    Args:
+        scene: The scene.
+        cases: Its operating cases.
+        exponent: Exponent of smooth maxima.
+    """
+    bearing = scene.element.bearing
+    return Measured(
+        exponent,
+        bearing.is_ball,
+        _life(scene, cases),
+        life_conditions(scene, False),
+        is_opposed(bearing),
+    )
+
+
+class Measured(NamedTuple):
     """Measures of a bearing.
 
     Attributes:
         exponent: Exponent of the norms.
         balls: Whether its rolling elements are balls.
         life: Its rating life in hours, or `None` without a speed.
+        conditions: Conditions of its static safety.
+        opposed: Whether rows of it press each other.
     """
 
     exponent: float
     balls: bool
     life: RatingLife | None
+    conditions: LifeConditions
+    opposed: bool
 
     def objective(self, keys: OptimiseKeys) -> Any:
         """Build the objective."""
         if keys.objective != "stiffness":
-            return self._measure(keys, "objective")
-        kind = _kind_of(self._measure(keys, "objective"))
+            return self.measure(keys, "objective")
+        kind = kind_of_measure(self.measure(keys, "objective"))
         wanted = keys.table.quantity("target", kind)
         with keys.table.building():
             return StiffnessTarget(wanted, keys.freedom or "")
 
     def constraint(self, keys: ConstraintKeys) -> Constraint:
         """Build a bound on a measure."""
-        measure = self._measure(keys, "measure")
-        return keys.constraint(measure, _kind_of(measure))
+        measure = self.measure(keys, "measure")
+        return keys.constraint(measure, kind_of_measure(measure))
 
-    def _measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
+    def measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
+        """Build the measure that a key of a table names."""
         kind = getattr(keys, key)
         if kind == "rating_life":
             if self.life is None:
@@ -484,12 +529,28 @@ class _Measured(NamedTuple):
                 problem = "balls have no ends; `edge_load` is for rollers"
                 raise keys.table.error(key, problem)
             return EdgeLoad(exponent=self.exponent)
+        if kind == "clearance":
+            return OperatingClearance()
+        if kind == "preload":
+            if not self.opposed:
+                problem = "preload is between rows that press each other; there are no"
+                raise keys.table.error(key, f"{problem} such rows")
+            return OperatingPreload()
+        if kind == "static_safety":
+            return StaticSafety(self.conditions)
         freedom = keys.freedom or keys.table.choice("freedom", FREEDOMS[:5])
         of = Displacement if kind == "displacement" else Stiffness
         return of(freedom, exponent=self.exponent)
 
 
-def _kind_of(measure) -> str:
+def kind_of_measure(measure: Any) -> str:
+    """Return the kind of quantity of a measure; empty for a pure number.
+
+    Args:
+        measure: From `Measured`.
+    """
+    if not measure.unit:
+        return ""
     if isinstance(measure, EdgeLoad):
         return "line load"
     if isinstance(measure, RatingLife):

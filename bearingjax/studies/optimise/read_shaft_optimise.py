@@ -117,16 +117,9 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     keys = read_keys(ShaftOptimiseKeys, table)
     free = table.table("variables", required=True)
     known = scene, keys.exponent
-    measures = [_measure(keys, "objective", *known)]
-    measures += [_measure(one, "measure", *known) for one in keys.constraints]
-    oily = any(isinstance(measure, PowerLoss) for measure in measures)
-    each = scene.cases or (scene,)
-    hours = [one.hours for one in each]
-    with top.building():
-        design, cases = load_cases(
-            [_design(one, oily, table) for one in each],
-            None if None in hours else hours,
-        )
+    measures = [shaft_measure(keys, "objective", *known)]
+    measures += [shaft_measure(one, "measure", *known) for one in keys.constraints]
+    design, cases = design_in_cases(scene, measures, table)
     numbers = shaft_numbers(scene)
     varying = cases.paths(design)
     heads = tuple(dict.fromkeys(".".join(key.split(".")[:2]) for key in numbers))
@@ -162,6 +155,26 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     )
 
 
+def design_in_cases(
+    scene: ShaftScene, measures: Iterable[Any], table: Table
+) -> tuple[ShaftDesign, ShaftCases]:
+    """Return the design of a system of shafts in its first load case, and all cases.
+
+    Args:
+        scene: The scene.
+        measures: What is asked of it; a `PowerLoss` needs oils.
+        table: Table that asks, for errors.
+    """
+    oily = any(isinstance(measure, PowerLoss) for measure in measures)
+    each = scene.cases or (scene,)
+    hours = [one.hours for one in each]
+    with table.building():
+        return load_cases(
+            [_design(one, oily, table) for one in each],
+            None if None in hours else hours,
+        )
+
+
 def _design(scene: ShaftScene, oily: bool, table: Table) -> ShaftDesign:
     """Return the design of one case, with oils if the friction is wanted."""
     lives, oils = [], []
@@ -182,13 +195,20 @@ def _design(scene: ShaftScene, oily: bool, table: Table) -> ShaftDesign:
     return ShaftDesign(scene.system, tuple(lives), tuple(oils) if oily else None)
 
 
-def _measure(
+def shaft_measure(
     keys: ShaftOptimiseKeys | ShaftConstraintKeys,
     key: str,
     scene: ShaftScene,
     exponent: float,
 ) -> Any:
-    """Return the measure that a table names."""
+    """Return the measure that a table names.
+
+    Args:
+        keys: Keys of the table.
+        key: Key that names it.
+        scene: The scene.
+        exponent: Exponent of smooth maxima.
+    """
     table, kind, of, system = keys.table, getattr(keys, key), keys.of, scene.system
     if kind in ("system_life", "rating_life", "power_loss") and system.inertia is None:
         raise table.error(key, f"{kind} needs a `speed` of the drive")

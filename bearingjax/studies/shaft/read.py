@@ -280,7 +280,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     if "cases" in data:
         keys = read_keys(CasesKeys, Table(data, path).table("cases"))
         columns, _ = keys.columns(path, may_record=False)
-    elsewhere = ("cases", "optimise")
+    elsewhere = ("cases", "optimise", "tolerances")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
         return _with_lives(_read(alone, path, known), path)

@@ -1,0 +1,522 @@
+"""What tolerances do to results: quantiles, misses, causes, and what to tighten.
+
+Samples of all numbers that scatter are solved in batches of one program. Beside them
+stands the answer of first order, from the gradient at the mean. The share that misses
+a requirement has derivatives by the widths of the tolerances: from the requirement,
+smoothed over a small part of the spread of its measure, and the exact gradients of
+samples near it.
+"""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float, Int
+
+from ..cases.cases import Cases
+from ..design.checks import all_of_class, count, must_be
+from ..numerics.compiled.programs import program
+from ..numerics.result import Result, SolveError
+from ..numerics.shown import Shown
+from ..numerics.units import unit
+from ..optimise import Constraint
+from ..optimise.design_problem import judge
+from ..optimise.measure import AbstractMeasure, label_of
+from ..optimise.search import search_least
+from ..optimise.system import AbstractSystem, Design, check_design, prepare, solved_case
+from ..optimise.trials import Trial, Trials
+from ..optimise.variable import Variable, with_numbers
+from ..statics import SolveOptions, Support
+from ..statics.support import RESTRAINED, check_held
+from .scatter import REPLICATES, Scatter, draw
+
+QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
+"""Shares of all machines whose quantiles are told."""
+_BATCH, _MACHINES, _SLOPES = 256, 16, 64
+"""Cases side by side: of a bearing, of several on shafts, of any with gradients."""
+_BLOCK = 32
+"""Batches between two visits of the host."""
+_NEAR = 512
+"""Most samples near a requirement whose gradients are worked out."""
+_SMOOTHING = 0.9
+"""Width over which a requirement is smoothed, over the spread of its measure and the
+fifth root of the number of samples (Silverman's rule) [1]."""
+_FAR = 4.0
+"""Distance from a requirement beyond which a sample does not feel it [widths]."""
+_CLASSES = 32
+"""Classes of the values of a number, for its part in a variance."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Spread(Shown):
+    """One measure over all samples that were solved.
+
+    Attributes:
+        name: Name of the measure.
+        unit: Its SI unit; empty: none, or not known.
+        mean: Mean.
+        deviation: Standard deviation.
+        quantiles: Values that the shares `QUANTILES` of the samples do not exceed.
+        errors: Standard errors of mean, deviation and quantiles, from the sets of
+            samples.
+        first_order: Mean and standard deviation by value and gradient at the mean of
+            all numbers.
+        shares: Part of the variance that each number causes alone (number,) [1]; what
+            they leave to 1 is of several together. Correlated ones share.
+        first_order_shares: The same by the gradient (number,) [1].
+        slopes: Gradient at the mean (number,) [unit of the measure over SI].
+        misses: Share of all samples that misses its requirement [1]; `None`: none.
+    """
+
+    name: str
+    unit: str
+    mean: float
+    deviation: float
+    quantiles: np.ndarray
+    errors: np.ndarray
+    first_order: tuple[float, float]
+    shares: np.ndarray
+    first_order_shares: np.ndarray
+    slopes: np.ndarray
+    misses: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Misses(Shown):
+    """Share of all machines that misses a requirement, and what changes it.
+
+    Attributes:
+        share: Share of the samples that misses one or several; failed ones do [1].
+        error: Its standard error [1].
+        smoothed: The share with smooth requirements, whose derivatives follow [1].
+        by_width: Its change with the width of each tolerance, over that width (number,)
+            [1]: a tenth less width changes it by a tenth of this.
+        by_middle: Its change as the whole tolerance moves by its width (number,) [1].
+        errors: Standard errors of `by_width` (number,) [1].
+    """
+
+    share: float
+    error: float
+    smoothed: float
+    by_width: np.ndarray
+    by_middle: np.ndarray
+    errors: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class Tolerances(Shown):
+    """Results of `tolerances`.
+
+    Attributes:
+        scatters: The numbers that scatter.
+        spreads: Each measure.
+        misses: Share that misses a requirement; `None` without requirements.
+        samples: Values of the numbers (sample, number) [SI].
+        values: Values of the measures (sample, measure) [SI]; NaN of failed samples.
+        result: `Result` code of each sample (sample,).
+    """
+
+    scatters: tuple[Scatter, ...] = dataclasses.field(repr=False)
+    spreads: tuple[Spread, ...]
+    misses: Misses | None
+    samples: Annotated[Float[np.ndarray, "sample number"], unit("SI")]
+    values: Annotated[Float[np.ndarray, "sample measure"], unit("SI")]
+    result: Int[np.ndarray, " sample"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Tightening(Shown):
+    """Widths of tolerances that keep a share of misses at the least cost.
+
+    Attributes:
+        widths: Width of each over that given (number,) [1].
+        cost: Cost of narrowing them.
+        before: Share that misses with the widths given [1].
+        after: Share that misses with these [1].
+        error: Standard error of `after` [1].
+        converged: Whether the search found a minimum.
+        message: How it ended.
+    """
+
+    widths: Float[np.ndarray, " number"]
+    cost: float
+    before: float
+    after: float
+    error: float
+    converged: bool
+    message: str
+
+
+def tolerances(
+    element: Design,
+    cases: Any,
+    scatters: Sequence[Scatter],
+    measures: Sequence[Any],
+    **options: Any,
+) -> Tolerances:
+    """Solve many machines whose numbers scatter, and tell what results they have.
+
+    Args:
+        element, cases: As in `optimise`.
+        scatters: The numbers that scatter, each by itself but for `correlation`.
+        measures: What is asked, as in `optimise`; in a `Constraint` a requirement.
+        **options: Of `Sampled`: samples, seed, correlation, support, solve, build.
+
+    Returns:
+        Tolerances. Samples that are not solved count as misses, and nowhere else.
+
+    Raises:
+        TypeError, ValueError: As `Sampled`.
+        SolveError: If the design at the mean of all numbers does not solve.
+    """
+    sampled = Sampled(element, cases, scatters, measures, **options)
+    return sampled.conclude(*sampled.run())
+
+
+def tighten(
+    element: Design,
+    cases: Any,
+    scatters: Sequence[Scatter],
+    measures: Sequence[Any],
+    most_misses: float,
+    *,
+    narrowest: float = 0.2,
+    max_steps: int = 30,
+    **options: Any,
+) -> Tightening:
+    """Find the widths of tolerances that keep a share of misses at the least cost.
+
+    Narrowed tolerances keep their mean. The search moves one set of samples, with
+    smooth requirements; `before` and `after` are counted in samples of another seed.
+
+    Args:
+        element, cases, measures, options: As in `tolerances`; a `Constraint` at least
+            is among `measures`.
+        scatters: The numbers that scatter; those with a `cost` may be narrowed.
+        most_misses: Largest share that may miss a requirement [1].
+        narrowest: Least width over that given [1].
+        max_steps: Step limit of the search (SLSQP).
+
+    Raises: as `tolerances`; ValueError too without costs or requirements, and for
+        shares that are none.
+    """
+    sampled = Sampled(element, cases, scatters, measures, **options)
+    free = np.array([one.cost is not None for one in scatters])
+    names = [one.name for one in scatters]
+    must_be(
+        "tighten", "scatters", names, bool(free.any()), "such that one has a `cost`"
+    )
+    must_be("tighten", "measures", measures, bool(sampled.bounds), "with a Constraint")
+    for name, share in (("most_misses", most_misses), ("narrowest", narrowest)):
+        inside = bool(0.0 < share < 1.0)
+        must_be("tighten", name, share, inside, "above 0 and below 1")
+    price = np.array([(one.cost or 0.0) * one.width for one in scatters])[free]
+    whole = price.sum() or 1.0
+
+    def widths_at(unit):
+        widths = np.ones(free.size)
+        widths[free] = narrowest + (1.0 - narrowest) * unit
+        return widths
+
+    def evaluate(unit, slopes):
+        widths = widths_at(unit)
+        found = sampled.misses(*sampled.run(widths))
+        slope = found.by_width[free] / widths[free] * (1.0 - narrowest) / most_misses
+        margin = np.array([1.0 - found.smoothed / most_misses])
+        paid = float(price @ (1.0 - unit)) / whole
+        return Trial(np.asarray(unit), paid, -price / whole, margin, -slope[None])
+
+    trials = Trials(evaluate, evaluate(np.ones(price.size), True))
+    ending = search_least("slsqp", trials, 1, max_steps, 1e-3)
+    widths = widths_at(ending.unit)
+    first, last = (sampled.misses(*sampled.run(w, 1)) for w in (1.0, widths))
+    paid = float(price @ (1.0 - widths[free]))
+    return Tightening(
+        widths, paid, first.share, last.share, last.error, ending.converged, ending.text
+    )
+
+
+class Bounds(NamedTuple):
+    """Limits of a measure; infinite where there is none."""
+
+    measure: int
+    lower: float
+    upper: float
+
+    def are_missed(self, values: np.ndarray) -> np.ndarray:
+        """Whether each sample misses them; NaN do."""
+        one = values[:, self.measure]
+        return ~((one >= self.lower) & (one <= self.upper))
+
+    def smooth(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Smooth miss of each sample, and its derivative by the measure (sample,)."""
+        from scipy.stats import norm
+
+        one = values[:, self.measure]
+        known = np.isfinite(one)
+        width = _SMOOTHING * float(np.std(one[known])) * known.sum() ** -0.2 or 1.0
+        found, pull = np.zeros((2, one.size))
+        for sign, limit in ((1.0, self.upper), (-1.0, self.lower)):
+            if np.isfinite(limit):
+                beyond = sign * (np.where(known, one, limit) - limit) / width
+                found += norm.cdf(beyond)
+                near = np.abs(beyond) < _FAR
+                pull += np.where(near, sign * norm.pdf(beyond) / width, 0.0)
+        return found, pull
+
+
+class Sampled:
+    """Samples of a design whose numbers scatter.
+
+    Args:
+        element, cases, scatters, measures: As in `tolerances`.
+        samples: Least number of samples; taken are 8 times a power of 2.
+        seed: Seed of the samples.
+        correlation: Correlations of all numbers (number, number); of those that are not
+            normal, of the normal scores behind them. `None`: there are none.
+        support: What holds the rings; displacements are those of the cases.
+        solve: Numerics of the load solves; `None`: `SolveOptions()`.
+        build: As in `optimise`.
+        told: Called between batches with the share that is done; `None`: nothing.
+
+    Raises:
+        TypeError, ValueError: For wrong numbers, measures or cases, numbers that the
+            design does not allow at an end of their range, and correlations that
+            contradict each other.
+    """
+
+    def __init__(
+        self,
+        element: Design,
+        cases: Any,
+        scatters: Sequence[Scatter],
+        measures: Sequence[Any],
+        *,
+        samples: int = 10_000,
+        seed: int = 0,
+        correlation: Any = None,
+        support: Support = RESTRAINED,
+        solve: SolveOptions | None = None,
+        build: Callable[[Any], Any] | None = None,
+        told: Callable[[float], Any] | None = None,
+    ):
+        owner = "tolerances"
+        count(owner, "samples", samples)
+        check_design(owner, element, cases)
+        self.scatters, n = tuple(scatters), len(scatters)
+        all_of_class(owner, "scatters", self.scatters, Scatter, "Scatters")
+        names = [one.name for one in self.scatters]
+        alone = n > 0 and len(set(names)) == n
+        must_be(owner, "scatters", names, alone, "one at least, of unlike names")
+        must_be(owner, "measures", measures, bool(measures), "one at least")
+        if isinstance(cases, Cases):
+            support.check_for_cases(owner)
+            check_held(owner, cases.load, support, cases.prescribed)
+        self.correlation = np.eye(n) if correlation is None else np.array(correlation)
+        try:
+            root = np.linalg.cholesky(self.correlation)
+            fits = root.shape == (n, n) and np.allclose(np.diag(self.correlation), 1.0)
+        except np.linalg.LinAlgError:
+            root, fits = np.eye(n), False
+        allowed = f"({n}, {n}), 1 along the diagonal and positive definite"
+        must_be(owner, "correlation", correlation, fits, allowed)
+        self._draw = lambda more: draw(self.scatters, root, samples, seed + more)
+        self._told = told
+        self.bounds, self.measures = [], ()
+        for k, one in enumerate(measures):
+            if isinstance(one, Constraint):
+                low = -np.inf if one.lower is None else float(one.lower)
+                high = np.inf if one.upper is None else float(one.upper)
+                self.bounds.append(Bounds(k, low, high))
+            self.measures += (one.measure if isinstance(one, Constraint) else one,)
+        paths = tuple(dict.fromkeys(p for one in self.scatters for p in one.path))
+        factors = np.array([[s.path.get(p, 0.0) for s in self.scatters] for p in paths])
+        self.centre = np.array([one.centre for one in self.scatters])
+        _check_ends(element, self.scatters, self.centre, paths, factors)
+        solves = support, SolveOptions() if solve is None else solve
+        cases = jax.tree.map(jnp.asarray, cases)
+        self._given = (
+            *(element, cases, self.measures),
+            *((paths, jnp.asarray(factors)), solves, build),
+        )
+        several = isinstance(element, AbstractSystem)
+        most = {False: _MACHINES if several else _BATCH, True: _SLOPES}
+        self._batches = {k: max(1, n // cases.count) for k, n in most.items()}
+
+    def run(
+        self, widths: Any = 1.0, seed: int = 0
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Samples, their measures, NaN of failed ones, and result codes.
+
+        Args:
+            widths: Widths of the tolerances over those given (number,).
+            seed: Added to that of the samples.
+        """
+        samples = self.centre + widths * (self._draw(seed) - self.centre)
+        return samples, *self.solve(samples, False)[:2]
+
+    def solve(self, samples: np.ndarray, slopes: bool) -> tuple[Any, Any, Any]:
+        """Measures (sample, measure), result codes (sample,) and gradients (sample,
+        measure, number) of samples; `None` without `slopes`."""
+        found, run = [], _solve_slopes if slopes else _solve_samples
+        batch = self._batches[slopes]
+        # One shape of samples with gradients: their program is compiled once.
+        size = batch * (1 if slopes else min(_BLOCK, -(-len(samples) // batch)))
+        for begin in range(0, len(samples), size):
+            part = samples[begin : begin + size]
+            filled = jnp.asarray(np.resize(part, (size, part.shape[1])))
+            out = run(*self._given, filled, batch, slopes)
+            found.append(jax.tree.map(np.asarray, out))
+            if self._told is not None and not slopes:
+                self._told(min(1.0, (begin + size) / len(samples)))
+        values, result, gradient = jax.tree.map(
+            lambda *parts: np.concatenate(parts)[: len(samples)], *found
+        )
+        return np.where(result[:, None] == 0, values, np.nan), result, gradient
+
+    def conclude(self, samples, values, result) -> Tolerances:
+        """Results of solved samples."""
+        middle, code, slopes = self.solve(self.centre[None], True)
+        if code[0] != Result.CONVERGED:
+            label = Result(int(code[0])).label
+            raise SolveError(f"tolerances: the design at the mean fails: {label}")
+        spreads = tuple(
+            self._spread(k, samples, values, middle[0, k], slopes[0, k])
+            for k in range(len(self.measures))
+        )
+        misses = self.misses(samples, values, result) if self.bounds else None
+        return Tolerances(self.scatters, spreads, misses, samples, values, result)
+
+    def _spread(self, k, samples, values, middle, slope) -> Spread:
+        measure, column = self.measures[k], values[:, k]
+        known = np.isfinite(column)
+        if not known.any():
+            raise SolveError("tolerances: no sample was solved")
+        effect = slope * [one.spread for one in self.scatters]
+        variance = float(effect @ self.correlation @ effect)
+        sets = [part[np.isfinite(part)] for part in np.split(column, REPLICATES)]
+        each = [_statistics(part) for part in sets if part.size]
+        mean, deviation, *quantiles = _statistics(column[known])
+        missed = [b.are_missed(values).mean() for b in self.bounds if b.measure == k]
+        return Spread(
+            label_of(measure),
+            measure.unit if isinstance(measure, AbstractMeasure) else "",
+            mean,
+            deviation,
+            np.array(quantiles),
+            _error(each),
+            (float(middle), variance**0.5),
+            _variance_shares(samples[known], column[known]),
+            effect**2 / (variance or 1.0),
+            slope,
+            float(missed[0]) if missed else None,
+        )
+
+    def misses(self, samples, values, result) -> Misses:
+        """Share that misses a requirement, and its derivatives.
+
+        Args:
+            samples, values, result: From `run`.
+        """
+        failed = result != Result.CONVERGED
+        missed = failed | np.any([b.are_missed(values) for b in self.bounds], axis=0)
+        smooth = [bound.smooth(values) for bound in self.bounds]
+        kept = np.prod([1.0 - one for one, _ in smooth], axis=0) * ~failed
+        # d(miss)/d(measure) of each sample, by the product rule.
+        pulls = np.zeros_like(values)
+        for j, (bound, (_, pull)) in enumerate(zip(self.bounds, smooth, strict=True)):
+            others = [1.0 - one for i, (one, _) in enumerate(smooth) if i != j]
+            pulls[:, bound.measure] += pull * np.prod(others, axis=0) * ~failed
+        near = np.flatnonzero(np.any(pulls, axis=1))
+        share_near, n = near.size / len(samples), len(self.scatters)
+        by_width, by_middle, errors = np.zeros((3, n))
+        if near.size:
+            if near.size > _NEAR:
+                # Evenly from one side of the requirements to the other.
+                near = near[np.argsort(pulls[near].sum(axis=1), kind="stable")]
+                near = near[np.linspace(0, near.size - 1, _NEAR).astype(int)]
+            gradient = self.solve(samples[near], True)[2]
+            each = share_near * np.einsum("sm,smn->sn", pulls[near], gradient)
+            moved = each * (samples[near] - self.centre)
+            by_width, errors = moved.mean(axis=0), moved.std(axis=0) / near.size**0.5
+            by_middle = each.mean(axis=0) * [one.width for one in self.scatters]
+        return Misses(
+            float(missed.mean()),
+            float(_error([part.mean() for part in np.split(missed, REPLICATES)])),
+            float(np.mean(1.0 - kept)),
+            by_width,
+            by_middle,
+            errors,
+        )
+
+
+def _check_ends(element, scatters, centre, paths, factors) -> None:
+    """Raise unless the design allows each number at both ends of its range."""
+    for path in paths:
+        # Raises for a path that leads nowhere.
+        Variable(path, -1e300, 1e300).start_in(element)
+    for k, one in enumerate(scatters):
+        for end in one.ends:
+            values = np.where(np.arange(centre.size) == k, end, centre)
+            try:
+                numbers = dict(zip(paths, factors @ values, strict=True))
+                with_numbers(element, numbers)
+            except ValueError as error:
+                raise ValueError(
+                    f"Scatter: {one.name} may be {end:.6g}, which the design does not"
+                    f" allow: {error}"
+                ) from error
+
+
+def _statistics(values: np.ndarray) -> list[float]:
+    """Mean, standard deviation and quantiles."""
+    return [values.mean(), values.std(), *np.quantile(values, QUANTILES)]
+
+
+def _error(each: Sequence[Any]) -> Any:
+    """Standard error of a statistic of all sets, from those of each."""
+    return np.std(each, axis=0, ddof=min(1, len(each) - 1)) / len(each) ** 0.5
+
+
+def _variance_shares(samples: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Part of the variance that each number causes alone (number,).
+
+    That of the means over classes of equal numbers of samples, less what chance adds.
+    """
+    variance, n, found = values.var(), len(values), []
+    if variance == 0.0:
+        return np.zeros(samples.shape[1])
+    for column in samples.T:
+        classes = np.array_split(values[np.argsort(column)], min(_CLASSES, n // 4 + 1))
+        size = np.array([len(one) for one in classes])
+        within = size @ [one.var() for one in classes] / n
+        chance = (len(classes) - 1) * within / max(1, n - len(classes))
+        found.append(1.0 - (within + chance) / variance)
+    return np.clip(found, 0.0, 1.0)
+
+
+def _solve(element, cases, measures, numbers, solves, build, samples, batch, slopes):
+    paths, factors = numbers
+
+    def outputs(values):
+        changed = with_numbers(element, dict(zip(paths, factors @ values, strict=True)))
+        design = prepare(changed, build)
+        solution = jax.vmap(lambda case: solved_case(design, case, *solves))(cases)
+        exact = judge(measures, cases, design, solution)[1]
+        return exact, (exact, jnp.max(solution.result))
+
+    def one(values):
+        if not slopes:
+            return *outputs(values)[1], None
+        gradient, found = jax.jacrev(outputs, has_aux=True)(values)
+        return *found, gradient
+
+    return jax.lax.map(one, samples, batch_size=batch)
+
+
+_solve_samples = program(_solve)
+# Few samples have gradients, which take longer to compile than to work out.
+_solve_slopes = program(quick=True)(_solve)

@@ -1,0 +1,1 @@
+"""The tolerances of a scene: quantiles, misses, and what to tighten."""

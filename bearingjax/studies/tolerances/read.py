@@ -1,0 +1,341 @@
+"""[tolerances] of a scene: numbers that scatter, measures and their requirements."""
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from scipy import stats
+
+from ...decide import Scatter, within
+from ...design import rows_of
+from ...files.quantity import SceneError
+from ...files.scene_file import find_scene, is_shafts, parse_scene
+from ...files.schema import Keys, read_keys, scene_key
+from ...files.table import Table, not_among
+from ...fits import Limits, radial_clearance
+from ...numerics.units import unit_of
+from ...optimise import Constraint
+from ...optimise.smooth import SMOOTHING_EXPONENT
+from ...statics.installed import Installed
+from ...statics.support import Support
+from ..bearing.read_fit import read_temperature
+from ..bearing.read_scene import Scene
+from ..optimise.read_optimise import (
+    ConstraintKeys,
+    installed_numbers,
+    kind_of_measure,
+    measured_in,
+    read_operated,
+)
+from ..optimise.read_shaft_optimise import (
+    ShaftConstraintKeys,
+    design_in_cases,
+    shaft_measure,
+    shaft_numbers,
+)
+from ..shaft.read import ShaftScene, read_shafts
+
+_SIZES = {
+    "clearance": {"radial_clearance": 1.0},
+    "shaft": {"shaft_interference": 1.0},
+    "bore": {"shaft_interference": -1.0},
+    "housing": {"housing_interference": -1.0},
+    "outside_diameter": {"housing_interference": 1.0},
+}
+"""Sizes of `SizeLimits` by their name in [fit], with the numbers of a `Mounting` to
+which they add."""
+SHAPES = ("normal", "uniform")
+"""Shapes of a distribution."""
+_MOST_KELVIN = 100.0
+"""Standard deviation of a temperature above which degrees of a scale were meant [K]."""
+
+
+class MeasureKeys(ConstraintKeys):
+    about = "[[tolerances.measures]]: what is asked, and what is required of it"
+
+    def check(self) -> None:
+        """A bound is no duty here."""
+
+
+class ShaftMeasureKeys(ShaftConstraintKeys):
+    about = "[[tolerances.measures]]: what is asked, and what is required of it"
+
+    def check(self) -> None:
+        """A bound is no duty here."""
+
+
+class CorrelationKeys(Keys):
+    about = "[[tolerances.correlations]]: two numbers that scatter together"
+
+    between: tuple[str, ...] = scene_key("the two, by their keys in `numbers`")
+    value: float = scene_key("coefficient of correlation", above=-1, below=1)
+
+
+class TightenKeys(Keys):
+    about = "[tolerances.tighten]: the search for the cheapest narrower tolerances"
+
+    most_misses: float = scene_key(
+        "share that may miss a requirement", above=0, most=0.99
+    )
+    narrowest: float = scene_key(
+        "least width of a tolerance over that given", default=0.2, above=0, below=1
+    )
+
+
+def _numbers_key() -> Any:
+    return scene_key(
+        "numbers that scatter, by their key in the scene, in quotes: `{ from, to }`,"
+        " `{ mean, deviation }` or both, `shape` (normal or uniform), `narrowing ="
+        " { by, costs }`; sizes of classes of fit and clearance scatter by themselves:"
+        f" {', '.join(f'`fit.{name}`' for name in _SIZES)}",
+        default=None,
+        reader=lambda table, name: table.table(name),
+        json={"type": "object", "additionalProperties": {"type": "object"}},
+    )
+
+
+class SharedKeys(Keys):
+    about = "[tolerances]: numbers that scatter, and what becomes of the results"
+
+    samples: int = scene_key("least number of samples", default=10_000, most=10**6)
+    seed: int = scene_key("seed of the samples", default=0, least=0)
+    numbers: Any = _numbers_key()
+    correlations: tuple[CorrelationKeys, ...] = scene_key(
+        "numbers that scatter together", default=()
+    )
+    tighten: TightenKeys | None = scene_key("search for narrower tolerances")
+
+
+class ToleranceKeys(SharedKeys):
+    about = "[tolerances]: numbers that scatter, and what becomes of the results"
+
+    measures: tuple[MeasureKeys, ...] = scene_key("what is asked")
+
+
+class ShaftToleranceKeys(SharedKeys):
+    about = "[tolerances]: numbers that scatter, and what becomes of the results"
+
+    measures: tuple[ShaftMeasureKeys, ...] = scene_key("what is asked")
+
+
+@dataclasses.dataclass(frozen=True)
+class ToleranceTask:
+    """Tolerances of a scene.
+
+    Attributes:
+        scene: The scene, of a bearing or of shafts.
+        given: Design, cases, scatters and measures, as `decide.tolerances` takes them.
+        units: SI unit of each number that scatters.
+        options: Samples, seed, correlation, support and numerics, likewise.
+        tighten: The search for narrower tolerances, or `None`.
+        inputs: The scene as it was read, all quantities in SI.
+    """
+
+    scene: Scene | ShaftScene
+    given: tuple[Any, Any, tuple[Scatter, ...], tuple[Any, ...]]
+    units: tuple[str, ...]
+    options: dict[str, Any]
+    tighten: TightenKeys | None
+    inputs: dict[str, Any] = dataclasses.field(repr=False)
+
+
+def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> ToleranceTask:
+    """Read a scene with [tolerances], of a bearing or of a system of shafts.
+
+    Args, raises: as `read_scene`.
+    """
+    settings = tuple(settings)
+    path = find_scene(source)
+    data = parse_scene(path, settings)
+    if "tolerances" not in data:
+        problem = "`tolerances` is missing; it must be a table that names `measures`"
+        raise SceneError(f"{path.name}: {problem}")
+    if is_shafts(data):
+        scene: Any = read_shafts(source, settings)
+        top, inputs = Table({"tolerances": data["tolerances"]}, path), scene.inputs
+        if scene.heat is not None:
+            problem = "does not go with [heat]; give the temperatures that it finds"
+            raise top.error("tolerances", problem)
+        table = top.table("tolerances")
+        keys = read_keys(ShaftToleranceKeys, table)
+        measures = [
+            shaft_measure(one, "measure", scene, SMOOTHING_EXPONENT)
+            for one in keys.measures
+        ]
+        design, cases = design_in_cases(scene, measures, table)
+        numbers, seats = shaft_numbers(scene), scene.system.seats
+        places = {
+            f"bearings.{seat.name}.": f"system.seats.{k}.installed."
+            for k, seat in enumerate(seats)
+            if seat.installed is not None
+        }
+    else:
+        problem = "[tolerances] are those of one"
+        top, scene, cases, inputs = read_operated(data, path, problem)
+        table = top.table("tolerances")
+        keys = read_keys(ToleranceKeys, table)
+        measured = measured_in(scene, cases, SMOOTHING_EXPONENT)
+        measures = [measured.measure(one, "measure") for one in keys.measures]
+        design, numbers = scene.installed, installed_numbers(scene)
+        places = {"": ""}
+    sizes = {}
+    for head, own in places.items():
+        design, found = _sizes(design, head, own)
+        sizes |= found
+    scatters = _scatters(table.table("numbers"), design, numbers, sizes)
+    if not scatters:
+        problem = "name one at least: no size of this scene has a tolerance class"
+        raise table.error("numbers", problem)
+    asked = tuple(
+        measure
+        if (one.at_least, one.at_most) == (None, None)
+        else one.constraint(measure, kind_of_measure(measure))
+        for one, measure in zip(keys.measures, measures, strict=True)
+    )
+    if keys.tighten is not None:
+        if not any(isinstance(one, Constraint) for one in asked):
+            problem = "needs `at_least` or `at_most` of a measure"
+            raise table.error("tighten", problem)
+        if all(one.cost is None for one in scatters):
+            problem = "needs `narrowing = { by, costs }` of one number at least"
+            raise table.error("tighten", problem)
+    names = [one.name for one in scatters]
+    options = {"samples": keys.samples, "seed": keys.seed}
+    options["correlation"] = _correlation(keys.correlations, names)
+    if isinstance(scene, Scene):
+        options["support"] = Support(scene.free, fixed_ring=scene.fixed_ring)
+        options["solve"] = scene.solve_options
+    table.finish()
+    return ToleranceTask(
+        scene,
+        (design, cases, scatters, asked),
+        tuple(unit_of(design, next(iter(one.path))) for one in scatters),
+        options,
+        keys.tighten,
+        {**inputs, "tolerances": table.echo()},
+    )
+
+
+def _correlation(pairs: Iterable[CorrelationKeys], names: list[str]) -> np.ndarray:
+    found = np.eye(len(names))
+    for one in pairs:
+        for name in one.between:
+            if name not in names:
+                raise one.table.error("between", not_among(name, names))
+        if len(set(one.between)) != 2:
+            raise one.table.error("between", "must name two numbers")
+        i, j = map(names.index, one.between)
+        found[i, j] = found[j, i] = one.value
+        if np.linalg.eigvalsh(found)[0] <= 0.0:
+            problem = "contradicts the correlations before it: no numbers have them all"
+            raise one.table.error("value", problem)
+    return found
+
+
+def _sizes(design: Any, head: str, own: str) -> tuple[Any, dict[str, Any]]:
+    """Sizes of classes of fit and clearance, by their key: factors by path and limits.
+
+    Args:
+        design: The whole design.
+        head: Before the keys of the bearing.
+        own: Before its paths in the design.
+
+    Returns:
+        The design, with the clearance before mounting as a number of the mounting if it
+        scatters; the sizes.
+    """
+
+    def installed(whole: Any) -> Installed:
+        for name in own.split(".")[:-1]:
+            whole = whole[int(name)] if name.isdecimal() else getattr(whole, name)
+        return whole
+
+    limits = installed(design).limits
+    if limits is None:
+        return design, {}
+    found: dict[str, Any] = {}
+    for name, ends in limits._asdict().items():
+        low, high = map(float, ends)
+        if low < high:
+            paths = {f"{own}mounting.{path}": f for path, f in _SIZES[name].items()}
+            found[f"{head}fit.{name}"] = paths, Limits(low, high)
+    if f"{head}fit.clearance" in found:
+        free = radial_clearance(rows_of(installed(design).drawing.bearing)[0].bearing)
+        design = eqx.tree_at(
+            lambda d: installed(d).mounting.radial_clearance,
+            design,
+            np.asarray(free, float),
+            is_leaf=lambda leaf: leaf is None,
+        )
+    return design, found
+
+
+def _scatters(
+    table: Table,
+    design: Any,
+    numbers: Mapping[str, tuple[str, ...]],
+    sizes: Mapping[str, Any],
+) -> tuple[Scatter, ...]:
+    """Read the numbers that scatter; sizes of classes do so unnamed."""
+    found = []
+    for key in dict.fromkeys((*sizes, *table.keys())):
+        if key in sizes:
+            paths, limits = sizes[key]
+        elif key in numbers:
+            paths, limits = dict.fromkeys(numbers[key], 1.0), None
+            for size, (others, _) in sizes.items():
+                same = key.endswith("internal_clearance") and size.endswith("clearance")
+                if set(others) & set(paths) or same:
+                    problem = f"stands beside the class of {size}, which scatters; name"
+                    raise table.error(key, f"{problem} that, or give no class")
+        else:
+            raise table.error(key, not_among(key, (*sizes, *numbers)))
+        found.append(_scatter(table.table(key), key, paths, limits, design))
+    return tuple(found)
+
+
+def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
+    unit, given = unit_of(design, next(iter(paths))), {}
+    for word in ("from", "to", "mean", "deviation"):
+        if unit == "K" and word != "deviation":
+            given[word] = read_temperature(part, word, None)
+        else:
+            given[word] = part.real(word, unit, None)
+    low, high, mean, deviation = given.values()
+    if limits is not None:
+        low, high = (
+            own if x is None else x for x, own in zip((low, high), limits, strict=True)
+        )
+    if unit == "K" and (deviation or 0.0) > _MOST_KELVIN:
+        raise part.error("deviation", f"is above {_MOST_KELVIN:g} K; give it in K")
+    if deviation is not None and not deviation > 0.0:
+        raise part.error("deviation", "must be above 0")
+    if (low is None) != (high is None):
+        raise part.error("from" if low is None else "to", "is missing beside the other")
+    if low is None and None in (mean, deviation):
+        problem = "give `from` and `to`, or `mean` and `deviation`"
+        raise part.own_error(problem)
+    if low is not None and not low < high:
+        raise part.error("from", "must lie below `to`")
+    if None not in (low, mean) and not low < mean < high:
+        raise part.error("mean", "must lie between `from` and `to`")
+    cost, narrowing = None, part.table("narrowing")
+    if narrowing.keys():
+        by, costs = narrowing.real("by", unit), narrowing.number("costs")
+        for name, value in (("by", by), ("costs", costs)):
+            if not value > 0.0:
+                raise narrowing.error(name, "must be above 0")
+        cost = costs / by
+    if part.choice("shape", SHAPES, "normal") == "uniform":
+        if low is None or (mean, deviation) != (None, None):
+            problem = "has `from` and `to` alone, without `mean` and `deviation`"
+            raise part.error("shape", f"a uniform one {problem}")
+        distribution = stats.uniform(low, high - low)
+    elif low is None:
+        distribution = stats.norm(mean, deviation)
+    else:
+        distribution = within(low, high, mean, deviation)
+    return Scatter(paths, distribution, key, cost)

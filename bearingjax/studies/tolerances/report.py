@@ -1,0 +1,201 @@
+"""Tolerances of a scene as text, as numbers in SI, and as a table."""
+
+from typing import Any
+
+import numpy as np
+
+from ...decide import Spread
+from ...decide.tolerance_effects import QUANTILES
+from ...numerics.units import shown_count, shown_number
+from ...numerics.warning import Warning
+from ...optimise import Constraint
+from ...report.json_output import run_json
+from ...report.report_model import Column, Grid, Part, Report
+from .read import ToleranceTask
+from .run import ToleranceRun
+
+_STEP = 0.1
+"""Change of a width, or of a middle, whose effect is told [width]."""
+_PERCENT = 100.0, "%"
+
+
+def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
+    """Return the readable report.
+
+    Args:
+        task: The task.
+        run: Its results.
+    """
+    found, scatters = run.found, task.given[2]
+    head = (
+        f"{task.scene.name}: {shown_count(len(found.result), 'sample')} of"
+        f" {shown_count(len(scatters), 'number')} that scatter, each under"
+        f" {shown_count(task.given[1].count, 'operating case')}"
+    )
+    ends = zip(*(one.ends for one in scatters), strict=True)
+    numbers = Grid(
+        [
+            Column("number", [one.name for one in scatters]),
+            *(
+                Column(w, _in_units(task, x))
+                for w, x in zip(("from", "to"), ends, strict=True)
+            ),
+            Column("mean", _in_units(task, [one.centre for one in scatters])),
+            Column("deviation", _in_units(task, [x.spread for x in scatters], True)),
+        ]
+    )
+    causes = [Column("number", [one.name for one in scatters])]
+    for one in found.spreads:
+        pairs = (one.name, one.shares), ("by gradient", one.first_order_shares)
+        causes += [Column(word, x, "", ".3g", _PERCENT) for word, x in pairs]
+    title = "share of the variance that each number causes alone"
+    sections: dict[str, list[Part]] = {
+        "Tolerances": [head, "", numbers],
+        "Results": [_results(found.spreads)],
+        "Causes": [Grid(causes, title)],
+    }
+    if found.misses is not None:
+        sections["Requirements"] = _requirements(task, found)
+    if run.narrower is not None:
+        sections["Tightening"] = _tightening(task, run.narrower)
+    return Report(sections, tolerance_warnings(task, run))
+
+
+def tolerance_warnings(task: ToleranceTask, run: ToleranceRun) -> list[Warning]:
+    """Return warnings about the scene, and samples that were not solved."""
+    failed, n = int(np.count_nonzero(run.found.result)), len(run.found.result)
+    words = f"{failed} of {n} samples were not solved; they count as misses"
+    lost = [Warning("failed_samples", words, failed / n, 0.0)] if failed else []
+    return [*task.scene.warnings, *lost]
+
+
+def tolerances_as_dict(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]:
+    """Return the results as plain numbers and lists, in SI.
+
+    Returns:
+        tolerances: for each measure mean, standard_deviation, quantiles, errors,
+        first_order, misses, shares; misses: share, error and its derivatives by number;
+        numbers; samples; failed; tightening, if it is asked for; warnings, inputs,
+        version.
+    """
+    found, names = run.found, [one.name for one in task.given[2]]
+
+    def by_name(values: Any) -> dict[str, float]:
+        return dict(zip(names, values, strict=True))
+
+    numbers: dict[str, Any] = {
+        "tolerances": {
+            _key(one): {
+                "mean": one.mean,
+                "standard_deviation": one.deviation,
+                "quantiles": dict(zip(map(str, QUANTILES), one.quantiles, strict=True)),
+                "errors": one.errors,
+                "first_order": {
+                    "mean": one.first_order[0],
+                    "standard_deviation": one.first_order[1],
+                    "shares": by_name(one.first_order_shares),
+                    "slopes": by_name(one.slopes),
+                },
+                "misses": one.misses,
+                "shares": by_name(one.shares),
+            }
+            for one in found.spreads
+        },
+        "numbers": {
+            one.name: {"mean": one.centre, "standard_deviation": one.spread}
+            for one in task.given[2]
+        },
+        "samples": len(found.result),
+        "failed": np.count_nonzero(found.result),
+    }
+    for name, part in (("misses", found.misses), ("tightening", run.narrower)):
+        if part is not None:
+            numbers[name] = {
+                k: by_name(v) if np.ndim(v) else v for k, v in vars(part).items()
+            }
+    return run_json(numbers, tolerance_warnings(task, run), task.inputs)
+
+
+def tolerance_columns(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]:
+    """Return the table: a row for each sample, columns by header, in SI."""
+    found = run.found
+    names = [one.name for one in task.given[2]] + [_key(x) for x in found.spreads]
+    units = [*task.units, *(one.unit for one in found.spreads)]
+    heads = [f"{n} [{u or '1'}]" for n, u in zip(names, units, strict=True)]
+    return dict(zip(heads, np.hstack([found.samples, found.values]).T, strict=True))
+
+
+def _key(spread: Spread) -> str:
+    return spread.name.replace(" ", "_")
+
+
+def _in_units(task, values, difference: bool = False) -> list[str]:
+    return [
+        f"{x:.4g} K" if unit == "K" and difference else shown_number(x, unit)
+        for x, unit in zip(values, task.units, strict=True)
+    ]
+
+
+def _results(spreads) -> Grid:
+    """Tabulate quantiles and moments, below each those by the gradient."""
+    rows = []
+    for one in spreads:
+        numbers = *one.quantiles, one.mean, one.deviation
+        rows.append([one.name, *(shown_number(x, one.unit) for x in numbers)])
+        both = (shown_number(x, one.unit) for x in one.first_order)
+        rows.append(["  by the gradient", *[""] * len(QUANTILES), *both])
+    heads = "", *(f"{100.0 * share:g} %" for share in QUANTILES), "mean", "deviation"
+    columns = zip(heads, zip(*rows, strict=True), strict=True)
+    title = "what that share of the samples does not exceed"
+    return Grid([Column(*column) for column in columns], title)
+
+
+def _requirements(task, found) -> list[Part]:
+    misses, parts = found.misses, []
+    for asked, one in zip(task.given[3], found.spreads, strict=True):
+        if isinstance(asked, Constraint):
+            ends = (("at least", asked.lower), ("at most", asked.upper))
+            words = " and ".join(
+                f"{word} {shown_number(float(bound), one.unit)}"
+                for word, bound in ends
+                if bound is not None
+            )
+            parts.append(f"{one.name} {words}: {100.0 * one.misses:.3g} % miss it")
+    parts.append(
+        f"all requirements: {100.0 * misses.share:.3g} % miss one or several"
+        f" (standard error {100.0 * misses.error:.2g} %)"
+    )
+    names = [one.name for one in task.given[2]]
+    prices = [np.nan if x.cost is None else x.cost * x.width for x in task.given[2]]
+    saved = misses.by_width / prices
+    columns = [
+        Column("number", names),
+        Column("width", -_STEP * misses.by_width, "", "+.2g", _PERCENT),
+        Column("error", _STEP * misses.errors, "", ".1g", _PERCENT),
+        Column("middle", _STEP * misses.by_middle, "", "+.2g", _PERCENT),
+        Column("saved by a unit of cost", saved, "", ".2g", _PERCENT),
+    ]
+    title = "change of that share with a tenth less width, and with the middle a tenth"
+    parts += ["", Grid(columns, f"{title} of the width higher")]
+    for words, gain in (("", misses.by_width), (" for its cost", np.nan_to_num(saved))):
+        if gain.max(initial=0.0) > 0.0:
+            first = names[gain.argmax()]
+            parts.append(f"most is saved{words} by less width of {first}")
+    return parts
+
+
+def _tightening(task, narrower) -> list[Part]:
+    old = np.array([one.width for one in task.given[2]])
+    columns = [
+        Column("number", [one.name for one in task.given[2]]),
+        Column("width", _in_units(task, old, True)),
+        Column("narrower", _in_units(task, old * narrower.widths, True)),
+        Column("of that given", narrower.widths, "", ".3g", _PERCENT),
+    ]
+    before, after, error = (
+        f"{100.0 * x:.3g} %" for x in (narrower.before, narrower.after, narrower.error)
+    )
+    words = f"{before} before, {after} after (standard error {error})"
+    asked = f"asked {100.0 * task.tighten.most_misses:g} %"
+    missed = f"share that misses, in new samples: {words}, {asked}"
+    return [Grid(columns), missed, f"cost {narrower.cost:.4g}"]

@@ -1,0 +1,278 @@
+"""Tolerances: samples, causes, misses and tightening, against closed forms."""
+
+import numpy as np
+import pytest
+from scipy import stats
+from tolerances import DIFFERENCE, ROUNDING, SOLVER
+
+import bearingjax as bj
+from bearingjax.decide import Scatter, tighten, tolerances, within
+from bearingjax.decide.scatter import draw
+from bearingjax.decide.tolerance_effects import QUANTILES, Sampled, _variance_shares
+from bearingjax.optimise import Constraint, OperatingClearance, PeakPressure, RatingLife
+from bearingjax.statics import Installed
+
+PLAY, CROWN = "radial_internal_clearance", "ball_diameter"
+SLOPE = np.array([3.0, -4.0])
+"""Slopes of the linear measure over its numbers, of spread 1 and 0.5: sd² = 9 + 4."""
+SPREAD = 13.0**0.5
+
+
+def linear(element, cases, solution):
+    """Stands for a measure; `closed_form` gives its values."""
+
+
+@pytest.fixture
+def element():
+    return bj.BearingElement(bj.load_bearing("6205"))
+
+
+@pytest.fixture
+def closed_form(monkeypatch):
+    """Samples of a linear measure in place of those of a bearing."""
+
+    def solve(self, samples, slopes):
+        values = samples @ SLOPE[:, None]
+        gradient = np.broadcast_to(SLOPE, (len(samples), 1, 2)) if slopes else None
+        return values, np.zeros(len(samples), int), gradient
+
+    monkeypatch.setattr(Sampled, "solve", solve)
+    monkeypatch.setattr(
+        "bearingjax.decide.tolerance_effects._check_ends", lambda *_: None
+    )
+
+
+def numbers(first=None, **more):
+    one = stats.norm(0.0, 1.0) if first is None else first
+    return [
+        Scatter("bearing.a", one, "a", **more),
+        Scatter("bearing.b", stats.norm(0.0, 0.5), "b"),
+    ]
+
+
+def solved(element, scatters=None, limit=2.0, **more):
+    return tolerances(
+        element,
+        bj.Cases([np.zeros(6)]),
+        numbers() if scatters is None else scatters,
+        [Constraint(linear, upper=limit)],
+        **more,
+    )
+
+
+def test_scatter_refuses_what_is_none():
+    norm = stats.norm(0.0, 1.0)
+    for given, kind, text in (
+        ((3, norm), TypeError, "path"),
+        (((), norm), TypeError, "path"),
+        (("a", 3.0), TypeError, "distribution"),
+        (("a", stats.norm(0.0, 0.0)), ValueError, "distribution"),
+        (("a", stats.cauchy()), ValueError, "distribution"),
+        (("a", norm, "", -1.0), ValueError, "cost"),
+    ):
+        with pytest.raises(kind, match=f"Scatter: `{text}`"):
+            Scatter(*given)
+    for given, text in (((2.0, 1.0), "lower"), ((1.0, 2.0, 1.5, 0.0), "deviation")):
+        with pytest.raises(ValueError, match=f"within: `{text}`"):
+            within(*given)
+
+
+def test_within_is_cut_off_at_three_deviations():
+    made = Scatter("a", within(1e-6, 7e-6))
+    assert made.ends == pytest.approx((1e-6, 7e-6), rel=ROUNDING)
+    assert made.centre == pytest.approx(4e-6, rel=ROUNDING)
+    assert made.spread == pytest.approx(0.9866e-6, rel=1e-4)  # of ±3 standard ones
+    free = Scatter("a", stats.norm(5.0, 2.0))
+    assert free.ends == pytest.approx((-1.0, 11.0), rel=ROUNDING)
+
+
+def test_draw_has_distributions_and_correlation():
+    scatters = [*numbers(), Scatter("c", stats.uniform(2.0, 4.0))]
+    root = np.linalg.cholesky([[1.0, 0.6, 0.0], [0.6, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    found = draw(scatters, root, 8000, 1)
+    assert found.shape == (8192, 3)
+    assert found.mean(axis=0) == pytest.approx([0.0, 0.0, 4.0], abs=1e-3)
+    assert found.std(axis=0) == pytest.approx([1.0, 0.5, 4.0 / 12**0.5], rel=2e-3)
+    assert np.corrcoef(found.T)[0] == pytest.approx([1.0, 0.6, 0.0], abs=2e-3)
+    assert found[:, 2].min() > 2.0 and found[:, 2].max() < 6.0
+    assert not np.array_equal(found, draw(scatters, root, 8000, 2))
+    assert np.array_equal(found, draw(scatters, root, 8000, 1))
+
+
+def test_spread_of_linear_measure(element, closed_form):
+    found = solved(element).spreads[0]
+    assert found.first_order == pytest.approx((0.0, SPREAD), rel=ROUNDING)
+    assert abs(found.mean) < 5.0 * found.errors[0] + 1e-3
+    assert found.deviation == pytest.approx(SPREAD, rel=2e-3)
+    exact = SPREAD * stats.norm.ppf(QUANTILES)
+    assert np.all(np.abs(found.quantiles - exact) < 5.0 * found.errors[2:] + 0.02)
+    assert found.first_order_shares == pytest.approx([9 / 13, 4 / 13], rel=ROUNDING)
+    assert found.shares == pytest.approx([9 / 13, 4 / 13], abs=0.02)
+    assert found.slopes == pytest.approx(SLOPE)
+
+
+def test_spread_of_correlated_numbers(element, closed_form):
+    both = [[1.0, 0.5], [0.5, 1.0]]
+    found = solved(element, correlation=both).spreads[0]
+    assert found.first_order[1] == pytest.approx(7.0**0.5, rel=ROUNDING)
+    assert found.deviation == pytest.approx(7.0**0.5, rel=5e-3)
+
+
+def test_misses_and_their_derivatives(element, closed_form):
+    """P(y > 2) = Φ(-2/s); its derivatives by the widths of both, and by the middle."""
+    found = solved(element, samples=60_000).misses
+    density = stats.norm.pdf(2.0, 0.0, SPREAD)
+    exact = stats.norm.sf(2.0, 0.0, SPREAD)
+    assert abs(found.share - exact) < 5.0 * found.error + 1e-4
+    assert found.smoothed == pytest.approx(exact, rel=0.02)
+    by_width = density * 2.0 / SPREAD**2 * np.array([9.0, 4.0])
+    assert np.all(np.abs(found.by_width - by_width) < 4.0 * found.errors)
+    width = np.array([6.0, 3.0])
+    assert found.by_middle == pytest.approx(density * SLOPE * width, rel=0.1)
+    assert found.error < 2e-3 and np.all(found.errors < 0.2 * by_width.max())
+
+
+def test_misses_of_two_requirements(element, closed_form):
+    asked = [Constraint(linear, lower=-2.0, upper=2.0)]
+    given = element, bj.Cases([np.zeros(6)]), numbers()
+    found = tolerances(*given, asked).misses
+    exact = 2.0 * stats.norm.sf(2.0, 0.0, SPREAD)
+    assert found.share == pytest.approx(exact, abs=5.0 * found.error + 1e-4)
+    assert found.by_middle == pytest.approx([0.0, 0.0], abs=0.2)
+    assert tolerances(*given, [linear]).misses is None
+
+
+def test_failed_samples_are_misses(element, closed_form, monkeypatch):
+    plain = Sampled.solve
+
+    def solve(self, samples, slopes):
+        values, result, gradient = plain(self, samples, slopes)
+        result = (samples[:, 0] > 1.0).astype(int)
+        return np.where(result[:, None] == 0, values, np.nan), result, gradient
+
+    monkeypatch.setattr(Sampled, "solve", solve)
+    found = solved(element, limit=1e3)
+    assert found.misses.share == pytest.approx(stats.norm.sf(1.0), abs=2e-3)
+    assert np.isfinite(found.spreads[0].mean)
+    assert found.spreads[0].misses == pytest.approx(found.misses.share)
+
+
+def test_tighten_takes_the_one_that_pays(element, closed_form):
+    """Of the first number alone has a cost: 9 w² + 4 = s² for the share asked."""
+    most = stats.norm.sf(2.0, 0.0, 8.0**0.5)
+    given = element, bj.Cases([np.zeros(6)])
+    asked = [Constraint(linear, upper=2.0)]
+    found = tighten(*given, numbers(cost=2.0), asked, most, samples=8000)
+    assert found.converged
+    assert found.widths == pytest.approx([(4.0 / 9.0) ** 0.5, 1.0], rel=0.03)
+    assert found.after == pytest.approx(most, abs=4.0 * found.error + 2e-3)
+    assert found.before == pytest.approx(stats.norm.sf(2.0 / SPREAD), abs=5e-3)
+    assert found.cost == pytest.approx(12.0 * (1.0 - found.widths[0]), rel=ROUNDING)
+    cheap = [numbers(cost=2.0)[0], Scatter("bearing.b", stats.norm(0, 0.5), "b", 1e3)]
+    dear = tighten(*given, cheap, asked, most, samples=8000)
+    assert dear.widths == pytest.approx(found.widths, abs=0.02)
+    out = tighten(*given, numbers(cost=2.0), asked, 1e-4, samples=8000)
+    assert not out.converged and out.widths[0] == pytest.approx(0.2)
+
+
+def test_tighten_refuses_what_is_none(element, closed_form):
+    given = element, bj.Cases([np.zeros(6)])
+    asked = [Constraint(linear, upper=2.0)]
+    for scatters, measures, share, text in (
+        (numbers(), asked, 0.1, "cost"),
+        (numbers(cost=1.0), [linear], 0.1, "Constraint"),
+        (numbers(cost=1.0), asked, 0.0, "most_misses"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            tighten(*given, scatters, measures, share)
+
+
+def test_variance_shares_of_ishigami():
+    """Sobol's indices of Ishigami's function: 0.3139, 0.4424, 0 (a = 7, b = 0.1)."""
+    x = np.random.default_rng(0).uniform(-np.pi, np.pi, (2**15, 3))
+    y = (
+        np.sin(x[:, 0])
+        + 7 * np.sin(x[:, 1]) ** 2
+        + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+    )
+    assert _variance_shares(x, y) == pytest.approx([0.3139, 0.4424, 0.0], abs=0.015)
+    assert _variance_shares(x, np.ones(2**15)) == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_tolerances_refuse_what_does_not_fit(element):
+    play = Scatter(f"bearing.{PLAY}", within(0.0, 2e-5), "play")
+    cases = bj.Cases([[0.0, -1e3, 0.0, 0.0, 0.0, 0.0]])
+    for scatters, measures, more, text in (
+        ([], [linear], {}, "scatters"),
+        ([play, play], [linear], {}, "unlike names"),
+        ([play], [], {}, "measures"),
+        ([play], [linear], {"samples": 0}, "samples"),
+        ([play], [linear], {"correlation": [[1.0, 0.0], [0.0, 1.0]]}, "correlation"),
+        ([Scatter("bearing.no", within(0, 1))], [linear], {}, "no number"),
+        ([Scatter("bearing.n_balls", within(0, 1))], [linear], {}, "no number"),
+        (
+            [Scatter(f"bearing.{CROWN}", within(-1e-3, 1e-2), "ball")],
+            [linear],
+            {},
+            "ball may be -0.001, which the design does not allow",
+        ),
+    ):
+        with pytest.raises(ValueError, match=text):
+            tolerances(element, cases, scatters, measures, **more)
+
+
+@pytest.fixture(scope="module")
+def fan():
+    """A ball bearing on seats of classes, its cases and what scatters."""
+    fit = bj.Mounting(0.025, 0.052, 0.08, 5e-6, 2e-6, radial_clearance=1e-5)
+    place = Installed(bj.BearingElement(bj.load_bearing("6205")), mounting=fit)
+    cases = bj.Cases(
+        [[0.0, -1.5e3, 2e2, 0.0, 0.0, 0.0], [0.0, -8e2, 0.0, 0.0, 0.0, 0.0]],
+        inner_speed=157.0,
+        hours=[1.0, 3.0],
+    )
+    shaft, bore = "mounting.shaft_interference", "mounting.shaft_interference"
+    scatters = [
+        Scatter("mounting.radial_clearance", within(8e-6, 2e-5), "clearance"),
+        Scatter({shaft: 1.0}, within(2e-6, 1.1e-5), "shaft"),
+        Scatter({bore: -1.0}, within(-1e-5, 0.0), "bore"),
+    ]
+    life = Constraint(RatingLife(hours=True), lower=2.93e3)
+    return place, cases, scatters, [life, PeakPressure(), OperatingClearance()]
+
+
+@pytest.mark.slow
+def test_tolerances_equal_single_solutions(fan):
+    """Each sample is what a bearing with these numbers gives by itself."""
+    place, cases, scatters, measures = fan
+    found = tolerances(*fan, samples=64)
+    names = "mounting.radial_clearance", "mounting.shaft_interference"
+    for k in (0, 17, 63):
+        play, shaft, bore = found.samples[k]
+        from bearingjax.optimise.variable import with_numbers
+
+        one = with_numbers(place, dict(zip(names, (play, shaft - bore), strict=True)))
+        damage, pressures, plays = [], [], []
+        for j in range(2):
+            speed = bj.Speed(157.0, 0.0)
+            own = one.element_at(speed)
+            solution = bj.solve_load(own, cases.load[j], speed=speed)
+            damage.append(float(bj.rating_life(own, solution).damage))
+            pressures.append(float(np.max(solution.contact_pressure)))
+            plays.append(float(own.bearing.radial_internal_clearance))
+        hours = float(bj.spectrum_life(cases, np.array(damage)).life_hours)
+        exact = hours, max(pressures), min(plays)
+        assert found.values[k] == pytest.approx(exact, rel=SOLVER)
+
+
+@pytest.mark.slow
+def test_tolerance_gradients_against_differences(fan):
+    place, cases, scatters, measures = fan
+    sampled = Sampled(*fan, samples=64)
+    centre, slopes = sampled.centre, sampled.solve(sampled.centre[None], True)[2][0]
+    for k, step in enumerate((1e-8, 1e-8, 1e-8)):
+        ends = np.stack([centre + s * step * np.eye(3)[k] for s in (1.0, -1.0)])
+        values = sampled.solve(ends, False)[0]
+        assert (values[0] - values[1]) / (2 * step) == pytest.approx(
+            slopes[:, k], rel=DIFFERENCE, abs=1e-7 * np.abs(slopes).max()
+        )
