@@ -73,9 +73,13 @@ def _table(name: str) -> tuple[_Letters, ...]:
     )
 
 
+_WITHIN = r"(?!(?<=\d)/(?=\d)|(?<=[A-Z])/(?=[A-Z]))"
+"""Not before a slash between digits or letters, a part of the name: 320/28, 418/414."""
+
+
 def compact(text: str) -> str:
-    """Return a designation in capitals, without separators."""
-    return re.sub(r"[\s./_-]+", "", text.upper())
+    """Return a designation in capitals, without separators but in 320/28."""
+    return re.sub(rf"{_WITHIN}[\s./_-]+", "", text.upper())
 
 
 def split_designation(
@@ -95,7 +99,7 @@ def split_designation(
     # "ß" would become "SS", and other signs than these no separators.
     known = re.fullmatch(r"[\w\s.,;:/+()\[\]*'\"-]*", plain) and plain.isascii()
     plain = plain.upper() if known else ""
-    words = re.sub(r"[^A-Z0-9]+", "-", plain).strip("-")
+    words = re.sub(rf"{_WITHIN}[^A-Z0-9]+", "-", plain).strip("-")
     if len(text) > _LONGEST or known and not words:
         raise ValueError(f'{text!r} is not a designation, such as "6205-2RS1/C3"')
     makers = "|".join(MAKERS)
@@ -135,7 +139,7 @@ def _matching_names(words: str, names: Mapping[str, Any]) -> list[tuple[str, str
                 break
             continue
         name += sign
-        rest = words[place + 1 :]
+        rest = words[place + 1 :].replace("/", "-")
         # Another digit would belong to the number, but for that of 62052RS.
         if name in names and not re.match(r"(?!2[A-Z])\d", rest):
             found.append((name, rest))

@@ -222,13 +222,16 @@ class CatalogueEntry:
         """Digits of the number before the bore code, and the letters after it.
 
         ("62", "") of 6205/C3, ("222", "EK") of 22220 EK, ("2", "EC") of NU 205 EC;
-        of deep groove ball bearings up to 9 mm as of larger ones, ("618", "") of 688.
+        of deep groove ball bearings up to 9 mm as of larger ones, ("618", "") of 688;
+        ("320", "X") of 320/28 X, ("222", "E") of 22205/20 E. "" of bearings without
+        series, such as MR 85.
         """
-        found = re.match(r"[A-Z]* ?(\d+) ?([A-Z]*)", self.designation)
+        found = re.match(r"([A-Z]*) ?(\d+)(/\d+)? ?([A-Z]*)", self.designation)
         assert found is not None
-        number, letters = found.groups()
-        small = self.type == "deep_groove_ball" and len(number) == 3
-        digits = number[:-1] if small else number[:-2]
+        first, number, bore, letters = found.groups()
+        small = self.type == "deep_groove_ball" and len(number) == 3 and not first
+        whole = bore and len(number) < 4
+        digits = number if whole else number[:-1] if small else number[:-2]
         return {"68": "618", "69": "619"}.get(digits, digits), letters
 
     @property

@@ -4,8 +4,8 @@ Names
 -----
 
 - Ball bearings: `DeepGrooveBallBearing`, `AngularContactBallBearing`,
-  `FourPointBallBearing`, `SelfAligningBallRow`, `ThrustBallBearing`,
-  `AbstractBallBearing`, `Groove`.
+  `DoubleRowBallRow`, `FourPointBallBearing`, `SelfAligningBallRow`,
+  `ThrustBallBearing`, `AbstractBallBearing`, `Groove`.
 - Roller bearings: `CylindricalRollerBearing`, `NeedleRollerBearing`,
   `TaperedRollerBearing`, `CylindricalThrustRollerBearing`,
   `TaperedThrustRollerBearing`, `AbstractRollerBearing`.
@@ -29,6 +29,7 @@ from .ball import AbstractBallBearing, Groove
 from .ball_types import (
     AngularContactBallBearing,
     DeepGrooveBallBearing,
+    DoubleRowBallRow,
     FourPointBallBearing,
     SelfAligningBallRow,
     ThrustBallBearing,
@@ -70,8 +71,9 @@ from .tolerance import (
 )
 
 __all__ = [
-    "DeepGrooveBallBearing", "AngularContactBallBearing", "FourPointBallBearing",
-    "SelfAligningBallRow", "ThrustBallBearing", "AbstractBallBearing", "Groove",
+    "DeepGrooveBallBearing", "AngularContactBallBearing", "DoubleRowBallRow",
+    "FourPointBallBearing", "SelfAligningBallRow", "ThrustBallBearing",
+    "AbstractBallBearing", "Groove",
     "CylindricalRollerBearing", "NeedleRollerBearing", "TaperedRollerBearing",
     "CylindricalThrustRollerBearing", "TaperedThrustRollerBearing",
     "AbstractRollerBearing", "SphericalRollerRow", "SphericalThrustRollerBearing",

@@ -36,6 +36,7 @@ class AbstractBearing(Printable):
         aligns: Whether it is a row of a self-aligning bearing, with the centre of its
             spherical outer raceway in the origin.
         is_crossed: Whether it is a row of a crossed roller bearing.
+        is_paired: Whether it is a row of a double-row angular contact ball bearing.
         bears_radially: Whether it carries radial load; cylindrical roller thrust
             bearings do not.
         tilts_alone: Whether its rings tilt freely where it is the only row.
@@ -46,6 +47,7 @@ class AbstractBearing(Printable):
 
     aligns: ClassVar[bool] = False
     is_crossed: ClassVar[bool] = False
+    is_paired: ClassVar[bool] = False
     bears_radially: ClassVar[bool] = True
     tilts_alone: ClassVar[bool] = False
     rated_rows: ClassVar[int] = 1

@@ -208,6 +208,32 @@ class AngularContactBallBearing(AbstractBallBearing):
         _check_rated(self)
 
 
+class DoubleRowBallRow(AngularContactBallBearing):
+    """One row of a double-row angular contact ball bearing, such as a 3208 A.
+
+    It bears an inner-ring load along +z, on the -z side of the middle, which is the
+    origin. Its mirror image runs on the same two rings, back to back (O):
+    `BearingSet.double_row` makes the bearing of both.
+
+    Attributes are those of `AngularContactBallBearing`, and
+        row_offset: Distance of the row from the middle of the bearing [m].
+
+    Traced: all fields but `n_balls`.
+    """
+
+    about: ClassVar[str] = "both rows of angular contact balls in one pair of rings"
+    is_paired: ClassVar[bool] = True
+
+    row_offset: Real = eqx.field(
+        **real("m", "distance of the row from the middle of the bearing", above=0),
+        kw_only=True,
+    )
+
+    @property
+    def axial_place(self) -> Scalar:
+        return -self.row_offset
+
+
 class ThrustBallBearing(AbstractBallBearing):
     """Single-direction thrust ball bearing, contact angle 90 degrees.
 

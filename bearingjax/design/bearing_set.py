@@ -11,6 +11,7 @@ from ..numerics.types import Number, Real, Scalar, array_namespace, as_real, wit
 from ..numerics.units import meaning, real
 from ..numerics.warning import Warning
 from .abstract import AbstractBearing
+from .ball_types import DoubleRowBallRow
 from .barrel import CrossedRollerRow
 from .checks import (
     all_of_class,
@@ -237,6 +238,19 @@ class BearingSet(Printable):
         return cls._with_mirrored(row, True)
 
     @classmethod
+    def double_row(cls, row: DoubleRowBallRow) -> "BearingSet":
+        """Double-row angular contact ball bearing, back to back (O).
+
+        Args:
+            row: The row on the -z side; the other is its mirror image.
+
+        Raises:
+            TypeError: If `row` is no `DoubleRowBallRow`.
+        """
+        of_class(cls, "row", row, DoubleRowBallRow, "a DoubleRowBallRow")
+        return cls._with_mirrored(row, True)
+
+    @classmethod
     def _with_mirrored(cls, row, staggered):
         turned = jnp.pi / row.n_elements if staggered else 0.0
         first = row.first_azimuth + turned
@@ -330,14 +344,15 @@ def is_self_aligning(bearing: AbstractBearing | BearingSet) -> bool:
 
 def shares_rings(bearing: AbstractBearing | BearingSet) -> bool:
     """Whether its rows run on the same two rings, as in self-aligning, spherical and
-    crossed roller bearings; a row of such a bearing counts too.
+    crossed roller bearings and double-row angular contact ball bearings; a row of such
+    a bearing counts too.
 
-    More than two rows of crossed rollers are several bearings.
+    More than two rows of crossed rollers, or of the latter, are several bearings.
     """
     rows = list(bearings_of(bearing))
     if all(row.aligns for row in rows):
         return True
-    return len(rows) <= 2 and all(row.is_crossed for row in rows)
+    return len(rows) <= 2 and all(row.is_crossed or row.is_paired for row in rows)
 
 
 def pitch_radius(bearing: AbstractBearing | BearingSet) -> Scalar:

@@ -7,6 +7,7 @@ from .abstract import AbstractBearing
 from .ball_types import (
     AngularContactBallBearing,
     DeepGrooveBallBearing,
+    DoubleRowBallRow,
     FourPointBallBearing,
     SelfAligningBallRow,
     ThrustBallBearing,
@@ -45,6 +46,7 @@ ROLLERS = {
 BALLS = {
     "deep_groove_ball": DeepGrooveBallBearing,
     "angular_contact_ball": AngularContactBallBearing,
+    "double_row_ball": DoubleRowBallRow,
     "four_point_ball": FourPointBallBearing,
     "self_aligning_ball": SelfAligningBallRow,
     "thrust_ball": ThrustBallBearing,
@@ -76,6 +78,8 @@ def both_rows(
         return bearing
     if isinstance(bearing, CrossedRollerRow):
         return BearingSet.crossed(bearing)
+    if isinstance(bearing, DoubleRowBallRow):
+        return BearingSet.double_row(bearing)
     return BearingSet.self_aligning(bearing, staggered=staggered)
 
 

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 
 from ..contact import AbstractLineLaw, AbstractPointLaw
 from ..design import AbstractBearing, BearingSet, SetRow, rows_of
+from ..design.ball_types import DoubleRowBallRow
 from ..design.bearing_set import bearings_of
 from ..design.checks import flag, is_traced, of_class
 from ..design.deviation import deviation_of
@@ -419,11 +420,13 @@ class BearingElement(Printable, Generic[AnyBearing]):
         raceway = deviation.raceway
         shift = None if raceway is None else raceway[:, :, :2]
         place = None
-        if not alone:
+        if not alone or bearing.is_paired:
             none = jnp.zeros_like(part.position)
             sign = none + (-1.0 if part.mirrored else 1.0)
             itself = element.places_itself
             position, offset = part.position, sign * part.inner_offset
+            if isinstance(bearing, DoubleRowBallRow):
+                position = position + sign * bearing.axial_place
             place = RowPlacement(
                 *((none, sign, none) if itself else (position, sign, offset))
             )

@@ -137,6 +137,8 @@ def _factors_of(entry: CatalogueEntry) -> tuple[float, float] | None:
     series, _ = entry.series
     if entry.type != "cylindrical_roller":
         series = series[1:]
+    if not series:
+        return None
     return reference_factors(entry.type, series.zfill(2))
 
 

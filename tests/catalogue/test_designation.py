@@ -34,7 +34,7 @@ def test_catalogue_entry_knows_what_six_makers_print():
             assert designated(whole) == (wanted if "с3" not in whole else "-"), whole
     known = [one for one in PRINTED if one[2] != "-"]
     assert len({maker for maker, *_ in known}) == 7
-    assert len(PRINTED) == 183 and len(known) == 163
+    assert len(PRINTED) == 183 and len(known) == 166
 
 
 def test_each_letter_without_effect_is_named():
@@ -113,7 +113,12 @@ def test_mistyped_designations_are_refused_or_of_their_own_number():
         if found != "-":
             accepted += 1
             whole = re.split(r"[A-Za-z]", re.sub(r"^\D+", "", text))[0].strip("-/. ")
-            assert number_of(found) == number_of(whole), text
+            numbers = {number_of(whole)}
+            if whole.endswith("2"):  # of seals, 62052RS
+                numbers.add(number_of(whole)[:-1])
+            # NSK 7914 C is 71914 C.
+            numbers |= {f"71{n[1:]}" for n in numbers if re.fullmatch(r"79\d\d", n)}
+            assert number_of(found) in numbers, text
     assert 25 < accepted < 250
 
 
@@ -139,8 +144,8 @@ def test_letters_of_a_contact_angle_are_never_taken_for_others(prefix):
 REFUSED = {
     "62/22": "/22 is a bore of 22 mm, part of the number",
     "SKF 63/22-2RS1": "/22 is a bore of 22 mm",
-    "320/28 X": "/28 is a bore of 28 mm",
-    "6025": "near it: 6205, 6005, 6015, 6020, 605, 625",
+    "303/28 J2": "/28 is a bore of 28 mm",
+    "6025": "near it: 6052, 6205, 6005, 6015, 6020, 6024",
     "30205 K": "letters after 30205 that are not known: 'K'",
     "6205 2RS XQ": "not known: 'XQ'",
     "6205 + H 205": "not known: 'H'",
@@ -226,11 +231,11 @@ def test_clearances_of_every_listed_bore_are_those_of_its_range(kind, taper):
 
 
 TABLES = {
-    "deep_groove_ball": ("_BALLS", 6, 120),
-    "cylindrical_roller": ("_CYLINDERS", 24, 120),
-    "needle_roller": ("_CYLINDERS", 24, 120),
+    "deep_groove_ball": ("_BALLS", 6, 315),
+    "cylindrical_roller": ("_CYLINDERS", 24, 180),
+    "needle_roller": ("_CYLINDERS", 24, 400),
     "self_aligning_ball": ("_SELF_ALIGNING", 10, 100),
-    "spherical_roller": ("_SPHERICAL", 30, 280),
+    "spherical_roller": ("_SPHERICAL", 24, 280),
     "toroidal_roller": ("_TOROIDAL", 30, 280),
 }
 """Clearances by type, and the ends of the ranges of the least and largest bore [mm]."""

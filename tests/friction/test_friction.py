@@ -1,5 +1,6 @@
 """Friction torques and films by hand, of single rows and of a solved pair."""
 
+import re
 from types import SimpleNamespace
 
 import equinox as eqx
@@ -180,7 +181,8 @@ SERIES = {
     **{"22330 CC": "223", "24128 CCK30": "241", "C 3052": "30", "C 2205 K": "22"},
     **{"51108": "51", "51308": "51", "81107 TN": "81", "81216": "81"},
     **{"29412": "294E", "29317 E": "293E", "29230 E": "292E", "RB 25025": None},
-    "NA 4905": None,
+    **{"22205/20 E": "222E", "21308 E": "213E", "320/28 X": "320"},
+    **{"LM11949/LM11910": "other", "NA 4905": None, "3208 A": None},
 }
 
 
@@ -192,9 +194,8 @@ def test_skf_series_of_designations(name):
 UNLISTED = {
     "deep_groove_ball": "2 3 42 43 161 617 622 623 628 630 637 638 639",
     "self_aligning_ball": "112 130 139",
-    "cylindrical_roller": "4 10 12 20",
-    "tapered_roller": "other 329",
-    "spherical_roller": "213E 238 239 248 249",
+    "cylindrical_roller": "12 20",
+    "spherical_roller": "238 248 249",
     "toroidal_roller": "32 39 40 41 49 59 60 69",
     "spherical_thrust_roller": "292 293",
 }
@@ -204,7 +205,10 @@ UNLISTED = {
 def test_every_row_of_skfs_table_is_reached_by_an_entry_or_its_series_is_not_listed():
     reached: dict[str, set] = {}
     for entry in bj.catalogue_entries():
-        reached.setdefault(entry.type, set()).add(skf_series_of(entry))
+        if not re.match(r"MR|213\d\d CC", entry.designation):
+            reached.setdefault(entry.type, set()).add(skf_series_of(entry))
+        else:  # neither inch-like miniatures nor these are in the table
+            assert skf_series_of(entry) is None
     for kind, found in reached.items():
         model = friction_skf._TYPES.get({**BALL_TYPES, **ROLLERS_BY_TYPE}[kind])
         rows = {None} if model is None else set(model.series)

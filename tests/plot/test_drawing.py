@@ -52,6 +52,9 @@ DESIGNS = {
         inner_shoulder=0.002,
         raceway_deviation=1e-6 * np.ones((5, 2, 3)),
     ),
+    "double row": balls(
+        5, bj.design.DoubleRowBallRow, contact_angle=0.5, row_offset=0.005
+    ),
     "self-aligning row": balls(
         5, bj.SelfAligningBallRow, outer_osculation=None, row_offset=0.006
     ),

@@ -28,6 +28,7 @@ from bearingjax.studies.catalogue.catalogue_report import new_scene
 ENTRIES = bj.catalogue_entries()
 NAMES = [entry.designation for entry in ENTRIES]
 NEWER = {
+    "double_row_ball": 1.05,
     "spherical_roller": 1.135,
     "toroidal_roller": 1.135,
     "spherical_thrust_roller": 1.135,
@@ -136,7 +137,8 @@ def test_ratings_of_the_estimated_inside_are_those_printed(kind):
         )
         assert entry.dynamic_capacity and entry.static_capacity
         assert raised * c == pytest.approx(entry.dynamic_capacity, rel=0.026)
-        assert c0 == pytest.approx(entry.static_capacity, rel=0.006)
+        near = 0.016 if kind == "double_row_ball" else 0.006
+        assert c0 == pytest.approx(entry.static_capacity, rel=near)
         assert entry.mass is None or 0.62 < entry.mass / _solid(entry) < 1.0
 
 
@@ -191,11 +193,12 @@ def test_new_scenes_of_barrel_thrust_and_crossed_rollers_solve(run, tmp_path, na
 
 @pytest.mark.parametrize("kind", sorted({e.type for e in ENTRIES}))
 @pytest.mark.slow
-def test_new_scene_reads_for_every_catalogue_bearing(kind, tmp_path):
-    for entry in ENTRIES:
-        # The arrangements of ribs differ in one word.
-        if entry.type != kind or entry.design.get("arrangement", "NU") != "NU":
-            continue
+def test_new_scenes_of_all_kinds_of_bearings_read(kind, tmp_path):
+    """One in so many of each kind, some thirty."""
+    # The arrangements of ribs differ in one word.
+    ours = [e for e in ENTRIES if e.type == kind]
+    ours = [e for e in ours if e.design.get("arrangement", "NU") == "NU"]
+    for entry in ours[:: len(ours) // 40 + 1]:
         path = tmp_path / "new.toml"
         path.write_text(new_scene(entry), encoding="utf-8")
         scene = bj.read_scene(path)

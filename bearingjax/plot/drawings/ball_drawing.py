@@ -38,7 +38,7 @@ def dimensioned_balls(ax: Axes, bearing: AbstractBallBearing, size: Size) -> Non
         *_shoulders(ax, bearing, lines),
         *_angles(ax, bearing),
     ]
-    if bearing.aligns:
+    if bearing.aligns or bearing.is_paired:
         labels.append(_offset(ax, bearing, -corners[0, 1]))
     fit_view(ax, np.concatenate([corners, [one.at for one in labels]]), size)
     put_labels(ax, labels, size)
@@ -135,7 +135,7 @@ def _angles(ax, bearing):
 
 
 def _offset(ax, bearing, high):
-    middle = -1e3 * float(bearing.row_offset)
+    middle = -1e3 * float(bearing.axial_place)
     ax.plot([middle, middle], [-high, high], **AXIS)
     at = between(ax, (middle, 0.0), (0.0, 0.0), (0.0, -high))
     return Label(label(bearing, "row_offset"), at)

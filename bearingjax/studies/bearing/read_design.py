@@ -57,7 +57,7 @@ def with_both_rows(
 def two_row_name(bearing: design.AbstractBearing) -> str:
     """Name the kind of a bearing of two rows, which share rings."""
     if bearing.is_ball:
-        return "self-aligning"
+        return "double-row ball" if bearing.is_paired else "self-aligning"
     return "crossed roller" if bearing.is_crossed else "spherical roller"
 
 

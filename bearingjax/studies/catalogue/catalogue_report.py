@@ -30,6 +30,7 @@ _SPEED = 1500.0
 _SPEED_FACTORS = {
     "deep_groove_ball": 480e3,
     "angular_contact_ball": 285e3,
+    "double_row_ball": 240e3,
     "four_point_ball": 265e3,
     "self_aligning_ball": 425e3,
     "thrust_ball": 72e3,
@@ -139,7 +140,7 @@ def catalogue_table(entries: Sequence[CatalogueEntry]) -> str:
         )
     lines.append(
         f"{len(entries)} bearings (mm, kN; C axial of thrust bearings, of both rows of"
-        " self-aligning and spherical roller ones)"
+        " double-row, self-aligning and spherical roller ones)"
     )
     return "\n".join(lines)
 
