@@ -92,6 +92,7 @@ def _numbers_key() -> Any:
         " { by, costs }`; sizes of classes of fit and clearance scatter by themselves:"
         f" {', '.join(f'`fit.{name}`' for name in _SIZES)}",
         default=None,
+        name="numbers",
         reader=lambda table, name: table.table(name),
         json={"type": "object", "additionalProperties": {"type": "object"}},
     )
@@ -102,7 +103,7 @@ class SharedKeys(Keys):
 
     samples: int = scene_key("least number of samples", default=10_000, most=10**6)
     seed: int = scene_key("seed of the samples", default=0, least=0)
-    numbers: Any = _numbers_key()
+    scattered: Any = _numbers_key()
     correlations: tuple[CorrelationKeys, ...] = scene_key(
         "numbers that scatter together", default=()
     )
