@@ -13,6 +13,7 @@ from ..life.life import LifeConditions, rating_life
 from ..life.life_warning import ALL, life_sizes
 from ..numerics.warning import Warning, warnings_of_cases
 from .measure import AbstractMeasure
+from .smooth import smallest
 from .system import element_of, loads_of
 
 
@@ -171,7 +172,7 @@ class StaticSafety(AbstractMeasure):
         def safety(one):
             return rating_life(one.element, one, self.conditions).static_safety
 
-        return jnp.min(jax.vmap(safety)(loads_of(solution)))
+        return smallest(jax.vmap(safety)(loads_of(solution)))
 
     @property
     def label(self) -> str:

@@ -24,7 +24,13 @@ from ..numerics.types import Real, Reals, Scalar
 from ..numerics.units import real, unit_of
 from ..statics.preload import remaining_preload
 from ..statics.solution import RollerSolution, Solution
-from .smooth import SMOOTHING_EXPONENT, smooth_maximum, smooth_minimum
+from .smooth import (
+    SMOOTHING_EXPONENT,
+    largest,
+    smallest,
+    smooth_maximum,
+    smooth_minimum,
+)
 from .system import Design, loads_of
 
 
@@ -115,7 +121,7 @@ class AbstractLargest(AbstractSmooth):
         return smooth_maximum(self.samples(solution), self.exponent)
 
     def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
-        return jnp.max(self.samples(solution))
+        return largest(self.samples(solution))
 
 
 class PeakPressure(AbstractLargest):
@@ -161,7 +167,7 @@ class MeanPressure(AbstractSmooth):
         return _mean(peaks, cases)
 
     def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
-        return _mean(jnp.max(_pressures(solution), axis=1), cases)
+        return _mean(jax.vmap(largest)(_pressures(solution)), cases)
 
     @property
     def label(self) -> str:
@@ -254,7 +260,7 @@ class Stiffness(AbstractSmooth):
         return smooth_minimum(values, self.exponent)
 
     def exact_value(self, element: Design, cases: Any, solution: Any) -> Scalar:
-        return jnp.min(_stiffness(solution, self.freedom, self.freedom))
+        return smallest(_stiffness(solution, self.freedom, self.freedom))
 
     @property
     def label(self) -> str:
@@ -275,7 +281,7 @@ class OperatingClearance(AbstractMeasure):
         def clearance(one):
             return radial_clearance(rows_of(one.element.bearing)[0].bearing)
 
-        return jnp.min(jax.vmap(clearance)(loads_of(solution)))
+        return smallest(jax.vmap(clearance)(loads_of(solution)))
 
     @property
     def label(self) -> str:
@@ -296,7 +302,7 @@ class OperatingPreload(AbstractMeasure):
         def preload(one):
             return remaining_preload(one.element, one.speed, throw=False)
 
-        return jnp.min(jax.vmap(preload)(loads_of(solution)))
+        return smallest(jax.vmap(preload)(loads_of(solution)))
 
     @property
     def label(self) -> str:

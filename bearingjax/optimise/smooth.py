@@ -45,3 +45,26 @@ def smooth_minimum(values: Reals, exponent: float = SMOOTHING_EXPONENT) -> Scala
     share = low / jnp.where(none, 1.0, values)
     total = jnp.where(none, 1.0, jnp.sum(share**exponent))
     return jnp.where(none, jnp.min(values), low * total ** (-1.0 / exponent))
+
+
+def largest(values: Reals) -> Scalar:
+    """The largest number, with the derivative of the first such entry alone.
+
+    The derivative of `jnp.max` is shared by all entries that equal the maximum; where a
+    compiled program rounds the entries and the maximum unlike, there are none, and it
+    is 0/0.
+
+    Args:
+        values: Numbers [any unit].
+    """
+    flat = jnp.ravel(values)
+    return flat[jnp.argmax(jax.lax.stop_gradient(flat))]
+
+
+def smallest(values: Reals) -> Scalar:
+    """The smallest number, as `largest`.
+
+    Args:
+        values: Numbers [any unit].
+    """
+    return -largest(-values)

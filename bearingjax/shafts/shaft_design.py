@@ -24,7 +24,7 @@ from ..numerics.types import Scalar, array_namespace, as_real, with_fields
 from ..numerics.units import unit
 from ..numerics.warning import Warning, warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
-from ..optimise.smooth import smooth_maximum, smooth_minimum
+from ..optimise.smooth import largest, smallest, smooth_maximum, smooth_minimum
 from ..optimise.system import AbstractSystem
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
@@ -429,7 +429,7 @@ class Worst(AbstractSmooth):
         return of(self.samples(element, cases, solution), self.exponent)
 
     def exact_value(self, element: Any, cases: Any, solution: Any) -> Scalar:
-        of = jnp.min if self._power < 0 else jnp.max
+        of = smallest if self._power < 0 else largest
         return of(self.samples(element, cases, solution))
 
     @property
