@@ -17,7 +17,12 @@ from bearingjax.optimise import SearchOptions, design_numbers
 from bearingjax.optimise.design_problem import Bound, Problem, Run
 from bearingjax.optimise.optimise import _most_violated, verdict
 from bearingjax.optimise.search import SearchOutcome
-from bearingjax.optimise.smooth import smooth_maximum, smooth_minimum
+from bearingjax.optimise.smooth import (
+    largest,
+    smallest,
+    smooth_maximum,
+    smooth_minimum,
+)
 from bearingjax.optimise.trials import Trial, Trials, optimality
 from bearingjax.optimise.variable import with_numbers
 from bearingjax.statics import SolveOptions
@@ -609,3 +614,12 @@ def test_interrupted_search_keeps_its_best_design(straight):
     assert found.history.objective.min() < found.history.objective[0]
     assert all(words.startswith("step ") for words in told)
     assert all(words.endswith("of the start, constraints kept") for words in told)
+
+
+def test_largest_has_the_derivative_of_one_entry():
+    """Of equal entries the first, which `jnp.max` would divide among all."""
+    values = jnp.array([[1.0, 3.0], [3.0, -3.0]])
+    value, slope = jax.value_and_grad(largest)(values)
+    assert value == 3.0 and np.array_equal(slope, [[0.0, 1.0], [0.0, 0.0]])
+    value, slope = jax.value_and_grad(smallest)(values)
+    assert value == -3.0 and np.array_equal(slope, [[0.0, 0.0], [0.0, 1.0]])
