@@ -71,7 +71,7 @@ class CaseModel(eqx.Module):
 
     design: Any
     support: Support = Support()
-    options: SolveOptions = SolveOptions()
+    options: SolveOptions = eqx.field(default_factory=SolveOptions)
     life: LifeConditions | None = None
     paths: tuple[tuple[str, ...], ...] = eqx.field(static=True, default=())
     places: tuple[tuple[str, Place], ...] = eqx.field(static=True, default=())

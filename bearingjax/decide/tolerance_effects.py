@@ -377,8 +377,13 @@ class Sampled:
         )
         return np.where(result[:, None] == 0, values, np.nan), result, gradient
 
-    def conclude(self, samples, values, result) -> Tolerances:
-        """Results of solved samples."""
+    def conclude(
+        self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
+    ) -> Tolerances:
+        """Results of solved samples.
+
+        Args: as `misses`.
+        """
         middle, code, slopes = self.solve(self.centre[None], True)
         if code[0] != Result.CONVERGED:
             label = Result(int(code[0])).label
@@ -415,7 +420,9 @@ class Sampled:
             float(missed[0]) if missed else None,
         )
 
-    def misses(self, samples, values, result) -> Misses:
+    def misses(
+        self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
+    ) -> Misses:
         """Share that misses a requirement, and its derivatives.
 
         Args:

@@ -50,7 +50,7 @@ from .variable import Variable, design_numbers
 
 __all__ = [
     "optimise", "SearchOptions", "Variable", "Constraint", "design_numbers",
-    "PeakPressure", "MeanPressure", "EdgeLoad", "Displacement", "Stiffness",
-    "StiffnessTarget", "OperatingClearance", "OperatingPreload", "RatingLife", "Damage",
-    "StaticSafety", "OptimisedDesign", "Outcome", "History",
+    "PeakPressure", "MeanPressure", "EdgeLoad", "OperatingClearance",
+    "OperatingPreload", "Displacement", "Stiffness", "StiffnessTarget", "RatingLife",
+    "Damage", "StaticSafety", "OptimisedDesign", "Outcome", "History",
 ]  # fmt: skip

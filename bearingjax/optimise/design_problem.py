@@ -263,8 +263,16 @@ def _program(element, cases, measures, box, solves, build, unit, slopes) -> Run:
 
 
 @program(quick=True)
-def judge(measures, cases, design, solution):
-    """Return the measures, smooth and exact."""
+def judge(
+    measures: tuple[Measure, ...], cases: Any, design: Design, solution: Any
+) -> tuple[Any, Any]:
+    """Return the measures (measure,), smooth and exact.
+
+    Args:
+        measures: As in `optimise`.
+        cases, design: Operating cases, and the design.
+        solution: Solution of the cases, leading axis case.
+    """
     values = [_scalar(m, m(design, cases, solution)) for m in measures]
     exact = [exact_of(m, design, cases, solution) for m in measures]
     return jnp.stack(values), jnp.stack(exact)

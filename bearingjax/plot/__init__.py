@@ -31,10 +31,12 @@ from .balls import contact_angles, ellipses
 from .contact import contact_map, contact_overview, contact_surface
 from .contact_lines import centre_pressure, contact_line_load
 from .contact_stress import contact_stress
+from .decisions.identify_overview import identify_overview
+from .decisions.selection import selection_overview
+from .decisions.tolerances import tolerance_overview
 from .drawings.drawing import drawing
 from .drawings.section import cross_section
 from .drawings.sections import cross_sections
-from .identify_overview import identify_overview
 from .life import life_overview
 from .load import load_displacement, load_zone, stiffness_over_speed
 from .noise import (
@@ -56,7 +58,6 @@ from .rotors.rotor_modes import campbell_diagram, mode_shapes
 from .rotors.rotor_motion import orbits, waterfall, waveforms
 from .rotors.rotor_page import rotor_overview
 from .rotors.rotor_response import linear_curve, response_curve, speed_curve
-from .selection import selection_overview
 from .shafts import shaft_overview
 from .skidding.skid import cage_speed, power_bars, skid_overview
 from .skidding.skid_contact import heat_map, sliding_map
@@ -76,7 +77,6 @@ from .skidding.skid_curves import (
     spin_over_time,
 )
 from .sweep import sweep_overview
-from .tolerances import tolerance_overview
 from .validation import validation_overview
 
 __all__ = [

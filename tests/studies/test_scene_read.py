@@ -43,6 +43,8 @@ SHIPPED = (
     "tapered",
     "thrust_ball",
     "thrust_roller",
+    "identify_clearance",
+    "tolerances_seats",
 )
 CONTACT = "taper_contact"  # of one roller, for `read_contact`
 ROTORS = {  # for `read_rotor`

@@ -178,7 +178,7 @@ def _measured(held: Table, path: Path, model: CaseModel) -> Any:
             units[key.removesuffix(ERROR)] = unit
             kinds[key] = kind_of(unit) if unit else ""
     blank = kinds.keys() - OPERATING.keys()
-    found = read_list(held, path.parent, kinds, "readings", blank)
+    found = read_list(held, path.parent, kinds, "readings", blank=blank)
     read = {key: values for key, values in found.items() if key in blank}
     alone = [key for key in read if key.removesuffix(ERROR) not in read]
     if alone or not read:

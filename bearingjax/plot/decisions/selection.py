@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..decide import Selection
-from .panel import Axis, Curve, Panel
-from .style import GREY, INNER, OUTER, Figure, head, new_page
+from ...decide import Selection
+from ..panel import Axis, Curve, Panel
+from ..style import GREY, INNER, OUTER, Figure, head, new_page
 
 
 def selection_overview(found: Selection, title: str = "") -> Figure:

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..decide import Identified
-from ..numerics.units import display_unit
-from .style import OUTER, ROLLER, Figure, head, new_page
+from ...decide import Identified
+from ...numerics.units import display_unit
+from ..style import OUTER, ROLLER, Figure, head, new_page
 
 
 def identify_overview(

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from .panel import Axis, Bars, Panel
-from .style import COLOURS, GREY, ROLLER, Figure, head, new_page
+from ..panel import Axis, Bars, Panel
+from ..style import COLOURS, GREY, ROLLER, Figure, head, new_page
 
 _BINS = 40
 _MOST = 4

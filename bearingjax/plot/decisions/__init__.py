@@ -1,0 +1,1 @@
+"""Plots of identified numbers, tolerances and choices."""
