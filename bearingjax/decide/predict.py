@@ -129,7 +129,8 @@ class CaseModel(eqx.Module):
 
         def numbers(case):
             design = self._made(values, case.design) if shared is None else shared
-            return self._numbers(solved_case(design, case, self.support, self.options))
+            solved = solved_case(design, case, self.support, self.options)
+            return self._numbers(solved, case)
 
         if cases.count <= CHUNK:
             return jax.vmap(numbers)(cases)
@@ -147,13 +148,13 @@ class CaseModel(eqx.Module):
         design = self.design_of(0 if number is None else number)
         return prepare(with_values(design, self.paths, values), None)
 
-    def _numbers(self, solution: Solution) -> dict[str, Array]:
+    def _numbers(self, solution: Solution, case: Cases) -> dict[str, Array]:
         wanted = dict.fromkeys(place.output for _, place in self.places)
         lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
         life = LifeConditions() if lives and self.life is None else self.life
         keep = Keep(tuple(name for name in wanted if name not in (*lives, *_STATES)))
         task = Task(self.support, self.options, keep, False, lives, life)
-        kept = task.outputs(solution)
+        kept = task.outputs(solution, case)
         if OPERATING_CLEARANCE in wanted:
             row = rows_of(solution.element.bearing)[0].bearing
             kept[OPERATING_CLEARANCE] = radial_clearance(row)

@@ -1,5 +1,7 @@
 """Numbers from measurements, of closed forms: nothing heavy is compiled."""
 
+from typing import Any
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -268,6 +270,7 @@ def test_plot_has_a_row_of_charts_for_each_name(exact, noise):
     found = bj.identify(hertz, LOADS, CONTACT, read, errors)
     left, right = bj.plot.identify_overview(found, {"approach": "m"}, "a name").axes
     assert left.get_xlabel() == "measured [µm]" and left.get_title() == "approach"
+    bars: Any
     (bars,) = right.containers
     shown = bars.lines[0].get_ydata()
     np.testing.assert_allclose(shown, 1e6 * found.residual["approach"])

@@ -1,5 +1,7 @@
 """Double-row angular contact ball bearings are pairs of their rows, back to back."""
 
+from typing import Any
+
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
@@ -23,7 +25,7 @@ def test_it_is_a_pair_of_angular_contact_balls_back_to_back():
     assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
     assert np.abs(one[9:11]).min() > 1.0
     for of_double, of_pair in zip(double.rows, pair.rows, strict=True):
-        finite = (bj.element.Finite().ball(part) for part in (of_double, of_pair))
+        finite: Any = (bj.element.Finite().ball(x) for x in (of_double, of_pair))
         assert len({float(ball.along) for ball in finite}) == 1
 
 

@@ -19,7 +19,6 @@ from ...fits import Limits, radial_clearance
 from ...numerics.units import unit_of
 from ...optimise import Constraint
 from ...optimise.smooth import SMOOTHING_EXPONENT
-from ...statics.installed import Installed
 from ...statics.support import Support
 from ..bearing.read_fit import read_temperature
 from ..bearing.read_scene import Scene
@@ -204,7 +203,7 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             problem = "needs `narrowing = { by, costs }` of one number at least"
             raise table.error("tighten", problem)
     names = [one.name for one in scatters]
-    options = {"samples": keys.samples, "seed": keys.seed}
+    options: dict[str, Any] = {"samples": keys.samples, "seed": keys.seed}
     options["correlation"] = _correlation(keys.correlations, names)
     if isinstance(scene, Scene):
         options["support"] = Support(scene.free, fixed_ring=scene.fixed_ring)
@@ -249,7 +248,7 @@ def _sizes(design: Any, head: str, own: str) -> tuple[Any, dict[str, Any]]:
         scatters; the sizes.
     """
 
-    def installed(whole: Any) -> Installed:
+    def installed(whole: Any) -> Any:
         for name in own.split(".")[:-1]:
             whole = whole[int(name)] if name.isdecimal() else getattr(whole, name)
         return whole
