@@ -44,6 +44,7 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
 - Whether an answer holds: `Result`, `SolveError`, `warnings`.
 - Numbers from measurements: `identify`.
 - A choice of bearing: `select`.
+- What tolerances do: `tolerances`.
 - Scene files: `run`, `read_scene`, `SceneError`.
 - The program: `keep_programs`, `__version__`.
 
@@ -179,7 +180,7 @@ if _TYPE_CHECKING:
         studies,
         validation,
     )
-    from .decide import identify, select
+    from .decide import identify, select, tolerances
     from .files import SceneError
     from .studies.bearing.read_scene import load_bearing, read_scene
     from .studies.study import run
@@ -201,7 +202,8 @@ __all__ = [
     "preload", "solve_load", "Support", "linearise", "refine", "sweep", "Cases",
     "stack_designs", "spectrum_life", "ratings", "dynamic_capacity", "static_capacity",
     "rating_life", "LifeConditions", "Lubricant", "films", "friction_torque", "Result",
-    "SolveError", "warnings", "identify", "select", "run", "read_scene", "SceneError",
+    "SolveError", "warnings", "identify", "select", "tolerances", "run", "read_scene",
+    "SceneError",
     "keep_programs", "__version__",
 ]  # fmt: skip
 
@@ -214,6 +216,7 @@ _LATE = dict.fromkeys(
     "SceneError": "files",
     "identify": "decide",
     "select": "decide",
+    "tolerances": "decide",
     "load_bearing": "studies.bearing.read_scene",
     "read_scene": "studies.bearing.read_scene",
     "run": "studies.study",
