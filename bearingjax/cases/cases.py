@@ -161,6 +161,19 @@ class Cases(Printable):
             allowed = "0 to pi rad, half of the whole swing"
             must_be("Cases", "oscillation", swings, known, allowed)
 
+    def check_oil(self, owner: str) -> None:
+        """Raise for cases with an oil of their own, or that oscillate.
+
+        Args:
+            owner: Name of the function that does not know such cases.
+
+        Raises:
+            ValueError: If `viscosity` or `oscillation` is given.
+        """
+        for name in ("viscosity", "oscillation"):
+            allowed = "left out here; `sweep` with `spectrum_life` knows it"
+            must_be(owner, name, "given", getattr(self, name) is None, allowed)
+
     @property
     def count(self) -> int:
         """Number of cases."""

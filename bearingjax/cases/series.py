@@ -98,7 +98,7 @@ def series_cases(
     fits = time.shape == (cases.count,) and cases.count > 1
     of_shape("series_cases", "time", fits, allowed, time)
     columns = _columns(cases)
-    hours, told = _held(time, columns, gaps, row_name)
+    hours, told = _hold_rows(time, columns, gaps, row_name)
     if told and gaps == "refuse":
         raise ValueError(
             f"series_cases: `time` has gaps: {'; '.join(told)}. Leave them out, or let"
@@ -137,7 +137,7 @@ def _columns(cases: Cases) -> dict[str, np.ndarray]:
     return found
 
 
-def _held(time, columns, gaps, row_name):
+def _hold_rows(time, columns, gaps, row_name):
     """Hours that each row counts, and the gaps in words."""
     bad, found = np.zeros(time.shape, bool), []
     for name, values in {"time": time, **columns}.items():

@@ -75,16 +75,16 @@ class Identified(Shown):
         identifiable: Whether the readings tell all unknowns.
         untold: Combinations that they do not tell, in words. There the estimate is the
             nearest to the start, in ranges between the bounds.
-        singular_values: Of the Jacobian of the readings over their errors by the
-            unknowns over their ranges, falling (unknown,) [1].
+        singular_values: Singular values of the Jacobian of the readings over their
+            errors by the unknowns over their ranges, falling (unknown,) [1].
         residual: Measured less predicted, by name, NaN where not measured [SI].
         error: Standard deviations of the readings, by name [SI].
         prediction: Numbers at the estimate by name, of all cases [SI].
         prediction_error: Their standard errors, without those of a reading [SI].
         chi_square: Sum of squares of residuals over errors [1].
         degrees_of_freedom: Readings less unknowns.
-        probability: That residuals are as large by chance [1]; NaN where the errors are
-            not known, or no degree of freedom is left.
+        probability: Probability of residuals as large by chance [1]; NaN where the
+            errors are not known, or no degree of freedom is left.
         error_scale: Factor on the given errors, told by the residuals if they are not
             known [1].
         nonlinearity: Largest departure of the readings from the tangent at one standard

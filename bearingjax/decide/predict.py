@@ -57,7 +57,7 @@ class CaseModel(eqx.Module):
     Attributes:
         design: The bearing, an element or on its seats (`Installed`); several of one
             structure, from `stack`, among which `Cases(design=...)` chooses.
-        support: As in `sweep`.
+        support: What holds the rings; displacements are those of the cases.
         options: Numerics of the load solves.
         life: Conditions of a life among the numbers.
         paths: Dotted paths of the numbers that are given, a sequence each.
@@ -96,7 +96,7 @@ class CaseModel(eqx.Module):
         Raises:
             ValueError: If there is none of this name.
         """
-        known = dict(self._known(name))
+        known = dict(self._names_with_places(name))
         if name not in known:
             raise ValueError(not_among(name, [*known] or [n for n, _ in self._axes()]))
         return known[name]
@@ -125,10 +125,10 @@ class CaseModel(eqx.Module):
         self, values: Float[Array, " number"], cases: Cases
     ) -> dict[str, Float[Array, " case"]]:
         """The numbers by name (case,) [SI], at numbers of the design [SI]."""
-        shared = self._made(values, None) if cases.design is None else None
+        shared = self._design_at(values, None) if cases.design is None else None
 
         def numbers(case):
-            design = self._made(values, case.design) if shared is None else shared
+            design = self._design_at(values, case.design) if shared is None else shared
             solved = solved_case(design, case, self.support, self.options)
             return self._numbers(solved, case)
 
@@ -139,12 +139,12 @@ class CaseModel(eqx.Module):
     def why_failed(self, values: Any, cases: Cases, case: int) -> str:
         """Reason why a case fails at concrete numbers, in words."""
         one = jax.tree.map(lambda leaf: leaf[case], cases)
-        design = self._made(np.asarray(values), one.design)
+        design = self._design_at(np.asarray(values), one.design)
         solved = solved_case(design, one, self.support, self.options)
         label = Result(int(solved.result)).label
         return f"case {case}: {label}: {describe_failure(design, solved)}"
 
-    def _made(self, values, number) -> Design:
+    def _design_at(self, values, number) -> Design:
         design = self.design_of(0 if number is None else number)
         return prepare(with_values(design, self.paths, values), None)
 
@@ -178,7 +178,7 @@ class CaseModel(eqx.Module):
                         yield field.name, axes
         yield from dict.fromkeys((*SUMMARIES, *_STATES), ()).items()
 
-    def _known(self, name: str) -> Iterator[tuple[str, Place]]:
+    def _names_with_places(self, name: str) -> Iterator[tuple[str, Place]]:
         """Yield the numbers of the outputs with which a name begins, by name."""
         rows = bearings_of(_drawing(self.design_of()).bearing)
         places, counts = (

@@ -26,8 +26,8 @@ class Scatter:
             that share the value; or factors by path: what it adds to each. The number
             of a path that several scatters name is the sum of what they add, as an
             interference is the deviation of the shaft less that of the bore.
-        distribution: Of its values [SI]: a frozen distribution of `scipy.stats`, such
-            as `norm(300.0, 40.0)`, or that of `within`.
+        distribution: Distribution of its values [SI], frozen, of `scipy.stats`, such as
+            `norm(300.0, 40.0)`, or that of `within`.
         name: In reports; default: the first path.
         cost: What narrowing its width by one SI unit costs, in any currency; `None`:
             it cannot be narrowed.

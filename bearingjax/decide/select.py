@@ -104,8 +104,8 @@ class Requirements(Printable):
         load: `Cases`, whose damage adds up over their `hours`; or one load on the
             moving ring, at rest (6,) [N, N m].
         life: Conditions of the life, with that which is required; without ratings.
-        bounds: Of `NUMBERS` by name [SI]: a pair (least, greatest), either of which may
-            be `None`; or one number, which is the greatest mass, share of a speed,
+        bounds: Bounds of `NUMBERS` by name [SI]: a pair (least, greatest), either of
+            which may be `None`; or one number, which is the greatest mass, share of a speed,
             pressure or friction, the exact size, and the least of all others.
         types: Types that may be chosen; none named: all.
         clearance_class: Class of radial clearance, "C3", of types that have classes;
@@ -153,6 +153,7 @@ class Requirements(Printable):
         check(self, "load", loads, words, largest, "N")
         alone = cases.design is None
         must_be(self, "load", "of several designs", alone, "cases without `design`")
+        cases.check_oil("Requirements")
         check_held("Requirements", cases.load, self.support, cases.prescribed)
         never = "dynamic_capacity", "static_capacity", "fatigue_load_limit"
         for name in (*never, *(() if turning else ("required", "viscosity"))):

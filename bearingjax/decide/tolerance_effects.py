@@ -160,7 +160,7 @@ def tolerances(
     """Solve many machines whose numbers scatter, and tell what results they have.
 
     Args:
-        element, cases: As in `optimise`.
+        element, cases: The design and its operating cases, as in `optimise`.
         scatters: The numbers that scatter, each by itself but for `correlation`.
         measures: What is asked, as in `optimise`; in a `Constraint` a requirement.
         **options: Of `Sampled`: samples, seed, correlation, support, solve, build.
@@ -515,13 +515,13 @@ def _solve(element, cases, measures, numbers, solves, build, samples, batch, slo
         exact = judge(measures, cases, design, solution)[1]
         return exact, (exact, jnp.max(solution.result))
 
-    def one(values):
+    def solve_sample(values):
         if not slopes:
             return *outputs(values)[1], None
         gradient, found = jax.jacrev(outputs, has_aux=True)(values)
         return *found, gradient
 
-    return jax.lax.map(one, samples, batch_size=batch)
+    return jax.lax.map(solve_sample, samples, batch_size=batch)
 
 
 _solve_samples = program(_solve)

@@ -43,8 +43,11 @@ class OfLife(AbstractMeasure):
         Args: as `__call__`.
 
         Raises:
-            ValueError: For hours of cases without speeds, and as `rating_life`.
+            ValueError: For hours of cases without speeds, cases with an oil of their
+                own or that oscillate, and as `rating_life`.
         """
+
+        cases.check_oil(type(self).__name__)
 
         def damage(solution):
             return rating_life(element, solution, self.conditions).damage

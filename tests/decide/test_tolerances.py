@@ -128,7 +128,8 @@ def test_misses_and_their_derivatives(element, closed_form):
     by_width = density * 2.0 / SPREAD**2 * np.array([9.0, 4.0])
     assert np.all(np.abs(found.by_width - by_width) < 4.0 * found.errors)
     width = np.array([6.0, 3.0])
-    assert found.by_middle == pytest.approx(density * SLOPE * width, rel=0.1)
+    # The requirement is smoothed over 0.1 of the spread.
+    assert found.by_middle == pytest.approx(density * SLOPE * width, rel=0.05)
     assert found.error < 2e-3 and np.all(found.errors < 0.2 * by_width.max())
 
 

@@ -623,3 +623,11 @@ def test_largest_has_the_derivative_of_one_entry():
     assert value == 3.0 and np.array_equal(slope, [[0.0, 1.0], [0.0, 0.0]])
     value, slope = jax.value_and_grad(smallest)(values)
     assert value == -3.0 and np.array_equal(slope, [[0.0, 0.0], [0.0, 1.0]])
+
+
+@pytest.mark.parametrize("name", ["viscosity", "oscillation"])
+def test_rating_life_refuses_oil_of_each_case(straight, name):
+    """The damage would be that of the common oil."""
+    cases = bj.Cases([[0, -1e3, 0, 0, 0, 0]], inner_speed=100.0, **{name: [1e-5]})
+    with pytest.raises(ValueError, match=f"RatingLife: `{name}` is"):
+        bj.optimise.RatingLife().life(straight, cases, None)
