@@ -105,8 +105,8 @@ class Requirements(Printable):
             moving ring, at rest (6,) [N, N m].
         life: Conditions of the life, with that which is required; without ratings.
         bounds: Bounds of `NUMBERS` by name [SI]: a pair (least, greatest), either of
-            which may be `None`; or one number, which is the greatest mass, share of a speed,
-            pressure or friction, the exact size, and the least of all others.
+            which may be `None`; or one number, which is the greatest mass, share of a
+            speed, pressure or friction, the exact size, and the least of all others.
         types: Types that may be chosen; none named: all.
         clearance_class: Class of radial clearance, "C3", of types that have classes;
             `None`: CN, and other types too.
