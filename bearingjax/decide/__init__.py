@@ -8,14 +8,14 @@ Names
 -----
 
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
-- Results as a function of numbers of the design: `CaseModel`, `stack`.
+- Results as a function of numbers of the design: `CaseModel`.
 - A choice of bearing: `select`, `Requirements`, `Selection`.
 - What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`.
 - Their results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
 """
 
 from .identify import Candidate, Identified, identify
-from .predict import CaseModel, stack
+from .predict import CaseModel
 from .scatter import Scatter, within
 from .select import Requirements, Selection, select
 from .tolerance_effects import (
@@ -28,7 +28,7 @@ from .tolerance_effects import (
 )
 
 __all__ = [
-    "identify", "Identified", "Candidate", "CaseModel", "stack", "select",
+    "identify", "Identified", "Candidate", "CaseModel", "select",
     "Requirements", "Selection", "tolerances", "tighten", "Scatter", "within",
     "Tolerances", "Spread", "Misses", "Tightening",
 ]  # fmt: skip

@@ -17,7 +17,7 @@ from ..numerics.result import SolveError
 from ..numerics.shown import Shown
 from ..numerics.units import shown_number, unit_of
 from ..numerics.warning import Warning
-from ..optimise.system import Design
+from ..optimise.system import Design, check_design
 from ..optimise.variable import Variable, check_variables
 from .least_squares import CLOSE, Fit, least_squares
 from .predict import CaseModel
@@ -316,8 +316,10 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
     results = [name for name in names if name not in own]
     if isinstance(model, CaseModel) or not callable(model):
         model = model if isinstance(model, CaseModel) else CaseModel(model)
-        of_class("identify", "cases", cases, Cases, "Cases")
-        start = check_variables(model.design_of(), unknowns, "identify")
+        check_design("identify", model.design, cases)
+        kind = getattr(model.design, "of_cases", Cases)
+        of_class("identify", "cases", cases, kind, kind.__name__)
+        start = check_variables(model.design, unknowns, "identify")
         try:
             model = model.for_numbers([one.path for one in unknowns], results)
         except ValueError as error:
@@ -431,7 +433,7 @@ def _untold(given: _Problem, rows: Any) -> tuple[str, ...]:
         for k in order:
             step, unit = 0.01 * axis[k] * given.width[k], ""
             if isinstance(model, CaseModel):
-                unit = unit_of(model.design_of(), given.unknowns[k].path[0])
+                unit = unit_of(model.design, given.unknowns[k].path[0])
             shown = shown_number(step, "" if unit == "K" else unit, 3)
             parts.append(f"{shown} K" if unit == "K" else shown)
         ratio = ":".join(f"{abs(axis[k]):.2g}" for k in order)

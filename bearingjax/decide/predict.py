@@ -3,7 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from ..cases.cases import Cases
 from ..cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD, label_output
-from ..cases.sweep import SUMMARIES, Keep, n_designs
+from ..cases.sweep import SUMMARIES, Keep
 from ..cases.sweep_program import Task
 from ..design import rows_of
 from ..design.bearing_set import bearings_of
@@ -22,29 +22,29 @@ from ..design.places import element_places, with_places
 from ..element.bearing_element import BearingElement
 from ..files.table import not_among
 from ..fits import radial_clearance
+from ..friction.friction import friction_torque
 from ..life.life import LIFE_OUTPUTS, Life, LifeConditions
 from ..numerics.labels import stated_axes
 from ..numerics.result import Result
 from ..numerics.types import with_fields
 from ..optimise.design_problem import CHUNK
-from ..optimise.system import Design, describe_failure, prepare, solved_case
-from ..optimise.variable import with_values
-from ..statics import Installed, Solution, SolveOptions, Support
+from ..optimise.system import (
+    AbstractSystem,
+    Design,
+    Reading,
+    describe_failure,
+    prepare,
+    solved_case,
+)
+from ..optimise.variable import with_numbers
+from ..statics import Installed, SolveOptions, Support
 from ..statics.preload import remaining_preload
 from ..statics.solution import solution_kind
 
-_STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD)
+_FRICTION = "friction_torque"
+_STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD, _FRICTION)
 _COUNTED = ("element", "row")
 """Axes whose length is that of the bearing."""
-
-
-class Place(NamedTuple):
-    """Where a number of a case stands: in which output of a sweep, at which entry,
-    counted along all axes; and its SI unit, empty for a pure number."""
-
-    output: str
-    entry: int
-    unit: str
 
 
 class CaseModel(eqx.Module):
@@ -52,18 +52,23 @@ class CaseModel(eqx.Module):
 
     A number is named as its column in the table of a sweep, without the unit:
     "displacement_inner_uz", "peak_pressure", "life_hours"; of the moving ring
-    "displacement_uz" and "stiffness_uz" will do. Those of a failed case are NaN.
+    "displacement_uz" and "stiffness_uz" will do. "friction_torque" [N m] by Palmgren
+    needs a life with a viscosity, and a speed. Those of a failed case are NaN.
+
+    Those of a system (`optimise.AbstractSystem`) are its `readings`.
 
     Attributes:
-        design: The bearing, an element or on its seats (`Installed`); several of one
-            structure, from `stack`, among which `Cases(design=...)` chooses.
+        design: The bearing, an element or on its seats (`Installed`); or a system.
         support: What holds the rings; displacements are those of the cases.
         options: Numerics of the load solves.
         life: Conditions of a life among the numbers.
+        supply: Oil supply, as `friction_torque` takes it.
+        varied: Numbers of the design that differ from case to case, by their dotted
+            path (case,) [SI].
         paths: Dotted paths of the numbers that are given, a sequence each.
         places: The numbers that are returned, by name.
 
-    Traced: all numbers. Static: paths, places.
+    Traced: all numbers. Static: supply, paths, places.
 
     Raises:
         TypeError: If the design is another object.
@@ -73,30 +78,33 @@ class CaseModel(eqx.Module):
     support: Support = Support()
     options: SolveOptions = eqx.field(default_factory=SolveOptions)
     life: LifeConditions | None = None
+    supply: str = eqx.field(static=True, default="oil_bath")
+    varied: dict[str, Any] = eqx.field(default_factory=dict)
     paths: tuple[tuple[str, ...], ...] = eqx.field(static=True, default=())
-    places: tuple[tuple[str, Place], ...] = eqx.field(static=True, default=())
+    places: tuple[tuple[str, Reading], ...] = eqx.field(static=True, default=())
 
     def __check_init__(self):
-        if not isinstance(self.design, BearingElement | Installed):
+        if not isinstance(self.design, BearingElement | Installed | AbstractSystem):
             raise TypeError(
                 f"CaseModel: `design` is {type(self.design).__name__}; it must be a"
-                " BearingElement or Installed; of a shaft or a rotor give a function"
-                " (values, cases) -> numbers by name."
+                " BearingElement, Installed or a system of `bearingjax.optimise`; of"
+                " anything else give a function (values, cases) -> numbers by name."
             )
 
-    def design_of(self, case: Any = 0) -> Any:
-        """Return one of several designs, or the only one; `case` is its number."""
-        if n_designs(_drawing(self.design)) is None:
-            return self.design
-        return jax.tree.map(lambda leaf: leaf[case], self.design)
-
-    def place(self, name: str) -> Place:
+    def place(self, name: str) -> Reading:
         """Return where a number stands.
 
         Raises:
             ValueError: If there is none of this name.
         """
-        known = dict(self._names_with_places(name))
+        if isinstance(self.design, AbstractSystem):
+            known = self.design.readings()
+        elif name == _FRICTION:
+            if self.life is None or self.life.viscosity is None:
+                raise ValueError(f"{name} needs an oil: a `life` with a viscosity")
+            return Reading(name, 0, "N m")
+        else:
+            known = dict(self._names_with_places(name))
         if name not in known:
             raise ValueError(not_among(name, [*known] or [n for n, _ in self._axes()]))
         return known[name]
@@ -115,40 +123,44 @@ class CaseModel(eqx.Module):
         Raises:
             ValueError: As `place`.
         """
-        model = self
-        if n_designs(_drawing(self.design)) is None:
-            model = dataclasses.replace(self, design=_with_places(self.design))
-        found = tuple((name, model.place(name)) for name in names)
-        return dataclasses.replace(model, paths=tuple(map(tuple, paths)), places=found)
+        found = tuple((name, self.place(name)) for name in names)
+        more = {"paths": tuple(map(tuple, paths)), "places": found}
+        return dataclasses.replace(self, design=_with_places(self.design), **more)
 
     def __call__(
-        self, values: Float[Array, " number"], cases: Cases
+        self, values: Float[Array, " number"], cases: Any
     ) -> dict[str, Float[Array, " case"]]:
         """The numbers by name (case,) [SI], at numbers of the design [SI]."""
-        shared = self._design_at(values, None) if cases.design is None else None
+        shared = None if self.varied else self._design_at(values, {})
 
-        def numbers(case):
-            design = self._design_at(values, case.design) if shared is None else shared
+        def numbers(given):
+            case, varied = given
+            design = self._design_at(values, varied) if shared is None else shared
             solved = solved_case(design, case, self.support, self.options)
-            return self._numbers(solved, case)
+            return self._numbers(design, solved, case)
 
+        given = cases, {path: jnp.asarray(x) for path, x in self.varied.items()}
         if cases.count <= CHUNK:
-            return jax.vmap(numbers)(cases)
-        return lax.map(numbers, cases, batch_size=CHUNK)
+            return jax.vmap(numbers)(given)
+        return lax.map(numbers, given, batch_size=CHUNK)
 
     def why_failed(self, values: Any, cases: Cases, case: int) -> str:
         """Reason why a case fails at concrete numbers, in words."""
-        one = jax.tree.map(lambda leaf: leaf[case], cases)
-        design = self._design_at(np.asarray(values), one.design)
+        one, varied = jax.tree.map(lambda leaf: leaf[case], (cases, self.varied))
+        design = self._design_at(np.asarray(values), varied)
         solved = solved_case(design, one, self.support, self.options)
         label = Result(int(solved.result)).label
         return f"case {case}: {label}: {describe_failure(design, solved)}"
 
-    def _design_at(self, values, number) -> Design:
-        design = self.design_of(0 if number is None else number)
-        return prepare(with_values(design, self.paths, values), None)
+    def _design_at(self, values, varied) -> Design:
+        pairs = zip(self.paths, values, strict=True)
+        numbers = {path: x for several, x in pairs for path in several}
+        return prepare(with_numbers(self.design, numbers | varied), None)
 
-    def _numbers(self, solution: Solution, case: Cases) -> dict[str, Array]:
+    def _numbers(self, design: Design, solution: Any, case: Any) -> dict[str, Array]:
+        if isinstance(design, AbstractSystem):
+            kept = {at.output: getattr(solution, at.output) for _, at in self.places}
+            return self._entries(kept, solution.result == Result.CONVERGED)
         wanted = dict.fromkeys(place.output for _, place in self.places)
         lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
         life = LifeConditions() if lives and self.life is None else self.life
@@ -161,11 +173,18 @@ class CaseModel(eqx.Module):
         if OPERATING_PRELOAD in wanted:
             given = solution.element, solution.speed
             kept[OPERATING_PRELOAD] = remaining_preload(*given, throw=False)
-        found, real = {}, solution.displacement.dtype
-        for name, place in self.places:
-            value = jnp.ravel(kept[place.output])[place.entry].astype(real)
-            found[name] = jnp.where(solution.converged, value, jnp.nan)
-        return found
+        if _FRICTION in wanted and self.life is not None:
+            given = self.life.viscosity, self.supply
+            kept[_FRICTION] = friction_torque(solution, *given).torque
+        real = solution.displacement.dtype
+        numbers = {name: kept[name].astype(real) for name in wanted}
+        return self._entries(numbers, solution.converged)
+
+    def _entries(self, kept: dict[str, Array], solved: Any) -> dict[str, Array]:
+        return {
+            name: jnp.where(solved, jnp.ravel(kept[at.output])[at.entry], jnp.nan)
+            for name, at in self.places
+        }
 
     def _axes(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield outputs of a case with their axes, but for those along a roller."""
@@ -178,9 +197,9 @@ class CaseModel(eqx.Module):
                         yield field.name, axes
         yield from dict.fromkeys((*SUMMARIES, *_STATES), ()).items()
 
-    def _names_with_places(self, name: str) -> Iterator[tuple[str, Place]]:
+    def _names_with_places(self, name: str) -> Iterator[tuple[str, Reading]]:
         """Yield the numbers of the outputs with which a name begins, by name."""
-        rows = bearings_of(_drawing(self.design_of()).bearing)
+        rows = bearings_of(_drawing(self.design).bearing)
         places, counts = (
             sum(r.n_places for r in rows),
             [int(r.n_elements) for r in rows],
@@ -198,7 +217,7 @@ class CaseModel(eqx.Module):
             entries = entries[:, there] if axes[:1] == ("element",) else entries
             for header, labels, column in label_output(output, entries).columns(output):
                 title, _, unit = header.removesuffix("]").partition(" [")
-                place = Place(output, int(column[0]), unit)
+                place = Reading(output, int(column[0]), unit)
                 yield title, place
                 if labels and all(label.startswith(own) for label in labels):
                     short = [label.removeprefix(own) for label in labels]
@@ -206,31 +225,13 @@ class CaseModel(eqx.Module):
                     yield "_".join([output, *short]), place
 
 
-def stack(designs: Sequence[Design]) -> Any:
-    """Return designs of one structure as one, whose numbers have a leading axis.
-
-    Args:
-        designs: Elements, or bearings on their seats.
-
-    Raises:
-        ValueError: If there are none, or their structures differ.
-    """
-    padded = [_with_places(design) for design in designs]
-    kinds = {
-        (jax.tree.structure(one), tuple(np.shape(x) for x in jax.tree.leaves(one)))
-        for one in padded
-    }
-    if len(kinds) != 1:
-        problem = "of one structure: classes, parts and rows must be the same"
-        raise ValueError(f"stack: {len(padded)} designs; they must be {problem}.")
-    return jax.tree.map(lambda *leaves: jax.device_put(np.stack(leaves)), *padded)
-
-
 def _drawing(design: Any) -> BearingElement[Any]:
     return design.drawing if isinstance(design, Installed) else design
 
 
 def _with_places(design: Any) -> Any:
+    if isinstance(design, AbstractSystem):
+        return design
     if isinstance(design, Installed):
         return with_fields(design, drawing=_with_places(design.drawing))
     return with_fields(design, bearing=with_places(design.bearing))

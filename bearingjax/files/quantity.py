@@ -63,6 +63,7 @@ QUANTITIES = {
     "unbalance": ("kg m", "g mm"),
     "acceleration": ("m/s²", "m/s^2"),
     "frequency": ("rad/s", "Hz"),
+    "natural frequency": ("Hz", "Hz"),
     "damping": ("N s/m", "N s/mm"),
     "tilting damping": ("N m s/rad", "N m s/rad"),
     "rate": ("1/s", "1/s"),
@@ -128,6 +129,7 @@ _UNITS = {
     "unbalance": "gmm kgmm",
     "frequency": "Hz kHz rpm",
     "rate": "Hz kHz",
+    "natural frequency": "Hz kHz",
     "power": "µW mW W kW MW PS hp",
 }
 """Single names of units by kind; any product or quotient of the right dimension may be

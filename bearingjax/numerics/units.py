@@ -68,7 +68,7 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         owner: Class of the field, or an instance: a Module, whose fields have units as
             metadata, or a named tuple, whose fields are `Annotated[..., unit("N")]`.
         path: Name of the field; dotted, "rows.0.position", of a part of an instance;
-            a number at the end is the entry of an array.
+            numbers at the end are the entry of an array.
         index: Which entry of an array.
 
     Returns:
@@ -79,9 +79,9 @@ def unit_of(owner: Any, path: str, index: tuple[int, ...] = ()) -> str:
         KeyError, AttributeError: If there is no such field.
     """
     *parts, name = path.split(".")
-    if name.isdecimal():
+    while name.isdecimal():
+        index = (int(name), *index)
         *parts, name = parts
-        index = (int(path.rpartition(".")[2]),)
     for part in parts:
         owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
     return entry_unit(field_metadata(owner, name).get("unit", "1"), index)

@@ -3,7 +3,7 @@ or a machine with several bearings."""
 
 import abc
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 
@@ -14,6 +14,15 @@ from ..statics.installed import Installed
 from ..statics.options import SolveOptions
 from ..statics.solution import Solution
 from ..statics.support import Support
+
+
+class Reading(NamedTuple):
+    """Where a number of a solved case stands: in which output, at which entry, counted
+    along all axes; and its SI unit, empty for a pure number."""
+
+    output: str
+    entry: int
+    unit: str
 
 
 class AbstractSystem(eqx.Module):
@@ -81,6 +90,11 @@ class AbstractSystem(eqx.Module):
         Args:
             solved: From `solve_case`, concrete.
         """
+
+    def readings(self) -> dict[str, Reading]:
+        """Numbers of solved cases that can be measured, by name, their outputs being
+        fields of `solve_case`; by default none."""
+        return {}
 
     def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
         """Warnings other than those of the loads; none by default.

@@ -23,7 +23,7 @@ class Variable:
     Attributes:
         path: Its dotted path in the element, "bearing.roller_profile.crown_radius"; in
             a set "bearing.rows.0.bearing.…"; in a system from there,
-            "model.element.bearing.…"; a number at the end is the entry of a vector.
+            "model.element.bearing.…"; numbers at the end are the entry of an array.
             Several paths share one value.
         lower: Least value [SI].
         upper: Largest value [SI].
@@ -110,7 +110,7 @@ def design_numbers(design: Any, entries: bool = False) -> dict[str, Any]:
 
     Args:
         design: An element, bearing or part.
-        entries: Whether those of vectors are listed too, "shafts.0.outer_diameter.1";
+        entries: Whether those of arrays are listed too, "shafts.0.outer_diameter.1";
             the design is then concrete.
     """
     leaves, _ = jax.tree_util.tree_flatten_with_path(design)
@@ -120,9 +120,10 @@ def design_numbers(design: Any, entries: bool = False) -> dict[str, Any]:
             continue
         if jnp.shape(leaf) == ():
             found[dotted_path(keys)] = leaf
-        elif entries and jnp.ndim(leaf) == 1:
+        elif entries:
             head, values = dotted_path(keys), np.asarray(leaf)
-            found |= {f"{head}.{k}": one for k, one in enumerate(values)}
+            for index, one in np.ndenumerate(values):
+                found[".".join([head, *map(str, index)])] = one
     return found
 
 
@@ -157,8 +158,9 @@ def with_numbers(design: Any, values: Mapping[str, Any]) -> Any:
         head, _, rest = path.partition(".")
         inner.setdefault(head, {})[rest] = value
     if isinstance(design, jax.Array | np.ndarray):
-        for k, value in values.items():
-            design = jnp.asarray(design).at[int(k)].set(value)
+        for entry, value in values.items():
+            index = tuple(map(int, entry.split(".")))
+            design = jnp.asarray(design).at[index].set(value)
         return design
     if isinstance(design, tuple):
         parts = enumerate(design)

@@ -69,8 +69,10 @@ Names
 - Response: `unbalance_response`, `harmonic_response`, `UnbalanceResponse`.
 - Matrices: `RotorMatrices`, `craig_bampton`, `reduction_error`, `reduction_warnings`.
 - Coefficients for other programs: `stiffness_table`, `stiffness_warnings`, `to_ross`.
+- Rotors whose numbers are identified: `RotorDesign`, `RotorSeat`, `RotorCases`.
 """
 
+from importlib import import_module as _import_module
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 from .bearing_support import BearingSupport
@@ -101,6 +103,7 @@ from .statics_over_speed import StaticEquilibriumOver, static_equilibrium_over
 
 if _TYPE_CHECKING:
     from . import nonlinear
+    from .rotor_design import RotorCases, RotorDesign, RotorSeat
 
 __all__ = [
     "nonlinear", "Rotor", "Shaft", "Disc", "PointMass", "Housing", "AbstractPart",
@@ -112,14 +115,20 @@ __all__ = [
     "CriticalSpeeds", "instability_onsets", "Onset", "major_axis", "unbalance_response",
     "harmonic_response", "UnbalanceResponse", "RotorMatrices", "craig_bampton",
     "reduction_error", "reduction_warnings", "stiffness_table",
-    "stiffness_warnings", "to_ross",
+    "stiffness_warnings", "to_ross", "RotorDesign", "RotorSeat", "RotorCases",
 ]  # fmt: skip
 
 
-def __getattr__(name: str):
-    """Import `nonlinear` at its first use: systems of shafts do without."""
-    if name != "nonlinear":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    import bearingjax.rotor.nonlinear
+_LATE = {
+    "nonlinear": "nonlinear",
+    **dict.fromkeys(("RotorDesign", "RotorSeat", "RotorCases"), "rotor_design"),
+}
 
-    return bearingjax.rotor.nonlinear
+
+def __getattr__(name: str):
+    """Import the file of a name at its first use: systems of shafts do without."""
+    if name not in _LATE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = _import_module(f".{_LATE[name]}", __name__)
+    globals()[name] = found if name == _LATE[name] else getattr(found, name)
+    return globals()[name]

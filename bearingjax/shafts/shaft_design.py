@@ -17,6 +17,7 @@ from jaxtyping import Array, Float
 from ..cases.cases import check_hours
 from ..design.checks import are_known, one_of
 from ..element.bearing_element import BearingElement
+from ..element.frame import FREEDOMS, LOAD_UNITS, LOADS, MOTION_UNITS
 from ..life.life import LifeConditions
 from ..life.life_warning import ALL
 from ..life.rating import check_alike
@@ -25,7 +26,7 @@ from ..numerics.units import unit
 from ..numerics.warning import Warning, warnings_of, warnings_of_cases
 from ..optimise.measure import AbstractMeasure, AbstractSmooth, hour_weights
 from ..optimise.smooth import largest, smallest, smooth_maximum, smooth_minimum
-from ..optimise.system import AbstractSystem
+from ..optimise.system import AbstractSystem, Reading
 from ..optimise.variable import dotted_path
 from .bearing_oil import BearingOil
 from .changes import (
@@ -221,6 +222,28 @@ class ShaftDesign(AbstractSystem):
 
     def failure_message(self, solved: Any) -> str:
         return "the shafts find no equilibrium on their bearings"
+
+    def readings(self) -> dict[str, Reading]:
+        """Numbers of a case that can be measured: of each bearing, by its name ("A."),
+        load, displacement, peak_pressure and with oils friction; of each gear
+        misalignment; the loss in meshes."""
+        found = {"loss": Reading("loss", 0, "W")}
+        for k, seat in enumerate(self.system.seats):
+            axes = ("load", LOADS, LOAD_UNITS), ("displacement", FREEDOMS, MOTION_UNITS)
+            for field, names, units in axes:
+                for i, (name, one) in enumerate(zip(names, units, strict=True)):
+                    own = Reading(field, len(names) * k + i, one)
+                    found[f"{seat.name}.{field}_{name}"] = own
+            if seat.installed is not None:
+                pressure = Reading("peak_pressure", k, "Pa")
+                found[f"{seat.name}.peak_pressure"] = pressure
+                if self.oils is not None:
+                    found[f"{seat.name}.friction"] = Reading("friction", k, "W")
+        for k, mesh in enumerate(power_flow(self.system).meshes):
+            if isinstance(self.system.wheel(mesh.wheel), Gear):
+                own = Reading("misalignment", k, "rad")
+                found.setdefault(f"{mesh.wheel}.misalignment", own)
+        return found
 
     def warnings(self, cases: Any, solved: Any) -> list[Warning]:
         found = []

@@ -1,5 +1,7 @@
 """Numbers of bearings, pairs and rotors from measurements."""
 
+import dataclasses
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -9,7 +11,7 @@ from published import inputs, theirs
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
-from bearingjax.decide import CaseModel, stack
+from bearingjax.decide import CaseModel
 from bearingjax.decide.identify import _read_call
 from bearingjax.optimise import Variable
 
@@ -162,10 +164,10 @@ def test_names_of_numbers():
         model.place("roller_load_9_inner")
     with pytest.raises(ValueError, match="one of .*displacement, force"):
         model.place("wobble")
-    with pytest.raises(TypeError, match="of a shaft or a rotor give a function"):
+    with pytest.raises(ValueError, match="friction_torque needs an oil"):
+        model.place("friction_torque")
+    with pytest.raises(TypeError, match="of anything else give a function"):
         CaseModel(bearing)
-    with pytest.raises(ValueError, match="0 designs; they must be of one structure"):
-        stack([])
 
 
 ANGLE = "bearing.contact_angle"
@@ -207,41 +209,92 @@ def test_identify_rejects_for_a_design(name):
         bj.identify(**{**given, **changes})
 
 
-def spindle(values, speeds):
-    """Natural frequencies of a rotor on two bearings in elastic housings: a contact
-    is as stiff as the root of third order of its load."""
-    preload, housing = values
-    stiffness = 1e8 * (preload / 300.0) ** (1.0 / 3.0)
-    mount = bj.rotor.Housing(3.0, [housing] * 3, [0.0] * 3)
-    supports = [
-        bj.rotor.LinearSupport.isotropic(k, stiffness, 0.5 * stiffness, housing=mount)
-        for k in (0, 2)
-    ]
-    shaft = bj.rotor.Shaft(
-        [0.0, 0.125, 0.5], 0.025, material=bj.Material(2.1e11, 0.3, 7850)
+def spindle():
+    """A stiff rotor on two preloaded bearings in elastic housings."""
+    bearing = bj.AngularContactBallBearing(
+        12,
+        53.5e-3,
+        12.7e-3,
+        contact_angle=0.26,
+        outer_osculation=0.52,
+        inner_osculation=0.52,
     )
-    disc = bj.rotor.Disc(1, 10.0, 0.2, 0.1)
-    rotor = bj.rotor.Rotor(shaft, [disc], supports, rigid=True)
-    found = jax.vmap(lambda speed: bj.rotor.modes(rotor, speed).frequency[:6])(speeds)
-    return {"frequency": jnp.ravel(found)}
+    element = bj.BearingElement(bearing)
+    mount = bj.rotor.Housing(3.0, [1e8] * 3)
+    shaft = bj.rotor.Shaft([0.0, 0.125, 0.5], 0.025)
+    rotor = bj.rotor.Rotor(
+        shaft,
+        [bj.rotor.Disc(1, 10.0, 0.2, 0.1)],
+        [
+            bj.rotor.BearingSupport(k, element, housing=mount, turned=turned)
+            for k, turned in ((0, False), (2, True))
+        ],
+        rigid=True,
+    )
+    seats = [bj.rotor.RotorSeat(bj.Installed(element), 500.0) for _ in range(2)]
+    loads = bj.rotor.RotorLoads(bj.rotor.Unbalance(1, 6e-5))
+    return CaseModel(bj.rotor.RotorDesign(rotor, seats, loads, 4))
+
+
+OF_SPINDLE = [
+    Variable([f"seats.{k}.preload" for k in (0, 1)], 50.0, 1000.0),
+    Variable(
+        [
+            f"rotor.supports.{k}.housing.stiffness.{axis}.{axis}"
+            for k in (0, 1)
+            for axis in range(3)
+        ],
+        5e7,
+        1e9,
+    ),
+    Variable("loads.unbalances.0.moment", 1e-5, 1e-3),
+]
+READ = {"frequency_1": 0.2, "frequency_2": 0.2, "frequency_3": 0.2, "uy_1": 1e-8}
 
 
 @pytest.mark.slow
-def test_preload_and_housing_of_a_rotor_from_natural_frequencies():
-    """At three speeds, to 0.2 Hz; one mode alone does not tell both."""
-    speeds, true = jnp.array([0.0, 500.0, 1000.0]), jnp.array([250.0, 3e8])
-    exact = np.asarray(jax.jit(spindle)(true, speeds)["frequency"])
-    noise = 0.2 * np.random.default_rng(5).standard_normal(exact.size)
-    unknowns = [
-        Variable("preload", 50.0, 1000.0, start=500.0),
-        Variable("housing stiffness", 5e7, 1e9, start=1e8),
-    ]
-    given = speeds, unknowns
-    found = bj.identify(spindle, *given, {"frequency": exact + noise}, 0.2)
+def test_preload_housing_and_unbalance_of_a_rotor():
+    """From natural frequencies to 0.2 Hz and an amplitude, at three speeds; one
+    frequency at rest does not tell preload and housing apart."""
+    model, cases = spindle(), bj.rotor.RotorCases([0.0, 500.0, 1000.0])
+    true = jnp.array([300.0, 3e8, 1e-4])
+    numbers = model.for_numbers([one.path for one in OF_SPINDLE], tuple(READ))
+    function = jax.jit(lambda values: numbers(values, cases))
+    exact, noise = function(true), np.random.default_rng(5)
+    readings = {
+        name: np.asarray(exact[name]) + error * noise.standard_normal(3)
+        for name, error in READ.items()
+    }
+    found = bj.identify(model, cases, OF_SPINDLE, readings, READ)
     assert found.converged and found.identifiable
     assert np.all(abs(found.estimate - true) < 3.0 * found.standard_error)
     assert np.all(found.standard_error < 0.1 * true)
-    one = np.where(np.arange(exact.size) % 6 == 0, exact, np.nan)
-    alone = bj.identify(spindle, *given, {"frequency": one}, 20.0)
+    lost = np.full(3, np.nan)
+    first = np.where(np.arange(3) == 0, readings["frequency_1"], np.nan)
+    few = dict.fromkeys(READ, lost) | {"frequency_1": first, "uy_1": readings["uy_1"]}
+    alone = bj.identify(model, cases, OF_SPINDLE, few, READ)
     assert not alone.identifiable
     assert "trade" in alone.untold[0]
+    # Slopes against differences of fourth order.
+    slopes = jax.jit(jax.jacfwd(lambda values: numbers(values, cases)))(true)
+    for k, name in ((0, "frequency_1"), (1, "frequency_3"), (2, "uy_1")):
+        step = 1e-3 * true * np.eye(3)[k]
+        near, far = (
+            np.asarray(function(true + n * step)[name])
+            - np.asarray(function(true - n * step)[name])
+            for n in (1, 2)
+        )
+        change = (8.0 * near - far) / (12.0 * float(step[k]))
+        np.testing.assert_allclose(slopes[name][:, k], change, rtol=DIFFERENCE)
+
+
+def test_rotor_of_wrong_parts_is_refused():
+    model = spindle()
+    design = model.design
+    with pytest.raises(ValueError, match="`seats` are 1 of 2 supports"):
+        dataclasses.replace(design, seats=design.seats[:1])
+    with pytest.raises(ValueError, match="'frequency_5' is not known"):
+        model.place("frequency_5")
+    cases = bj.Cases([[0.0, 0.0, 1e3, 0.0, 0.0, 0.0]])
+    with pytest.raises(TypeError, match="`cases` is a Cases.*RotorCases"):
+        bj.identify(model, cases, OF_SPINDLE, {"frequency_1": 100.0}, 1.0)

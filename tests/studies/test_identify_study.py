@@ -1,5 +1,8 @@
 """[identify] in scenes, its measured table, and what its command makes of it."""
 
+import tomllib
+
+import jax
 import numpy as np
 import pytest
 from runs import Runs, Study
@@ -7,8 +10,11 @@ from tolerances import SOLVER
 
 import bearingjax as bj
 from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.optimise import Variable
+from bearingjax.optimise.variable import design_numbers, with_values
 from bearingjax.studies.identify.read_identify import read_identification
 from bearingjax.studies.identify.run import run_identification
+from bearingjax.studies.identify.subjects import read_setup
 
 FREE = "operating.free=['ux', 'uy']"
 SCENE, OUT = "identify_clearance", "displacement_inner_uy"
@@ -86,7 +92,7 @@ def test_measured_table_has_errors_blanks_and_conditions(tmp_path):
     text = f"operating.load.Fy [kN];{OUT} [mm];{OUT}.error [um];stiffness_uy [N/um];"
     text += "stiffness_uy.error [N/um]\n-1;0,02;0,3;;\n-2;;;80;4\n"
     task = measured(tmp_path, text, "identify.errors=unset")
-    np.testing.assert_allclose(task.cases.load[:, 1], [-1e3, -2e3])
+    np.testing.assert_allclose(task.subject.cases.load[:, 1], [-1e3, -2e3])
     np.testing.assert_allclose(task.readings[OUT], [2e-5, np.nan])
     np.testing.assert_allclose(task.errors[OUT], [3e-7, np.nan])
     np.testing.assert_allclose(task.readings["stiffness_uy"], [np.nan, 8e7])
@@ -94,13 +100,14 @@ def test_measured_table_has_errors_blanks_and_conditions(tmp_path):
     assert [one.start for one in task.unknowns] == [None, None]
 
 
-def test_designs_of_cases_are_stacked(tmp_path):
+def test_numbers_of_the_design_differ_from_case_to_case(tmp_path):
     text = f"bearing.outer_osculation,operating.load.Fy [N],{OUT} [um]\n"
     text += "0.52,-100,-9\n0.53,-100,-10\n0.52,-200,-12\n"
-    task = measured(tmp_path, text)
-    assert task.cases.design.tolist() == [0, 1, 0]
-    drawing = task.model.design.drawing.bearing
-    np.testing.assert_allclose(drawing.outer_osculation, [0.52, 0.53])
+    subject = measured(tmp_path, text).subject
+    varied = subject.model.varied["drawing.bearing.outer_osculation"]
+    np.testing.assert_allclose(varied, [0.52, 0.53, 0.52])
+    np.testing.assert_allclose(subject.columns["bearing.outer_osculation"], varied)
+    np.testing.assert_allclose(subject.columns["Fy [N]"], [-100.0, -100.0, -200.0])
 
 
 HEAD = "operating.load.Fy [N]"
@@ -126,6 +133,18 @@ TABLES = {
     "unknown as condition": (
         f"bearing.inner_osculation,{OUT} [um]\n0.52,1\n",
         "is a column of the measured table too",
+    ),
+    "number that the design does not allow": (
+        f"bearing.outer_osculation,{OUT} [um]\n0.4,1\n",
+        "where the groove centres meet",
+    ),
+    "what cannot vary": (
+        f"bearing.type,{OUT} [um]\nneedle_roller,1\n",
+        "'bearing.type' is not known",
+    ),
+    "friction without oil": (
+        f"{HEAD},friction_torque [N m]\n-1,1\n",
+        "needs an oil",
     ),
     "errors twice": (
         f"{HEAD},{OUT} [um],{OUT}.error [um]\n-1,1,1\n",
@@ -180,6 +199,140 @@ def test_conditions_of_temperature(tmp_path):
     scene.write_text(WARM.replace("errors =", "wanted = []\n#"), "utf-8")
     with pytest.raises(SceneError, match="beside a prior they must be known"):
         read_identification(scene)
+
+
+SHAFTS = """
+[drive]
+speed = "1500 rpm"
+power = "1 kW"
+
+[shaft.s]
+segments = [{ length = "200 mm", outer_diameter = "40 mm" }]
+
+[load.pull]
+position = "60 mm"
+Fy = "-3 kN"
+
+[coupling.out]
+
+[bearings.A]
+designation = "6208"
+position = "10 mm"
+
+[bearings.B]
+designation = "6208"
+position = "190 mm"
+floating = true
+
+[identify]
+data = "m.csv"
+errors = { "A.displacement_gx" = "0.005 mrad" }
+
+[identify.unknowns]
+"shaft.s.segments.0.outer_diameter" = { from = "30 mm", to = "45 mm" }
+"""
+ROTOR = """
+[rotor]
+rigid = true
+modes = 4
+shaft = [
+    { length = "125 mm", outer_diameter = "35 mm" },
+    { length = "375 mm", outer_diameter = "35 mm" },
+]
+discs = [
+    { station = 1, mass = "10 kg", polar_inertia = "0.2 kg m^2", diametral_inertia = "0.1 kg m^2" },
+]
+
+[bearings.front]
+type = "angular_contact_ball"
+n_balls = 12
+pitch_diameter = "53.5 mm"
+ball_diameter = "12.7 mm"
+outer_osculation = 0.52
+inner_osculation = 0.52
+contact_angle = "15 deg"
+
+[[rotor.bearings]]
+station = 0
+bearing = "front"
+preload = "300 N"
+housing = { mass = "3 kg", stiffness = "300 N/um" }
+
+[[rotor.bearings]]
+station = 2
+stiffness = { radial = "100 N/um", tilt = "100 kN m/rad" }
+
+[rotor.excitation]
+unbalance = [{ station = 1, moment = "60 g mm" }]
+
+[identify]
+data = "m.csv"
+errors = { frequency_1 = "0.2 Hz" }
+
+[identify.unknowns]
+"rotor.bearings.0.preload" = { from = "50 N", to = "1000 N" }
+"""
+
+
+def machine(tmp_path, scene, text):
+    (tmp_path / "mine.toml").write_text(scene, "utf-8")
+    (tmp_path / "m.csv").write_text(text, "utf-8")
+    return read_identification(tmp_path / "mine.toml")
+
+
+def test_readings_and_conditions_of_shafts(tmp_path):
+    text = "load.pull.Fy [kN],A.displacement_gx [mrad]\n-1,0.15\n-6,0.8\n"
+    task = machine(tmp_path, SHAFTS, text)
+    model, cases = task.subject.model, task.subject.cases
+    assert task.unknowns[0].path == ("system.shafts.0.outer_diameter.0",)
+    assert cases.paths(model.design) == {"system.loads.0.force"}
+    np.testing.assert_allclose(cases.values[0][:, 1], [-1e3, -6e3])
+    place = model.place("A.displacement_gx")
+    assert place == ("displacement", 3, "rad")
+    assert model.place("B.load_Fy") == ("load", 7, "N")
+    for wrong, words in {
+        "A.displacement_wx [mrad]": "A.displacement_wx",
+        "speed [rpm]": "'speed' is not known",
+        "bearings.A.wobble [mm]": "wobble",
+    }.items():
+        with pytest.raises(SceneError, match=words):
+            machine(tmp_path, SHAFTS, f"{wrong},A.displacement_gx [mrad]\n1,1\n")
+
+
+def test_readings_and_numbers_of_a_rotor(tmp_path):
+    text = "rotor.speed [rpm],frequency_1 [Hz]\n0,120\n6000,100\n"
+    subject = machine(tmp_path, ROTOR, text).subject
+    np.testing.assert_allclose(subject.cases.speed, [0.0, 200.0 * np.pi])
+    assert subject.model.place("uy_1") == ("amplitude", 6, "m")
+    assert subject.model.place("frequency_4") == ("frequency", 3, "Hz")
+    setup = read_setup(tomllib.loads(ROTOR.partition("[identify]")[0]), tmp_path)
+    there = design_numbers(setup.model.design, entries=True)
+    for key, paths in setup.numbers.items():
+        assert set(paths) <= set(there), key
+    stiffness = setup.numbers["rotor.bearings.0.housing.stiffness"]
+    assert [float(there[path]) for path in stiffness] == [3e8] * 3
+    assert "rotor.bearings.1.stiffness.radial" in setup.numbers
+    with pytest.raises(SceneError, match=r"frequency_5.*is not known"):
+        machine(tmp_path, ROTOR, "rotor.speed [rpm],frequency_5 [Hz]\n0,120\n")
+    with pytest.raises(SceneError, match="'rotor.sped' is not known"):
+        machine(tmp_path, ROTOR, "rotor.sped [rpm],frequency_1 [Hz]\n0,120\n")
+
+
+@pytest.mark.slow
+def test_diameter_of_a_shaft_from_its_slope(tmp_path):
+    """Readings of the system itself, at another diameter."""
+    text = "load.pull.Fy [kN],A.displacement_gx [mrad]\n-1,1\n-6,1\n"
+    subject = machine(tmp_path, SHAFTS, text).subject
+    model, design = subject.model, subject.model.design
+    path = ["system.shafts.0.outer_diameter.0"]
+    thin = with_values(design, [path], [0.036])
+    cases = [jax.tree.map(lambda x, k=k: x[k], subject.cases) for k in range(2)]
+    own = [float(thin.solve_case(c, None, None).displacement[0, 3]) for c in cases]
+    unknowns = [Variable(path[0], 0.03, 0.045)]
+    readings = {"A.displacement_gx": own}
+    found = bj.identify(model, subject.cases, unknowns, readings, 1e-8)
+    assert found.converged
+    np.testing.assert_allclose(found.estimate, 0.036, rtol=1e-6)
 
 
 WARM = """

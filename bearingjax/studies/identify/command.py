@@ -44,12 +44,12 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     )
 
     task = read_identification(options.scene, options.set)
-    name, inputs = task.scene.name, task.inputs
+    name, inputs = task.subject.scene.name, task.inputs
     try:
         found = run_identification(task)
     except SolveError as error:
         words = {"result": "start_not_solved", "message": str(error)}
-        numbers = run_json(words, task.scene.warnings, inputs)
+        numbers = run_json(words, task.subject.scene.warnings, inputs)
         return Outcome(name, inputs, lambda: numbers, problems=[str(error)])
     solved = found.converged
     draw = picture("identify_overview", found, task.units, title=name)

@@ -1,35 +1,23 @@
 """The [identify] table of a scene, and its measured table."""
 
-import copy
-import dataclasses
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...cases.cases import Cases
-from ...decide import CaseModel, stack
+from ...decide import CaseModel
 from ...files.column_list import read_list
 from ...files.quantity import SceneError, kind_of
-from ...files.scene_file import assign, find_scene, parse_bearing
+from ...files.scene_file import find_scene, parse_scene
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table
 from ...files.text_file import read_columns
-from ...life.life import LIFE_OUTPUTS
 from ...numerics.units import unit_of
 from ...optimise import Variable
-from ..bearing.life_ratings import life_conditions
-from ..bearing.read_fit import read_temperature
-from ..bearing.read_scene import Scene, scene_of
-from ..cases.read_cases import (
-    OPERATING,
-    VariedKey,
-    cases_of_columns,
-    check_varied_key,
-    makes_design,
-)
-from ..optimise.read_optimise import installed_numbers, read_variables
+from ..cases.read_cases import VariedKey
+from ..optimise.read_optimise import check_numbers, read_number, read_variables
+from .subjects import Setup, Subject, read_setup
 
 ERROR = ".error"
 """Ends the header of a column of standard deviations."""
@@ -73,21 +61,18 @@ class IdentifyKeys(Keys):
     )
 
 
-@dataclasses.dataclass(frozen=True)
-class Identification:
+class Identification(NamedTuple):
     """What [identify] asks for, as in `decide.identify`.
 
     Attributes:
-        scene: The scene without [identify].
-        model, cases, unknowns, readings, errors, wanted, candidates, errors_known: As
-            in `decide.identify`; unknowns are named as in the scene.
+        subject: The scene, its model and the cases of the measured table.
+        unknowns: Numbers of the design, named as in the scene.
+        readings, errors, wanted, candidates, errors_known: As in `decide.identify`.
         units: SI units of all numbers, by name.
         inputs: The scene as it was read, in SI, with [identify].
     """
 
-    scene: Scene
-    model: CaseModel
-    cases: Cases
+    subject: Subject
     unknowns: tuple[Variable, ...]
     readings: dict[str, Any]
     errors: dict[str, Any] | None
@@ -95,18 +80,19 @@ class Identification:
     candidates: dict[str, float] | None
     errors_known: bool
     units: dict[str, str]
-    inputs: dict[str, Any] = dataclasses.field(repr=False)
+    inputs: dict[str, Any]
 
 
 def read_identification(
     source: str | Path, settings: Iterable[str] = ()
 ) -> Identification:
-    """Read a scene with [identify], and its measured table.
+    """Read a scene with [identify], of a bearing, of shafts or of a rotor, and its
+    measured table.
 
     Args, raises: as `read_scene`.
     """
     path = find_scene(source)
-    data = parse_bearing(path, settings)
+    data = parse_scene(path, settings)
     if "identify" not in data:
         raise SceneError(f"{path.name}: `identify` is missing; it names `unknowns`")
     top = Table(data, path)
@@ -118,41 +104,31 @@ def read_identification(
     if keys.data is None:
         raise table.error("data", "is missing; name the measured table, or give --data")
     held = Table({"file": keys.data}, path, "identify", {"file": "identify.data"})
-    scene = scene_of(data, path)
-    model = CaseModel(scene.installed, scene.support, scene.solve_options)
-    columns, readings, units = _measured(held, path, model)
+    setup = read_setup(data, path)
+    columns, readings, units = _measured(held, setup)
     table.fill("data", str((path.parent / keys.data).resolve()))
     for column in columns:
         if column.key in keys.unknowns:
             problem = "is a column of the measured table too"
             raise keys.unknowns.error(column.key, problem)
-        check_varied_key(held, column.key, scene)
-    designs, design = _designs(data, path, columns, scene)
-    unknowns, priors = _unknowns(keys.unknowns, designs[0], installed_numbers(scene))
-    units |= {one.name: unit_of(designs[0], one.path[0]) for one in unknowns}
+    design = setup.model.design
+    check_numbers(keys.unknowns, top, setup.scene)
+    unknowns, priors = _unknowns(keys.unknowns, design, setup.numbers)
+    units |= {one.name: unit_of(design, one.path[0]) for one in unknowns}
     for name in wanted:
         if name not in units:
-            units[name] = _unit(table, "wanted", model, name)
+            units[name] = _unit(table, "wanted", setup.model, name)
     for name in () if keys.candidates is None else keys.candidates.keys():
         if name not in units:
-            units[name] = _unit(keys.candidates, name, model, name)
-    lives = {*readings, *wanted} & {*LIFE_OUTPUTS}
-    with held.building():
-        model = dataclasses.replace(
-            model,
-            design=stack(designs) if len(designs) > 1 else designs[0],
-            life=life_conditions(scene) if lives else None,
-        )
-    count = len(next(iter(readings.values())))
+            units[name] = _unit(keys.candidates, name, setup.model, name)
+    subject = setup.subject(held, columns, len(next(iter(readings.values()))))
     errors = _errors(table, keys.errors, readings, units)
     if errors is None and priors:
         raise table.error("errors", "are missing; beside a prior they must be known")
     candidates = _positive_numbers(keys.candidates, units)
     table.finish()
     return Identification(
-        scene,
-        model,
-        cases_of_columns(held, scene, columns, design, count),
+        subject,
         unknowns,
         readings | {name: value for name, (value, _) in priors.items()},
         errors and errors | {name: error for name, (_, error) in priors.items()},
@@ -160,25 +136,26 @@ def read_identification(
         candidates or None,
         keys.errors_known,
         units,
-        {**scene.inputs, "identify": table.echo()},
+        {**setup.scene.inputs, "identify": table.echo()},
     )
 
 
-def _measured(held: Table, path: Path, model: CaseModel) -> Any:
+def _measured(held: Table, setup: Setup) -> Any:
     """Return conditions, measured columns with those of their errors, and units."""
-    name, kinds, units = str(held.text("file")), dict(OPERATING), {}
+    name, kinds, units = str(held.text("file")), setup.kinds, {}
+    folder, blank = setup.path.parent, []
     try:
-        header = read_columns(path.parent / name)[0][1]
+        header = read_columns(folder / name)[0][1]
     except (ValueError, IndexError):
         header = []  # told by `read_list`
     for title in header:
         key = title.partition("[")[0].strip()
-        if key not in OPERATING and not makes_design(key.removesuffix(ERROR)):
-            unit = _unit(held, "file", model, key.removesuffix(ERROR), f"{name}: ")
-            units[key.removesuffix(ERROR)] = unit
-            kinds[key] = kind_of(unit) if unit else ""
-    blank = kinds.keys() - OPERATING.keys()
-    found = read_list(held, path.parent, kinds, "readings", blank=blank)
+        own = key.removesuffix(ERROR)
+        if setup.measures(own):
+            units[own] = _unit(held, "file", setup.model, own, f"{name}: ")
+            kinds[key] = kind_of(units[own]) if units[own] else ""
+            blank.append(key)
+    found = read_list(held, folder, kinds, "readings", blank=blank)
     read = {key: values for key, values in found.items() if key in blank}
     alone = [key for key in read if key.removesuffix(ERROR) not in read]
     if alone or not read:
@@ -203,23 +180,6 @@ def _unit(table: Any, key: str, model: CaseModel, name: str, head: str = "") -> 
         raise table.error(key, f"{head}{name} cannot be measured") from None
 
 
-def _designs(data, path, columns, scene) -> tuple[list[Any], np.ndarray | None]:
-    """Return the bearings that the cases have, and which one each has."""
-    varied = [c for c in columns if makes_design(c.key)]
-    if not varied:
-        return [scene.installed], None
-    rows = list(zip(*(map(str, c.values) for c in varied), strict=True))
-    number = {row: k for k, row in enumerate(dict.fromkeys(rows))}
-    designs = []
-    for row in number:
-        changed = copy.deepcopy(data)
-        settings = {c.key: c.values[rows.index(row)] for c in varied}
-        for key, value in settings.items():
-            assign(changed, key, value, path.name)
-        designs.append(scene_of(changed, path, settings).installed)
-    return designs, np.array([number[row] for row in rows])
-
-
 def _unknowns(table: Table, design: Any, numbers) -> Any:
     """Return the unknowns, and their priors with errors by name."""
     if not table.keys():
@@ -228,10 +188,7 @@ def _unknowns(table: Table, design: Any, numbers) -> Any:
     for one in unknowns:
         part, unit = table.table(one.name), unit_of(design, one.path[0])
         error = part.real("prior_error", unit, None)
-        if unit == "K":
-            prior = read_temperature(part, "prior", None)
-        else:
-            prior = part.real("prior", unit, None)
+        prior = read_number(part, "prior", unit, None)
         if (prior is None) != (error is None):
             given, other = ("prior", "prior_error")[:: 1 if error is None else -1]
             raise part.error(given, f"is given without `{other}`")

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from ...cases.sweep_table import case_columns
 from ...decide.identify import Identified, identify
 from ...files.scene_errors import scene_errors
 from ...numerics.labels import column_header
@@ -12,6 +11,7 @@ from ...numerics.units import CELSIUS, display_unit, shown_count
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Report
 from ..bearing.credibility import credibility_section
+from ..bearing.read_scene import Scene
 from .read_identify import Identification
 
 _MOST, _LONGEST = 5, 40
@@ -28,10 +28,11 @@ def run_identification(task: Identification) -> Identified:
         SolveError: If a measured case does not solve at the start.
         SceneError: For readings that cannot tell the unknowns.
     """
-    with scene_errors(f"{task.scene.name}: [identify]"):
+    subject = task.subject
+    with scene_errors(f"{subject.scene.name}: [identify]"):
         return identify(
-            task.model,
-            task.cases,
+            subject.model,
+            subject.cases,
             task.unknowns,
             task.readings,
             task.errors,
@@ -56,12 +57,12 @@ def identification_report(task: Identification, found: Identified) -> Report:
         task: From `read_identification`.
         found: Its result, converged.
     """
-    read = found.residual.items()
+    read, subject = found.residual.items(), task.subject
     rows = [(n, k) for n, v in read for k in np.flatnonzero(np.isfinite(v)).tolist()]
     head = (
-        f"{task.scene.name}: {shown_count(len(found.names), 'number')} from"
+        f"{subject.scene.name}: {shown_count(len(found.names), 'number')} from"
         f" {shown_count(len(rows), 'reading')} in"
-        f" {shown_count(task.cases.count, 'case')}; {found.message}"
+        f" {shown_count(subject.cases.count, 'case')}; {found.message}"
     )
     told = list(found.untold) or ["the readings tell every unknown"]
     missed, error, value = found.residual, found.error, found.prediction
@@ -98,9 +99,10 @@ def identification_report(task: Identification, found: Identified) -> Report:
         f"share of the variance of {of} that one more reading would take away",
         _rows("reading, case, share", best),
     ]
-    bearing = "", task.scene.element, task.cases.load
-    sections["Credibility"] = credibility_section("solve", [bearing])
-    return Report(sections, [*task.scene.warnings, *found.warnings])
+    alone = isinstance(subject.scene, Scene)
+    bearings = [("", subject.scene.element, subject.cases.load)] if alone else []
+    sections["Credibility"] = credibility_section(subject.study, bearings)
+    return Report(sections, [*subject.scene.warnings, *found.warnings])
 
 
 def _estimates(task: Identification, found: Identified) -> Grid:
@@ -138,7 +140,7 @@ def identification_as_dict(task: Identification, found: Identified) -> dict[str,
     for name in ("estimate", "standard_error", "interval"):
         numbers[name] = dict(zip(found.names, numbers[name].tolist(), strict=True))
     numbers["candidates"] = [one._asdict() for one in found.candidates]
-    warned = [*task.scene.warnings, *found.warnings]
+    warned = [*task.subject.scene.warnings, *found.warnings]
     return run_json(numbers, warned, task.inputs)
 
 
@@ -155,7 +157,7 @@ def identification_columns(task: Identification, found: Identified) -> dict[str,
         task: From `read_identification`.
         found: Its result.
     """
-    columns: dict[str, Any] = dict(case_columns(task.cases))
+    columns: dict[str, Any] = dict(task.subject.columns)
     for name, values in found.prediction.items():
         parts = {".predicted": values, ".predicted_error": found.prediction_error[name]}
         if name in found.residual:

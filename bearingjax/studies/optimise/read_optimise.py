@@ -309,10 +309,12 @@ def _optimisation(
     measured = measured_in(scene, cases, keys.exponent)
     objective = measured.objective(keys)
     table.table("variables", required=True)
+    check_numbers(keys.variables, top, scene)
+    numbers = installed_numbers(scene)
     return Optimisation(
         scene=scene,
         cases=cases,
-        variables=_variables(keys.variables, top, scene, begun),
+        variables=read_variables(keys.variables, scene.installed, numbers, begun),
         objective=objective,
         constraints=tuple(measured.constraint(one) for one in keys.constraints),
         method=keys.method,
@@ -364,35 +366,68 @@ def installed_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     return numbers
 
 
-def refuse_moved_pitch(table: Table, key: str, head: str, bearing: Table) -> None:
-    """Raise SceneError for a variable from which a left-out pitch diameter follows: a
-    search would hold the pitch diameter of its start.
+def check_numbers(table: Table, top: Table, scene: Any) -> None:
+    """Raise SceneError for numbers that may not be changed alone: a search would hold
+    a left-out pitch diameter that follows from them, and a part of unknown expansion
+    has no temperature.
 
     Args:
-        table: `[optimise.variables]`.
-        key: Key of the variable.
-        head: Path of the bearing's table in the scene.
-        bearing: The bearing's table.
+        table: The numbers, by their key in the scene.
+        top: The scene.
+        scene: The same as it was read, of a bearing or a machine.
     """
-    name = key.removeprefix(f"{head}.")
-    if name != key and name in PITCH_FOLLOWS and pitch_follows(bearing):
-        problem = (
-            "the pitch diameter follows from it and `outer_raceway_radius` in this"
-            f" scene, and a search holds it; give [{head}] `pitch_diameter` in place of"
-            " `outer_raceway_radius`, which then follows"
-        )
-        raise table.error(key, problem)
-
-
-def _variables(
-    table: Table, top: Table, scene: Scene, begun: set[str]
-) -> tuple[Variable, ...]:
-    unknown = {} if scene.fits is None else scene.fits.unknown
+    places = [("", top, top.table("bearing"), scene)]
+    if not isinstance(scene, Scene):
+        tables = top.table("bearings")
+        named = {name: tables.table(name) for name in tables.keys()}
+        places = [
+            (f"bearings.{name}.", own, own, bearings_of_machine(scene).get(name))
+            for name, own in named.items()
+        ]
     for key in table.keys():
-        refuse_moved_pitch(table, key, "bearing", top.table("bearing"))
-        if (warm := WARMTH.get(key)) in unknown:
-            raise no_expansion(top.table("fit"), warm, f"bearing.{unknown[warm]}")
-    return read_variables(table, scene.installed, installed_numbers(scene), begun)
+        for head, fitted, bearing, one in places:
+            name = key.removeprefix(head)
+            own = name.removeprefix("bearing.")
+            if not key.startswith(head) or one is None:
+                continue
+            if own in PITCH_FOLLOWS and pitch_follows(bearing):
+                where = head.rstrip(".") or "bearing"
+                problem = (
+                    "the pitch diameter follows from it and `outer_raceway_radius` in"
+                    f" this scene, and would be held; give [{where}]"
+                    " `pitch_diameter` in place of `outer_raceway_radius`, which then"
+                    " follows"
+                )
+                raise table.error(key, problem)
+            unknown = {} if one.fits is None else one.fits.unknown
+            warm = WARMTH.get(name)
+            if warm is not None and warm in unknown:
+                place = fitted.table("fit")
+                raise no_expansion(place, warm, f"{head}bearing.{unknown[warm]}")
+
+
+def bearings_of_machine(scene: Any) -> dict[str, Scene]:
+    """Return the bearings of a system of shafts, or of a rotor, by name."""
+    if hasattr(scene, "mounts"):
+        pairs = [(mount.name, mount.scene) for mount in scene.mounts]
+    else:
+        names = [seat.name for seat in scene.system.seats]
+        pairs = [*zip(names, scene.bearings, strict=True)]
+    return {name: one for name, one in pairs if one is not None}
+
+
+def read_number(table: Table, key: str, unit: str, *default: float | None) -> Any:
+    """Read a number of a design in SI; of a temperature within the range of bearings.
+
+    Args:
+        table: Table that holds the key.
+        key: Key in the table.
+        unit: Its SI unit.
+        default: Value if absent; without a default the key is required.
+    """
+    if unit == "K":
+        return read_temperature(table, key, *default)
+    return table.real(key, unit, *default)
 
 
 def read_variables(
@@ -418,14 +453,10 @@ def read_variables(
             raise table.error(key, _no_number(key, table, numbers))
         part = table.table(key)
         unit = unit_of(design, numbers[key][0])
-        if unit == "K":
-            low, high = (read_temperature(part, word) for word in ("from", "to"))
-            start = read_temperature(part, "start", None)
-        else:
-            low, high = (part.real(word, unit) for word in ("from", "to"))
-            start = part.real("start", unit, None)
-            if start is None and key in begun:
-                start = 0.5 * (low + high)
+        low, high = (read_number(part, word, unit) for word in ("from", "to"))
+        start = read_number(part, "start", unit, None)
+        if start is None and key in begun and unit != "K":
+            start = 0.5 * (low + high)
         first = low if start is None else start
         words = [
             scene_number(x, kind_of(unit)) if unit else f"{x:g}"

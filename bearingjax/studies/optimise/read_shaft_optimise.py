@@ -32,11 +32,11 @@ from .read_optimise import (
     SearchKeys,
     SearchTask,
     bound_key,
+    check_numbers,
     check_present,
     installed_numbers,
     read_bearing_optimisation,
     read_variables,
-    refuse_moved_pitch,
 )
 
 _OF_BEARINGS = ("rating_life", "static_safety", "peak_pressure", "tilt")
@@ -119,15 +119,12 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     known = scene, keys.exponent
     measures = [shaft_measure(keys, "objective", *known)]
     measures += [shaft_measure(one, "measure", *known) for one in keys.constraints]
-    design, cases = design_in_cases(scene, measures, table)
+    design, cases = design_in_cases(scene, has_power(measures), table)
     numbers = shaft_numbers(scene)
     varying = cases.paths(design)
     heads = tuple(dict.fromkeys(".".join(key.split(".")[:2]) for key in numbers))
-    bearings = Table(data, path).table("bearings")
+    check_numbers(free, Table(data, path), scene)
     for key in free.keys():
-        for seat in scene.system.seats:
-            place = f"bearings.{seat.name}"
-            refuse_moved_pitch(free, key, place, bearings.table(seat.name))
         if "." in key and ".".join(key.split(".")[:2]) not in heads:
             problem = f"{key!r} may not be free; what may are numbers of"
             raise free.error(key, f"{problem} {', '.join(heads)}")
@@ -155,17 +152,21 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     )
 
 
+def has_power(measures: Iterable[Any]) -> bool:
+    """Whether the friction of bearings is among measures."""
+    return any(isinstance(measure, PowerLoss) for measure in measures)
+
+
 def design_in_cases(
-    scene: ShaftScene, measures: Iterable[Any], table: Table
+    scene: ShaftScene, oily: bool, table: Table
 ) -> tuple[ShaftDesign, ShaftCases]:
     """Return the design of a system of shafts in its first load case, and all cases.
 
     Args:
         scene: The scene.
-        measures: What is asked of it; a `PowerLoss` needs oils.
+        oily: Whether the friction of bearings is wanted, which needs their oils.
         table: Table that asks, for errors.
     """
-    oily = any(isinstance(measure, PowerLoss) for measure in measures)
     each = scene.cases or (scene,)
     hours = [one.hours for one in each]
     with table.building():

@@ -311,7 +311,14 @@ def read_rotor(source: str | Path, settings: Iterable[str] = ()) -> RotorScene:
     Args, raises: as `read_scene`.
     """
     path = find_scene(source)
-    data = parse_scene(path, settings)
+    return rotor_of(parse_scene(path, settings), path)
+
+
+def rotor_of(data: dict[str, Any], path: Path) -> RotorScene:
+    """Read the scene of a rotor that is parsed.
+
+    Raises: as `read_scene`.
+    """
     top = Table(data, path)
     if not is_rotor(data):
         key = "bearing" if "bearing" in data else "rotor"

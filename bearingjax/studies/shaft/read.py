@@ -266,7 +266,14 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     Args, raises: as `read_scene`.
     """
     path = find_scene(source)
-    data = parse_scene(path, settings)
+    return shafts_of(parse_scene(path, settings), path)
+
+
+def shafts_of(data: dict[str, Any], path: Path) -> ShaftScene:
+    """Read the scene of a system of shafts that is parsed.
+
+    Raises: as `read_scene`.
+    """
     for key in data:
         name = _NAMES.get(key)
         if name is not None and ("shaft" in data or name == "shaft"):
@@ -280,7 +287,7 @@ def read_shafts(source: str | Path, settings: Iterable[str] = ()) -> ShaftScene:
     if "cases" in data:
         keys = read_keys(CasesKeys, Table(data, path).table("cases"))
         columns, _ = keys.columns(path, may_record=False)
-    elsewhere = ("cases", "optimise", "tolerances")
+    elsewhere = ("cases", "optimise", "tolerances", "identify")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
         return _with_lives(_read(alone, path, known), path)

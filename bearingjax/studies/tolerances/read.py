@@ -20,18 +20,20 @@ from ...numerics.units import unit_of
 from ...optimise import Constraint
 from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...statics.support import Support
-from ..bearing.read_fit import read_temperature
 from ..bearing.read_scene import Scene
 from ..optimise.read_optimise import (
     ConstraintKeys,
+    check_numbers,
     installed_numbers,
     kind_of_measure,
     measured_in,
+    read_number,
     read_operated,
 )
 from ..optimise.read_shaft_optimise import (
     ShaftConstraintKeys,
     design_in_cases,
+    has_power,
     shaft_measure,
     shaft_numbers,
 )
@@ -165,7 +167,7 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             shaft_measure(one, "measure", scene, SMOOTHING_EXPONENT)
             for one in keys.measures
         ]
-        design, cases = design_in_cases(scene, measures, table)
+        design, cases = design_in_cases(scene, has_power(measures), table)
         numbers, seats = shaft_numbers(scene), scene.system.seats
         places = {
             f"bearings.{seat.name}.": f"system.seats.{k}.installed."
@@ -185,6 +187,7 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
     for head, own in places.items():
         design, found = _sizes(design, head, own)
         sizes |= found
+    check_numbers(table.table("numbers"), Table(data, path), scene)
     scatters = _scatters(table.table("numbers"), design, numbers, sizes)
     if not scatters:
         problem = "name one at least: no size of this scene has a tolerance class"
@@ -298,13 +301,11 @@ def _scatters(
 
 
 def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
-    unit, given = unit_of(design, next(iter(paths))), {}
-    for word in ("from", "to", "mean", "deviation"):
-        if unit == "K" and word != "deviation":
-            given[word] = read_temperature(part, word, None)
-        else:
-            given[word] = part.real(word, unit, None)
-    low, high, mean, deviation = given.values()
+    unit = unit_of(design, next(iter(paths)))
+    low, high, mean = (
+        read_number(part, word, unit, None) for word in ("from", "to", "mean")
+    )
+    deviation = part.real("deviation", unit, None)
     if limits is not None:
         low, high = (
             own if x is None else x for x, own in zip((low, high), limits, strict=True)

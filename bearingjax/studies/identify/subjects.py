@@ -1,0 +1,234 @@
+"""Whose numbers are identified: a bearing, shafts on bearings, or a rotor."""
+
+import dataclasses
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...cases.sweep_table import case_columns
+from ...decide import CaseModel
+from ...files.quantity import kind_of
+from ...files.scene_file import is_rotor, is_shafts
+from ...files.table import Table, not_among
+from ...numerics.labels import column_header
+from ...numerics.types import as_array
+from ...numerics.units import unit_of
+from ...optimise.system import AbstractSystem
+from ...optimise.variable import with_numbers
+from ...rotor import Rotor
+from ...rotor.rotor_design import RotorCases, RotorDesign, RotorSeat
+from ..bearing.life_ratings import life_conditions
+from ..bearing.read_scene import scene_of
+from ..cases.read_cases import OPERATING, VariedKey, cases_of_columns, check_varied_key
+from ..optimise.read_optimise import installed_numbers
+from ..optimise.read_shaft_optimise import design_in_cases, shaft_numbers
+from ..rotor.read import RotorScene, rotor_of
+from ..rotor.supports import support_of
+from ..shaft.read import ShaftScene, shafts_of
+
+
+class Subject(NamedTuple):
+    """The design of a scene in the cases of a measured table.
+
+    Attributes:
+        scene: The scene.
+        model: Numbers of its cases, with those that differ from case to case.
+        cases: The cases.
+        columns: What they are, in SI, by header of a table.
+    """
+
+    scene: Any
+    model: CaseModel
+    cases: Any
+    columns: dict[str, np.ndarray]
+
+    @property
+    def study(self) -> str:
+        """Command that solves the scene."""
+        kinds = {ShaftScene: "shaft", RotorScene: "rotor"}
+        return kinds.get(type(self.scene), "solve")
+
+
+class Setup(NamedTuple):
+    """A scene before the cases of a measured table are known.
+
+    Attributes:
+        scene: The scene.
+        model: Numbers of its cases.
+        numbers: Numbers of the design by their key, with their paths.
+        data: The scene as parsed.
+        path: Its path.
+    """
+
+    scene: Any
+    model: CaseModel
+    numbers: dict[str, tuple[str, ...]]
+    data: dict[str, Any]
+    path: Path
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Kinds of quantities of the columns that are conditions, by key; columns of
+        other conditions are settings as in a scene."""
+        if isinstance(self.scene, RotorScene):
+            return {"rotor.speed": "speed"}
+        if is_shafts(self.data):
+            return {}
+        design, first = self.model.design, {k: p[0] for k, p in self.numbers.items()}
+        units = {key: unit_of(design, path) for key, path in first.items()}
+        own = {key: kind_of(unit) if unit else "" for key, unit in units.items()}
+        return dict(OPERATING) | own
+
+    def measures(self, key: str) -> bool:
+        """Whether a column is one of readings, not a condition."""
+        known = isinstance(self.model.design, AbstractSystem)
+        return key not in OPERATING and (
+            "." not in key or (known and key in self.model.design.readings())
+        )
+
+    def subject(self, table: Table, columns: list[VariedKey], count: int) -> Subject:
+        """Return the design in the cases of a measured table.
+
+        Args:
+            table: Table of the file, for errors.
+            columns: Its conditions.
+            count: Number of its rows.
+
+        Raises:
+            SceneError: For conditions that cannot vary.
+        """
+        if isinstance(self.scene, RotorScene):
+            return self._rotor(table, columns, count)
+        own = self._shafts if is_shafts(self.data) else self._bearing
+        return own(table, columns, count)
+
+    def _bearing(self, table, columns, count) -> Subject:
+        varied: dict[str, Any] = {}
+        for column in columns:
+            if column.key in OPERATING:
+                check_varied_key(table, column.key, self.scene)
+            elif column.key not in self.numbers:
+                raise table.error("file", not_among(column.key, [*self.numbers]))
+            else:
+                values = np.asarray(column.values, float)
+                varied |= dict.fromkeys(self.numbers[column.key], values)
+        for case in range(count if varied else 0):
+            with table.building():
+                own = {path: values[case] for path, values in varied.items()}
+                with_numbers(self.model.design, own)
+        cases = cases_of_columns(table, self.scene, columns, None, count)
+        kept = {
+            column_header(c.key, unit_of(self.model.design, self.numbers[c.key][0])): (
+                np.asarray(c.values)
+            )
+            for c in columns
+            if c.key in self.numbers
+        }
+        model = dataclasses.replace(self.model, varied=varied)
+        return Subject(self.scene, model, cases, dict(case_columns(cases)) | kept)
+
+    def _shafts(self, table, columns, count) -> Subject:
+        rows = [{c.key: c.values[k] for c in columns} for k in range(count)]
+        listed = {"spectrum": [row | {"hours": "1 h"} for row in rows]}
+        scene = shafts_of(self.data | {"cases": listed}, self.path)
+        oily = self.model.design.oils is not None
+        design, cases = design_in_cases(scene, oily, table)
+        model = dataclasses.replace(self.model, design=design)
+        kept = {c.key: np.asarray(list(map(str, c.values))) for c in columns}
+        return Subject(scene, model, cases, kept)
+
+    def _rotor(self, table, columns, count) -> Subject:
+        speed = np.full(count, self.scene.speed)
+        for column in columns:
+            if column.key != "rotor.speed":
+                raise table.error("file", not_among(column.key, ["rotor.speed"]))
+            speed = np.asarray(column.values, float)
+        kept = {"rotor.speed [rad/s]": speed}
+        return Subject(self.scene, self.model, RotorCases(speed), kept)
+
+
+def read_setup(data: dict[str, Any], path: Path) -> Setup:
+    """Read a scene before the cases of a measured table are known.
+
+    Args:
+        data: The scene as parsed.
+        path: Its path.
+
+    Raises:
+        SceneError: If it cannot be read, or is of another kind.
+    """
+    if is_shafts(data):
+        scene: Any = shafts_of(data, path)
+        top = Table(data, path)
+        if scene.heat is not None:
+            problem = "does not go with [identify]; give the temperatures that it finds"
+            raise top.error("heat", problem)
+        alone = [one for one in scene.bearings if one is not None]
+        oily = all(one.oil is not None for one in alone)
+        design = design_in_cases(scene, oily, top)[0]
+        return Setup(scene, CaseModel(design), shaft_numbers(scene), data, path)
+    if is_rotor(data):
+        alone = {key: value for key, value in data.items() if key != "identify"}
+        scene = rotor_of(alone, path)
+        design = _rotor_design(scene)
+        return Setup(scene, CaseModel(design), dict(_numbers(scene)), data, path)
+    scene = scene_of(data, path)
+    oil = {} if scene.oil is None else {"supply": scene.oil.supply}
+    given = scene.support, scene.solve_options, life_conditions(scene)
+    model = CaseModel(scene.installed, *given, **oil)
+    return Setup(scene, model, installed_numbers(scene), data, path)
+
+
+def _rotor_design(scene: RotorScene) -> RotorDesign:
+    keys, seats = scene.keys, []
+    supports = [support_of(mount) for mount in scene.mounts]
+    for mount in scene.mounts:
+        placed, preload = mount.installed, mount.keys.preload
+        if placed is None or mount.keys.law is not None:
+            seats.append(None)
+        else:
+            force = None if preload is None else as_array(preload, float)
+            seats.append(RotorSeat(placed, force))
+    rotor = Rotor(scene.shaft, scene.discs, supports, keys.own_damping, keys.rigid)
+    return RotorDesign(rotor, seats, scene.loads, keys.modes)
+
+
+def _numbers(scene: RotorScene) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the numbers of a rotor by scene key, with their paths in `RotorDesign`."""
+    found: dict[str, tuple[str, ...]] = {}
+    for k, mount in enumerate(scene.mounts):
+        head, own = f"rotor.bearings.{k}", f"rotor.supports.{k}"
+        keys = mount.keys
+        springs = {"damping": keys.damping.diagonal}
+        if mount.scene is not None and keys.law is None:
+            for key, paths in installed_numbers(mount.scene).items():
+                name = f"bearings.{mount.name}.{key.removeprefix('bearing.')}"
+                within = tuple(f"seats.{k}.installed.{path}" for path in paths)
+                found[name] = (*found.get(name, ()), *within)
+            if keys.preload is not None:
+                yield f"{head}.preload", (f"seats.{k}.preload",)
+        elif keys.stiffness is not None:
+            springs["stiffness"] = keys.stiffness.diagonal
+        for name in springs:
+            for side, axes in {"radial": "01", "axial": "2", "tilt": "34"}.items():
+                paths = tuple(f"{own}.{name}.{axis}.{axis}" for axis in axes)
+                yield f"{head}.{name}.{side}", paths
+        if keys.housing is not None:
+            yield f"{head}.housing.mass", (f"{own}.housing.mass",)
+            for name in ("stiffness", "damping"):
+                paths = tuple(f"{own}.housing.{name}.{axis}.{axis}" for axis in "012")
+                yield f"{head}.housing.{name}", paths
+    yield from found.items()
+    for k in range(len(scene.keys.shaft)):
+        for name in ("outer_diameter", "bore"):
+            yield f"rotor.shaft.{k}.{name}", (f"rotor.shaft.{name}.{k}",)
+    for k, disc in enumerate(scene.discs):
+        for name in ("mass", "polar_inertia", "diametral_inertia"):
+            if hasattr(disc, name):
+                yield f"rotor.discs.{k}.{name}", (f"rotor.discs.{k}.{name}",)
+    for k in range(len(scene.loads.unbalances)):
+        for name in ("moment", "phase"):
+            key = f"rotor.excitation.unbalance.{k}.{name}"
+            yield key, (f"loads.unbalances.{k}.{name}",)
