@@ -33,13 +33,13 @@ C of the ordinary class within 2 %: 12 of 14
 estimated geometry, C of the ordinary class: mean and worst, %
 angular_contact_ball       229    -0.0    +3.2
 crossed_roller              27    +0.0    +0.8
-cylindrical_roller         142    -7.8   -14.1
+cylindrical_roller         144    -7.7   -14.1
 cylindrical_thrust_roller   30    +0.8    +2.5
-deep_groove_ball           240    -0.5    -5.6
+deep_groove_ball           373    -0.3    -5.6
 double_row_ball             54    -1.8    -5.5
 four_point_ball             33    -3.7    -7.4
-needle_roller               92    -2.0    -7.8
-self_aligning_ball          77    -0.4    -2.4
+needle_roller              303    +0.1    -7.8
+self_aligning_ball          90    -0.4    -2.4
 spherical_roller           150   -11.1   -12.9
 spherical_thrust_roller     35   -10.5   -12.2
 tapered_roller             404    -0.7   -13.7

@@ -15,6 +15,7 @@ from ..fits.fit_limits import CLEARANCE_CLASSES, MOTOR_CLASS
 MAKERS = (
     *("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "JTEKT", "TIMKEN", "NACHI"),
     *("URB", "THK", "IKO", "RHP", "NKE", "NMB", "EZO", "ZKL", "ZWZ", "FBJ", "EPK"),
+    "ZEN",
 )
 """Manufacturer names that may stand before or after a designation."""
 

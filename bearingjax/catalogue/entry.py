@@ -62,6 +62,9 @@ _OTHER_BALLS = (
 )
 """Note on a bearing with the balls of another contact angle."""
 
+_ON_SHAFT = "no inner ring: the bore is the raceway on the shaft, hardened and ground"
+"""Note on a bearing whose rollers run on the shaft."""
+
 _RATINGS = (
     "dynamic_capacity",
     "static_capacity",
@@ -136,12 +139,12 @@ def in_catalogue_unit(key: str, value: float) -> str:
 
 
 class OtherRating(NamedTuple):
-    """Other published ratings for these boundary dimensions and internal geometry.
+    """Other published ratings for these boundary dimensions.
 
     Attributes:
         dynamic_capacity: C [N].
         static_capacity: C0 [N], or `None` if for another internal geometry.
-        source: Publisher.
+        source: Publisher, with the year if it is known.
     """
 
     dynamic_capacity: Annotated[float, unit("N")]
@@ -173,8 +176,8 @@ class CatalogueEntry:
         reference_speed: Thermal reference speed [rad/s].
         limiting_speed: Limiting speed [rad/s].
         mass: Mass [kg].
-        other: Ratings in another catalogue, or of the standard class for an improved
-            one.
+        other: Ratings in another catalogue for this internal geometry, or of the
+            standard class for an improved one.
         geometry: "published" or "estimated": number and size of the rolling elements
             and their pitch diameter.
         assumed: Keywords of `design` with typical values, neither published nor
@@ -185,6 +188,9 @@ class CatalogueEntry:
         taper: "K" or "K30" for a tapered bore, else "".
         printed: What else the publisher prints, in SI: lengths, and pure numbers such
             as the limit e and factors Y1, Y2, Y0 of axial loads.
+        makers: Ratings of other makers for this size; their insides may differ.
+        own_clearance: Whether its clearance is that which the publisher prints, in
+            place of the classes of its type.
     """
 
     designation: str
@@ -208,11 +214,13 @@ class CatalogueEntry:
     design: dict[str, Any]
     taper: str = ""
     printed: dict[str, Any] = dataclasses.field(default_factory=dict)
+    makers: tuple[OtherRating, ...] = ()
+    own_clearance: bool = False
 
     @property
     def clearance_class(self) -> str | None:
-        """Class of radial internal clearance; `None` for a type without classes."""
-        if self.type not in CLEARANCES:
+        """Class of radial internal clearance; `None` for a bearing without classes."""
+        if self.type not in CLEARANCES or self.own_clearance:
             return None
         after = self.designation.rpartition("/")[2]
         return after if after[:2] in (*CLEARANCE_CLASSES, MOTOR_CLASS) else "CN"
@@ -224,20 +232,27 @@ class CatalogueEntry:
         ("62", "") of 6205/C3, ("222", "EK") of 22220 EK, ("2", "EC") of NU 205 EC;
         of deep groove ball bearings up to 9 mm as of larger ones, ("618", "") of 688;
         ("320", "X") of 320/28 X, ("222", "E") of 22205/20 E. "" of bearings without
-        series, such as MR 85.
+        series, such as MR 85, and of insert bearings.
         """
         found = re.match(r"([A-Z]*) ?(\d+)(/\d+)? ?([A-Z]*)", self.designation)
         assert found is not None
         first, number, bore, letters = found.groups()
+        if self.own_clearance:
+            return "", letters
         small = self.type == "deep_groove_ball" and len(number) == 3 and not first
         whole = bore and len(number) < 4
         digits = number if whole else number[:-1] if small else number[:-2]
-        return {"68": "618", "69": "619"}.get(digits, digits), letters
+        return {"67": "617", "68": "618", "69": "619"}.get(digits, digits), letters
 
     @property
     def class_limits(self) -> Callable[..., Limits] | None:
-        """Clearance limits by class and bore; `None` for a type without classes."""
-        return class_limits(self.type, self.taper)
+        """Clearance limits by class and bore; `None` for a bearing without classes."""
+        return None if self.own_clearance else class_limits(self.type, self.taper)
+
+    @property
+    def has_inner_ring(self) -> bool:
+        """Whether it has an inner ring; without it rollers run on the shaft."""
+        return self.printed.get("inner_raceway_diameter") != self.bore
 
     def seat_warnings(self, mounting: Mounting) -> list[Warning]:
         """Warnings about seats of other diameters than its own.
@@ -428,7 +443,8 @@ def _entry(kind, key, changes, remarks, suffixes: Suffixes) -> CatalogueEntry:
             problem = "is no sleeve of it; one has its bore code and goes with K"
             raise ValueError(f"{shown}: {sleeve} {problem}")
         notes.append(f"{sleeve} (sleeve): no effect; give the shaft in [fit]")
-    if kind in CLEARANCES:
+    own = kind in CLEARANCES and CLEARANCE in design
+    if kind in CLEARANCES and (taper or not own):
         apart = " " if taper and shown[-1].isdigit() else ""
         shown, name = f"{shown}{apart}{taper}", suffixes.clearance or "CN"
         if class_limits(kind, taper) is None:
@@ -443,11 +459,14 @@ def _entry(kind, key, changes, remarks, suffixes: Suffixes) -> CatalogueEntry:
             raise ValueError(f"{shown}/{name}: {error}") from error
         notes.append(note)
     elif suffixes.clearance is not None:
-        problem = f"{kind} has no classes of clearance here; leave the class out"
+        what = shown if own else kind
+        problem = f"{what} has no classes of clearance here; leave the class out"
         raise ValueError(f"{shown}/{suffixes.clearance}: {problem}")
+    elif own:
+        notes.append("clearance: middle of what is printed as normal, not mounted")
     if suffixes.clearance not in (None, "CN"):
         shown = f"{shown}/{suffixes.clearance}"
-    return CatalogueEntry(
+    entry = CatalogueEntry(
         designation=shown,
         type=kind,
         **si,
@@ -461,7 +480,18 @@ def _entry(kind, key, changes, remarks, suffixes: Suffixes) -> CatalogueEntry:
         printed={}
         if "contact_angle" in changes
         else from_catalogue_unit("", values.get("printed", {})),
+        makers=tuple(
+            OtherRating._make(
+                (*from_catalogue_unit(_RATINGS[0], x), data["sources"][k])
+            )
+            for k, x in values.get("makers", {}).items()
+            if si["dynamic_capacity"]
+        ),
+        own_clearance=own,
     )
+    if entry.has_inner_ring:
+        return entry
+    return dataclasses.replace(entry, notes=(*notes, _ON_SHAFT))
 
 
 def _other(values, sources) -> OtherRating | None:

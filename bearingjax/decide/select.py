@@ -22,7 +22,6 @@ from ..cases.spectrum import revolutions_per_hour, spectrum_life
 from ..cases.sweep import SUMMARIES
 from ..catalogue.entry import (
     CLEARANCE,
-    CLEARANCES,
     CatalogueEntry,
     bearing_of_entry,
     catalogue_entries,
@@ -422,8 +421,8 @@ def _sieve(
 
 def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
     """Return an entry with another class of clearance."""
-    if entry.type not in CLEARANCES:
-        raise ValueError(f"{entry.type} has no classes")
+    if entry.class_limits is None:
+        raise ValueError(f"{entry.designation} has no classes")
     middle, _ = class_clearance(entry.type, name, entry.bore, entry.taper)
     changed: dict[str, Any] = {"design": {**entry.design, CLEARANCE: middle}}
     changed["designation"] = f"{entry.designation}/{name}"

@@ -34,7 +34,7 @@ def test_catalogue_entry_knows_what_six_makers_print():
             assert designated(whole) == (wanted if "с3" not in whole else "-"), whole
     known = [one for one in PRINTED if one[2] != "-"]
     assert len({maker for maker, *_ in known}) == 7
-    assert len(PRINTED) == 183 and len(known) == 166
+    assert len(PRINTED) == 183 and len(known) == 167
 
 
 def test_each_letter_without_effect_is_named():
@@ -85,8 +85,9 @@ def test_generated_designations_name_the_bearing_they_are_made_of():
         text = text.lower() if draw.random() < 0.3 else text
         try:
             found = bj.catalogue_entry(text)
-        except ValueError as error:  # of small bores some classes
-            assert "`name` is" in str(error) or "`bore` is" in str(error), text
+        except ValueError as error:  # of small bores some classes, of inserts none
+            unknown = "`name` is", "`bore` is", "no classes"
+            assert any(words in str(error) for words in unknown), text
             continue
         assert found.designation == wanted, text
         assert found.bore == entry.bore and found.width == entry.width
@@ -142,10 +143,10 @@ def test_letters_of_a_contact_angle_are_never_taken_for_others(prefix):
 
 
 REFUSED = {
-    "62/22": "/22 is a bore of 22 mm, part of the number",
-    "SKF 63/22-2RS1": "/22 is a bore of 22 mm",
+    "64/22": "/22 is a bore of 22 mm, part of the number",
+    "SKF 64/22-2RS1": "/22 is a bore of 22 mm",
     "303/28 J2": "/28 is a bore of 28 mm",
-    "6025": "near it: 6052, 6205, 6005, 6015, 6020, 6024",
+    "6025": "near it: 6052, 6205, 6005, 6015, 6020, 6021",
     "30205 K": "letters after 30205 that are not known: 'K'",
     "6205 2RS XQ": "not known: 'XQ'",
     "6205 + H 205": "not known: 'H'",
@@ -208,7 +209,7 @@ def test_series_of_jis_are_those_listed():
         if re.fullmatch(r"61[89]\d\d", entry.designation):
             text = f"6{entry.designation[2:]}"
             assert designated(text) == designated(f"NSK {text}") == entry.designation
-    assert designated("6811") == designated("6921") == "-"  # 61811 is not listed
+    assert designated("6864") == designated("6964") == "-"  # 61864 is not listed
 
 
 @pytest.mark.parametrize("kind", CLEARANCES)
@@ -234,7 +235,7 @@ TABLES = {
     "deep_groove_ball": ("_BALLS", 6, 315),
     "cylindrical_roller": ("_CYLINDERS", 24, 180),
     "needle_roller": ("_CYLINDERS", 24, 400),
-    "self_aligning_ball": ("_SELF_ALIGNING", 10, 100),
+    "self_aligning_ball": ("_SELF_ALIGNING", 10, 140),
     "spherical_roller": ("_SPHERICAL", 24, 280),
     "toroidal_roller": ("_TOROIDAL", 30, 280),
 }

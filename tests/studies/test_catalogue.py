@@ -60,7 +60,7 @@ def test_all_types_and_sixty_bearings_of_their_own():
 
 def test_catalogue_files_hold_known_keys_only():
     known = {"also", "arrangements", "assumed", "bearing", "capacity_source"}
-    known |= {"geometry", "geometry_source", "letter", "other", "printed"}
+    known |= {"geometry", "geometry_source", "letter", "makers", "other", "printed"}
     sizes = {"bore", "outside_diameter", "width", "inner_width", "outer_width"}
     ratings = {"dynamic_capacity", "static_capacity", "fatigue_load_limit"}
     known |= sizes | ratings | {"reference_speed", "limiting_speed", "mass"}
@@ -71,7 +71,55 @@ def test_catalogue_files_hold_known_keys_only():
             assert set(values) <= known, key
             used |= {values["capacity_source"], values["geometry_source"]}
             used |= {values["other"]["source"]} if "other" in values else set()
+            used |= set(values.get("makers", {}))
         assert used == set(data["sources"]), path.name
+
+
+def test_ratings_of_makers_stand_side_by_side():
+    entry = bj.catalogue_entry("SKF 6205")
+    assert "2006" in entry.sources["capacity"] and entry.dynamic_capacity == 14.8e3
+    assert ("NSK, rolling bearings E1102", 14e3, 7.85e3) in {
+        (rating.source, *rating[:2]) for rating in entry.makers
+    }
+    told = catalogue_report.catalogue_details(entry)
+    assert all(f"({rating.source})" in told for rating in entry.makers)
+    (shown,) = catalogue_report.catalogue_as_dict([entry])["bearings"]
+    assert shown["makers"] == [rating._asdict() for rating in entry.makers]
+    assert bj.catalogue_entry("W 6205").makers == ()  # not of stainless steel
+    for entry in (e for e in ENTRIES if e.makers):
+        assert entry.dynamic_capacity and entry.static_capacity
+        for c, c0, _ in entry.makers:
+            assert 0.8 < c / entry.dynamic_capacity < 1.16, entry.designation
+            assert c0 is not None and 0.8 < c0 / entry.static_capacity < 1.16
+
+
+def test_bearings_without_inner_ring_run_on_the_shaft():
+    bare = [entry for entry in ENTRIES if not entry.has_inner_ring]
+    assert {re.split(r"[ \d]", e.designation)[0] for e in bare} == {
+        *("HK", "NK", "NKS", "RNA")
+    }
+    for entry in bare:
+        inner = entry.design["pitch_diameter"] - entry.design["roller_diameter"]
+        assert inner == pytest.approx(entry.bore, rel=1e-9)
+    entry = bj.catalogue_entry("BK 1010")
+    assert "no inner ring" in entry.notes[-1] and "[fit]" not in new_scene(entry)
+    data = tomllib.loads(new_scene(entry))
+    data["fit"] = {"shaft": "k5", "housing": "H7", "housing_diameter": "40 mm"}
+    with pytest.raises(SceneError, match="HK 1010 has no inner ring to be seated"):
+        read_scene(scene_of(data, Path("my.toml")))
+
+
+def test_insert_bearings_have_the_clearance_that_is_printed():
+    entry = bj.catalogue_entry("YAR 205-2F")
+    assert entry.designation == "UC 205" and entry.clearance_class is None
+    assert (entry.width, entry.inner_width, entry.outer_width) == (0.034, 0.034, 0.017)
+    assert entry.design["radial_internal_clearance"] == 20e-6
+    for text in ("UC 205/C3", "UC 205 K"):
+        with pytest.raises(ValueError, match="classes of clearance"):
+            bj.catalogue_entry(text)
+    asked = bj.decide.Requirements([0.0, 100.0, 0, 0, 0, 0], clearance_class="C3")
+    (row,) = bj.select(asked, entries=[entry]).excluded
+    assert row["why"] == "UC 205 has no classes"
 
 
 def test_catalogue_units_are_those_of_the_fields():
@@ -107,6 +155,9 @@ def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
         inner = 0.5 * (pitch - across - entry.bore)
         outer = 0.5 * (entry.outside_diameter - pitch - across)
         least = 0.09 if entry.type in ("tapered_roller", "four_point_ball") else 0.1
+        if not entry.has_inner_ring:  # rollers on the shaft
+            assert inner == pytest.approx(0.0, abs=1e-9)
+            inner = outer
         assert min(inner, outer) > least * section
         assert size < entry.width
     assert count * np.arcsin(size / pitch) < np.pi  # apart
@@ -118,6 +169,8 @@ def test_rolling_elements_fit_between_the_rings_and_beside_each_other(entry):
             entry.design.get("roller_axis_angle", 0.0)
         )
         assert along < 0.85 * (entry.outer_width or entry.width)
+    if entry.type == "needle_roller":
+        assert entry.design["roller_length"] > 2.5 * size
     if entry.type == "tapered_roller":
         # The rollers stand above the cone as far as the cup is open: e = 1.5 tan α.
         names = "roller_axis_angle", "roller_half_angle"
@@ -421,7 +474,7 @@ WRONG = {
     "6205 C5P": "`name` is 'C5P'; it must be one of C2, CN, C3, C4, C5 for a bore",
     "NU 209 ECK": "NU 209 ECK: classes of clearance of tapered bores (K) are known",
     "1205 C5": "`name` is 'C5'; it must be one of C2, CN, C3, C4",
-    "N 2205": "; near it: C2205, 2205, 22205, N220E, NJ205, NJ2205;",
+    "N 2205": "; near it: C2205, 2205, 22205, 62205, N220E, NJ205;",
     "deep_grove": "nor is it a .toml file or a shipped scene (angular_contact,",
 }
 

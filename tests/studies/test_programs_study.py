@@ -57,7 +57,7 @@ def test_kinds_of_designations_are_named_once():
 
 @pytest.mark.slow
 def test_kinds_of_the_catalogue_are_few():
-    """1870 bearings, of which hundreds had a structure of their own."""
+    """2230 bearings, of which hundreds had a structure of their own."""
     kinds = kinds_of_catalogue()
     assert len(kinds) <= 44
 

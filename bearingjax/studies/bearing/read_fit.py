@@ -361,6 +361,10 @@ def _with_clearance(bearing, clearance):
 
 def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:
     """Return the diameters of the seats and of the housing."""
+    if catalogue is not None and not catalogue.entry.has_inner_ring:
+        problem = f"{catalogue.entry.designation} has no inner ring to be seated;"
+        cure = "leave it out, and give `radial_internal_clearance` as it runs"
+        raise keys.table.own_error(f"{problem} {cure}")
     found = {"housing_diameter": keys.housing_diameter}
     for key in ("bore", "outside_diameter"):
         found[key] = _given_or_catalogue(keys, key, key, catalogue)

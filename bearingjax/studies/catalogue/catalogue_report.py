@@ -159,8 +159,7 @@ def catalogue_details(entry: CatalogueEntry) -> str:
     """Format all data of a bearing, with its sources."""
     lines = [_describe(entry)]
     lines.append(_loads(entry))
-    if entry.other is not None:
-        c, c0, source = entry.other
+    for c, c0, source in (*filter(None, [entry.other]), *entry.makers):
         static = "" if c0 is None else f", C0 {1e-3 * c0:.4g} kN"
         lines.append(f"elsewhere C {1e-3 * c:.4g} kN{static} ({source})")
     speeds = {
@@ -204,6 +203,7 @@ def catalogue_as_dict(entries: Iterable[CatalogueEntry]) -> dict[str, Any]:
                 "table": as_keys(entry.design),
                 "printed": as_keys(entry.printed),
                 "other": entry.other and entry.other._asdict(),
+                "makers": [rating._asdict() for rating in entry.makers],
                 "thermal_speed": thermal_speed(entry),
             }
             for entry in entries
@@ -287,7 +287,7 @@ def _more_tables(entry: CatalogueEntry) -> list[str]:
             'arrangement = "back_to_back"  # or "face_to_face"',
             f'spacing = "{1e3 * entry.width:.5g} mm"',
         ]
-    if not _row(entry).is_thrust:
+    if not _row(entry).is_thrust and entry.has_inner_ring:
         lines += [
             "",
             "[fit]  # seats, from which the clearance in operation follows",
