@@ -178,6 +178,7 @@ def _rotor_scene() -> dict[str, Any]:
         "rotor": table_schema(RotorKeys),
         "bearings": _by_name({**_ref("bearing", _NAMED), "properties": within}),
         **{name: _ref(name) for name in ("life", "lubricant", "output")},
+        "identify": table_schema(IdentifyKeys),
     }
     return object_schema(tables, ["rotor"], "a shaft on its bearings")
 
@@ -231,6 +232,7 @@ def _shaft_scene() -> dict[str, Any]:
         "system": table_schema(SystemKeys),
         "heat": table_schema(HeatKeys),
         "optimise": table_schema(ShaftOptimiseKeys),
+        "identify": table_schema(IdentifyKeys),
         "tolerances": table_schema(ShaftToleranceKeys),
         "life": _ref("life"),
         "lubricant": _ref("lubricant"),

@@ -33,11 +33,12 @@ def _tables(about: str, **rest: Any) -> Any:
 
 
 class IdentifyKeys(Keys):
-    about = "[identify]: numbers of the bearing from measurements"
+    about = "[identify]: numbers of bearing, shafts or rotor from measurements"
 
     data: str | None = scene_key(
         "path of a CSV with a row for each case: conditions by their keys, measured"
-        " numbers by their column in the table of a sweep, each with its unit",
+        " numbers by their names (of a bearing as in the table of a sweep), each with"
+        " its unit",
         otherwise="that of `--data`",
     )
     unknowns: Any = _tables(
