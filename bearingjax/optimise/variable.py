@@ -3,7 +3,7 @@
 import dataclasses
 import difflib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import jax
@@ -190,6 +190,25 @@ def with_values(element: Design, paths: Sequence[Sequence[str]], values: Any) ->
     """
     pairs = zip(paths, values, strict=True)
     return with_numbers(element, {path: v for several, v in pairs for path in several})
+
+
+def rated_paths(design: Any, paths: Iterable[str]) -> list[str]:
+    """Return the paths of numbers without which a bearing has no published ratings.
+
+    Args:
+        design: An element, installed bearing, or system, of known numbers.
+        paths: Dotted paths of numbers that change.
+    """
+    found = []
+    for path in paths:
+        *parts, name = path.split(".")
+        owner = design
+        for part in parts:
+            owner = owner[int(part)] if part.isdecimal() else getattr(owner, part)
+        published = getattr(owner, "published", None)
+        if published is not None and name in owner.rated_fields:
+            found += [path] if np.any(published.ratings) else []
+    return found
 
 
 def check_variables(

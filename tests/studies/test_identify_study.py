@@ -239,9 +239,12 @@ shaft = [
     { length = "125 mm", outer_diameter = "35 mm" },
     { length = "375 mm", outer_diameter = "35 mm" },
 ]
-discs = [
-    { station = 1, mass = "10 kg", polar_inertia = "0.2 kg m^2", diametral_inertia = "0.1 kg m^2" },
-]
+
+[[rotor.discs]]
+station = 1
+mass = "10 kg"
+polar_inertia = "0.2 kg m^2"
+diametral_inertia = "0.1 kg m^2"
 
 [bearings.front]
 type = "angular_contact_ball"

@@ -9,6 +9,7 @@ from ...decide.tolerance_effects import QUANTILES
 from ...numerics.units import shown_count, shown_number
 from ...numerics.warning import Warning
 from ...optimise import Constraint
+from ...optimise.variable import rated_paths
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
 from .read import ToleranceTask
@@ -62,10 +63,17 @@ def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
 
 
 def tolerance_warnings(task: ToleranceTask, run: ToleranceRun) -> list[Warning]:
-    """Return warnings about the scene, and samples that were not solved."""
+    """Return warnings about the scene, samples that were not solved, and numbers that
+    take published ratings away."""
     failed, n = int(np.count_nonzero(run.found.result)), len(run.found.result)
     words = f"{failed} of {n} samples were not solved; they count as misses"
     lost = [Warning("failed_samples", words, failed / n, 0.0)] if failed else []
+    design, _, scatters, _ = task.given
+    for one in scatters:
+        if rated_paths(design, one.path):
+            words = f"{one.name} scatters, on which load ratings depend: those of the"
+            words += " standards stand in place of the published ones, which are of the"
+            lost.append(Warning("ratings_dropped", f"{words} drawn size alone"))
     return [*task.scene.warnings, *lost]
 
 
