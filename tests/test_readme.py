@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import bearingjax as bj
-from bearingjax.cli.entry import _LOOKING_UP, _SOLVING
+from bearingjax.studies.commands import LOOKING_UP, SOLVING
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -80,7 +80,7 @@ def test_commands_and_scenes_of_the_guide_exist():
     assert "solve" in commands
     names = {
         action.add(argparse.ArgumentParser().add_subparsers()).prog.split()[-1]
-        for action in (*_SOLVING, *_LOOKING_UP)
+        for action in (*SOLVING, *LOOKING_UP)
     }
     assert commands <= names
     shipped = bj.files.shipped_scenes()

@@ -1,8 +1,4 @@
-"""The command line: a module per command, and shared modules.
-
-A command's module has `add`, which adds its parser and options, and `run`, which runs
-it and returns the exit status or an `Outcome`. They import the rest of the package
-inside functions, so that `bearingjax --help` is fast.
+"""The command line: runs the commands of `studies`, and writes their outcome.
 
 Names
 -----

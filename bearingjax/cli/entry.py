@@ -9,52 +9,11 @@ import sys
 from collections.abc import Callable, Sequence
 
 from ..studies import jax_settings
-from ..studies import schema_command as schema
-from ..studies.cases import life_command as life
-from ..studies.cases import sweep_command as sweep
-from ..studies.catalogue import command as catalogue
-from ..studies.catalogue import examples_command as examples
-from ..studies.catalogue import new_command as new
-from ..studies.contact import command as contact
-from ..studies.identify import command as identify
-from ..studies.noise import command as noise
-from ..studies.optimise import command as optimise
-from ..studies.options import add_quiet
-from ..studies.programs import cache_command as cache
-from ..studies.programs import warm_command as warm
-from ..studies.rotor import command as rotor
-from ..studies.select import command as select
-from ..studies.shaft import command as shaft
-from ..studies.skid import command as skid
-from ..studies.solve import command as solve
-from ..studies.solve import compare_command as compare
+from ..studies.commands import LOOKING_UP, QUIET, SI, SOLVING, add_options
 from ..studies.status import BAD_INPUT, INTERRUPTED, SOLVED, complain
-from ..studies.tolerances import command as tolerances
-from ..studies.validate import command as validate
 from .about import citations, describe_version
 from .completion import SHELLS, completion_script
 from .execute import execute
-
-_SOLVING = (
-    solve,
-    sweep,
-    compare,
-    optimise,
-    identify,
-    life,
-    contact,
-    skid,
-    rotor,
-    shaft,
-    noise,
-    select,
-    tolerances,
-    validate,
-)
-"""Commands that solve scenes; `execute` writes their outcome."""
-
-_LOOKING_UP = (catalogue, new, examples, schema, cache, warm)
-"""Commands that print, and return an exit status directly."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -82,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options.refuse(f"unrecognized arguments: {' '.join(unknown)}")
         options.given = list(sys.argv[1:] if arguments is None else arguments)
         jax_settings.configure(options)
-        return options.execute(options)
+        return options.execute(options) or SOLVED
     except SceneError as error:
         complain(error)
         return BAD_INPUT
@@ -120,14 +79,11 @@ def parser() -> argparse.ArgumentParser:
         choices=SHELLS,
     )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command in (*_SOLVING, *_LOOKING_UP):
-        added = command.add(commands)
-        call = command.run
-        if command in _SOLVING:
+    for command in (*SOLVING, *LOOKING_UP):
+        added, call = command.add(commands), command.run
+        if command in SOLVING:
             call = functools.partial(execute, command)
-            units = "tables, and inputs of a report, in SI"
-            added.add_argument("--si", action="store_true", help=units)
-            add_quiet(added)
+            add_options(added, SI, QUIET)
         added.set_defaults(execute=call, refuse=added.error)
     return top
 

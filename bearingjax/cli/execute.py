@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from ..studies.commands import Command
 from ..studies.outcome import Draw, Outcome, Stage, Tools
 from ..studies.outputs import (
     OUTPUTS,
@@ -25,11 +26,11 @@ from ..studies.outputs import (
 from ..studies.status import BAD_INPUT, NOT_SOLVED, SOLVED, complain
 
 
-def execute(command: Any, options: Any) -> int:
+def execute(command: Command, options: Any) -> int:
     """Run a command: check the options, solve, write, print.
 
     Args:
-        command: Its module; its `run(options, tools)` returns an `Outcome`.
+        command: Its `run(options, tools)` returns an `Outcome`.
         options: Command line options.
 
     Returns:
@@ -167,7 +168,7 @@ def _origin(options):
     return Origin(
         shlex.join(["bearingjax", *options.given]),
         "\n".join(texts),
-        tuple(options.set),
+        tuple(getattr(options, "set", ())),
         now.strftime("%Y-%m-%d %H:%M %z"),
         None if options.si else written,
     )

@@ -9,6 +9,7 @@ import base64
 import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
@@ -20,61 +21,6 @@ from .report_model import Part, Report
 
 MOST_ROWS = 200
 """Most rows of a table shown on a page; `--table` writes all rows."""
-
-_STYLE = """
-:root { color-scheme: light }
-body { margin: 0 auto; max-width: 62rem; padding: 1.5rem; color: #1b1f24;
-  background: #fff; font: 15px/1.5 system-ui, "Segoe UI", Helvetica, Arial, sans-serif }
-h1 { font-size: 1.7rem; margin: 0 0 .2rem }
-h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; padding-bottom: .2rem;
-  border-bottom: 2px solid #2f6f9f }
-header p { margin: 0; color: #57606a }
-pre { font: 12.5px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace;
-  margin: 0; white-space: pre-wrap; overflow-wrap: break-word }
-section > p { margin: .3rem 0; white-space: pre-line }
-figure { margin: 0 } figure img { width: 100%; height: auto }
-.warnings { border-left: 5px solid #c77700; background: #fff6e5; padding: .6rem 1rem;
-  margin: 1rem 0 }
-.warnings h2 { margin: 0; padding: 0; border: none }
-.warnings ul { margin: .2rem 0; padding-left: 1.2rem }
-.scroll { overflow: auto; max-height: 85vh }
-.scroll thead th { position: sticky; top: 0; background: #fff }
-.grid td:first-child { white-space: nowrap }
-.grid td:last-child:not(.value):not(:first-child) { min-width: 10rem }
-table { border-collapse: collapse; font-size: 13px; width: 100% }
-th, td { text-align: left; padding: .15rem .6rem .15rem 0; vertical-align: top;
-  border-bottom: 1px solid #e3e6ea }
-th[scope=colgroup] { padding-top: .8rem; border-bottom: 1px solid #9aa4ae }
-td.number { font-variant-numeric: tabular-nums; overflow-wrap: anywhere }
-table.grid { width: auto; margin: .5rem 0 }
-.grid caption { text-align: left; padding: .3rem 0; position: sticky; left: 0 }
-.grid th, .grid td { padding-right: 1.1rem }
-.grid .value { text-align: right; font-variant-numeric: tabular-nums }
-.grid td.value { white-space: nowrap } .grid th { vertical-align: bottom }
-.grid th .unit { font-weight: normal; color: #57606a }
-.cases th, .cases td { font-size: 11px; white-space: nowrap }
-.cases th { white-space: normal; vertical-align: bottom }
-@media screen {
-  figure { width: min(96vw, 80rem); margin-left: 50%; transform: translateX(-50%) }
-}
-@media screen and (max-width: 40rem) {
-  body { padding: .8rem } figure { overflow-x: auto } figure img { width: 60rem }
-}
-@page { size: A4; margin: 14mm 12mm;
-  @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif } }
-@page wide { size: A4 landscape }
-@media print {
-  body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35 }
-  h1 { font-size: 16pt } h2 { font-size: 11pt; margin: 5mm 0 2mm; break-after: avoid }
-  pre { font-size: 7.2pt; line-height: 1.3; orphans: 6; widows: 6 }
-  table { font-size: 8pt } th, td { padding: .3mm 3mm .3mm 0 }
-  figure, .warnings, tr { break-inside: avoid } p { break-after: avoid }
-  tr:has(th[scope=colgroup]) { break-after: avoid }
-  .wide { page: wide; break-after: page }
-  .scroll { overflow: visible; max-height: none }
-  .cases th, .cases td { font-size: 6pt; padding-right: 1.5mm; white-space: normal }
-}
-"""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,6 +86,7 @@ def report_page(
 def _page(title: str, parts: Iterable[str], origin: Origin) -> str:
     made = f"bearingjax {__version__}, {origin.date}"
     body = "\n".join(part for part in parts if part)
+    style = (files("bearingjax.report") / "page.css").read_text(encoding="utf-8")
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -147,7 +94,8 @@ def _page(title: str, parts: Iterable[str], origin: Origin) -> str:
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="bearingjax {escape(__version__)}">
 <title>{escape(title)}</title>
-<style>{_STYLE}</style>
+<style>
+{style}</style>
 </head>
 <body>
 <header>

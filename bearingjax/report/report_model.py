@@ -139,6 +139,11 @@ Part = str | Grid
 Section = Sequence[Part]
 
 
+def with_values(*columns: Column) -> list[Column]:
+    """Return the columns that have a value."""
+    return [one for one in columns if any(value is not None for value in one.values)]
+
+
 def load_text(load: Iterable[Any]) -> str:
     """Format the parts of a load that are not zero; "" without any.
 

@@ -102,6 +102,57 @@ def picture(name: str, *given: Any, **more: Any) -> Draw:
     return draw
 
 
+def outcome_of(
+    name: str,
+    inputs: Mapping[str, Any],
+    found: Sequence[Any],
+    numbers: Callable[..., Mapping[str, Any]],
+    report: Callable[..., Report],
+    columns: Callable[..., Mapping[str, Any]] | None,
+    pictures: Mapping[str, Draw],
+    *,
+    solved: bool = True,
+    **more: Any,
+) -> Outcome:
+    """Return the outcome of a run whose outputs are made of the same results.
+
+    Args:
+        name, inputs: As in `Outcome`.
+        found: Arguments of the functions that follow.
+        numbers, report, columns: Return JSON, report and table; `None`: no table.
+        pictures: As in `Outcome`.
+        solved: Whether there is anything to report and to draw.
+        more: The other fields of `Outcome`.
+    """
+    return Outcome(
+        name,
+        inputs,
+        lambda: numbers(*found),
+        report(*found) if solved else None,
+        None if columns is None else lambda: columns(*found),
+        pictures if solved else {},
+        **more,
+    )
+
+
+def unsolved_start(
+    scene: Any, inputs: dict[str, Any], error: Exception, result: str
+) -> Outcome:
+    """Return the outcome of a search whose first design does not solve.
+
+    Args:
+        scene: Its scene, with a `name` and `warnings`.
+        inputs: As in `Outcome`.
+        error: Why it does not solve.
+        result: Its result in the JSON.
+    """
+    from ..report.json_output import run_json
+
+    status = {"result": result, "message": str(error)}
+    numbers = run_json(status, scene.warnings, inputs)
+    return Outcome(scene.name, inputs, lambda: numbers, problems=[str(error)])
+
+
 class Stage:
     """Display of the current stage of a run on standard error.
 

@@ -6,8 +6,16 @@ from typing import Any
 
 from .status import complain
 
-OUTPUTS = "json", "table", "wav", "plot", "drawing", "report"
-"""Options that name a file, in the order in which the files are written."""
+OUTPUTS = {
+    "json": "write numbers in SI",
+    "table": "write a row per {} (.csv, .parquet, .xlsx)",
+    "wav": "write the acceleration along the sensor as sound (.wav)",
+    "plot": "{} (.png, .pdf, .svg)",
+    "drawing": "write a drawing {}, with all its dimensions (.png, .pdf, .svg)",
+    "report": "write a report that stands alone (.html), with inputs and {}",
+}
+"""Options that name a file, with their help, in the order in which the files are
+written."""
 
 _PICTURE = (".png", ".pdf", ".svg"), "a picture ends in .png, .pdf or .svg"
 _ENDINGS = {
@@ -113,5 +121,6 @@ def _check_packages(outputs: Mapping[str, Path | None]) -> None:
 
 
 def sources_of(options: Any) -> list[str]:
-    """Return the scenes of a command."""
-    return options.scenes if hasattr(options, "scenes") else [options.scene]
+    """Return the scenes of a command, of which some have none."""
+    own = [options.scene] if hasattr(options, "scene") else []
+    return getattr(options, "scenes", own)

@@ -71,6 +71,7 @@ from .tolerances.read import ShaftToleranceKeys, ToleranceKeys
 def scene_schema() -> dict[str, Any]:
     """Return the JSON Schema of all scenes."""
     numbers = {"anyOf": [{"enum": [*MATERIALS]}, table_schema(Material)]}
+    profiles = classes_schema(PROFILES)["anyOf"]
     defs = {
         "bearing": _bearing(),
         "set": _set(),
@@ -78,12 +79,13 @@ def scene_schema() -> dict[str, Any]:
         "fit": table_schema(FitKeys),
         "temperature": table_schema(TemperatureKeys),
         "material": numbers,
-        "profile": {"anyOf": _profiles()},
+        "profile": {"anyOf": [one for one in profiles if "properties" in one]},
         "rib": table_schema(Rib),
         "life": table_schema(LifeConditions),
         "lubricant": table_schema(LubricantKeys),
         "output": table_schema(OutputKeys),
         "cases": table_schema(CasesKeys),
+        "identify": table_schema(IdentifyKeys),
         "operating": _merge("load, support and speeds", OperatingKeys, ControlKeys),
         "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys, SolveKeys),
     }
@@ -121,19 +123,9 @@ def key_guide(name: str = "") -> str:
 def _bearing_scene() -> dict[str, Any]:
     """Schema of a bearing: `solve`, `sweep`, `life`, `optimise`, `skid`, `noise`."""
     tables = {
-        "bearing": _ref("bearing"),
-        "set": _ref("set"),
-        "contact": _ref("contact"),
-        "operating": _ref("operating"),
-        "numerics": _ref("numerics"),
-        "fit": _ref("fit"),
-        "temperature": _ref("temperature"),
-        "lubricant": _ref("lubricant"),
-        "life": _ref("life"),
-        "output": _ref("output"),
-        "cases": _ref("cases"),
+        **_refs("bearing set contact operating numerics fit temperature lubricant"),
+        **_refs("life output cases identify"),
         "optimise": table_schema(OptimiseKeys),
-        "identify": table_schema(IdentifyKeys),
         "tolerances": table_schema(ToleranceKeys),
         "cage": table_schema(Cage),
         "dynamics": table_schema(DynamicsKeys),
@@ -145,8 +137,8 @@ def _bearing_scene() -> dict[str, Any]:
 
 def _select_scene() -> dict[str, Any]:
     """Schema of a choice of bearing: `select`."""
-    names = "contact operating numerics fit temperature lubricant life cases".split()
-    tables = {"select": select_schema()} | {name: _ref(name) for name in names}
+    names = "contact operating numerics fit temperature lubricant life cases"
+    tables = {"select": select_schema()} | _refs(names)
     return object_schema(tables, ["select"], "a choice of bearing")
 
 
@@ -166,19 +158,15 @@ def _contact_scene() -> dict[str, Any]:
 def _rotor_scene() -> dict[str, Any]:
     """Schema of a shaft on its bearings: `rotor`."""
     within = {
-        "set": _ref("set", "as of a bearing alone"),
-        "contact": _ref("contact", "as of a bearing alone"),
-        "fit": _ref("fit", "as of a bearing alone"),
-        "temperature": _ref("temperature", "as of a bearing alone"),
+        **_refs("set contact fit temperature", "as of a bearing alone"),
         "numerics": _merge("solvers", BallNumericsKeys, RollerNumericsKeys),
         **table_schema(ControlKeys)["properties"],
     }
-    within |= {"life": _ref("life"), "lubricant": _ref("lubricant")}
+    within |= _refs("life lubricant")
     tables = {
         "rotor": table_schema(RotorKeys),
         "bearings": _by_name({**_ref("bearing", _NAMED), "properties": within}),
-        **{name: _ref(name) for name in ("life", "lubricant", "output")},
-        "identify": table_schema(IdentifyKeys),
+        **_refs("life lubricant output identify"),
     }
     return object_schema(tables, ["rotor"], "a shaft on its bearings")
 
@@ -232,12 +220,8 @@ def _shaft_scene() -> dict[str, Any]:
         "system": table_schema(SystemKeys),
         "heat": table_schema(HeatKeys),
         "optimise": table_schema(ShaftOptimiseKeys),
-        "identify": table_schema(IdentifyKeys),
         "tolerances": table_schema(ShaftToleranceKeys),
-        "life": _ref("life"),
-        "lubricant": _ref("lubricant"),
-        "output": _ref("output"),
-        "cases": _ref("cases"),
+        **_refs("life lubricant output cases identify"),
     }
     return object_schema(tables, ["shaft", "bearings"], "a system of shafts")
 
@@ -290,11 +274,8 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
             more["ribs"] = object_schema(ribs, [], "ribs by name")
         if word == "spherical_roller":
             about = "whether rollers of one row stand between those of the other"
-            more["staggered"] = {
-                "type": "boolean",
-                "description": about,
-                "default": True,
-            }
+            staggered = {"type": "boolean", "description": about, "default": True}
+            more["staggered"] = staggered
         if word in WITH_LETTERS:
             letters, play = {"enum": [*ARRANGEMENTS]}, number_schema("length")
             more |= {
@@ -317,8 +298,8 @@ def _of_type(word: str, kind: type) -> dict[str, Any]:
     return {**found, "required": [*must]}
 
 
-def _profiles() -> list[dict[str, Any]]:
-    return [one for one in classes_schema(PROFILES)["anyOf"] if "properties" in one]
+def _refs(names: str, about: str = "") -> dict[str, Any]:
+    return {name: _ref(name, about) for name in names.split()}
 
 
 def _ref(name: str, about: str = "") -> dict[str, Any]:

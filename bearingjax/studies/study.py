@@ -45,21 +45,20 @@ class Study(NamedTuple):
 
 
 STUDIES = {
+    "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
+    "identify": Study(frozenset({"identify"}), read_identification, run_identification),
+    "select": Study(frozenset({"select"}), read_select, run_select),
+    "tolerances": Study(frozenset({"tolerances"}), read_tolerances, run_tolerances),
     "shaft": Study(frozenset({"shaft"}), read_shafts, run_shafts),
     "rotor": Study(frozenset({"rotor"}), read_rotor, run_rotor),
     "contact": Study(frozenset({"roller"}), read_contact, run_contact),
     "noise": Study(frozenset({"vibration"}), read_noise, run_noise),
     "skid": Study(frozenset({"dynamics"}), read_skid, run_skid),
-    "optimise": Study(frozenset({"optimise"}), read_optimisation, run_optimisation),
-    "identify": Study(frozenset({"identify"}), read_identification, run_identification),
-    "select": Study(frozenset({"select"}), read_select, run_select),
-    "tolerances": Study(frozenset({"tolerances"}), read_tolerances, run_tolerances),
     "life": Study(frozenset({"cases", "life"}), read_cases, run_life),
     "sweep": Study(frozenset({"cases"}), read_cases, run_cases),
     "solve": Study(frozenset(), read_scene, run_scene),
 }
-"""Studies by command; a scene belongs to the first whose tables it has, one of shafts
-with [optimise] to that."""
+"""Studies by command; a scene belongs to the first whose tables it has."""
 
 
 def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
@@ -71,8 +70,6 @@ def study_of(source: str | Path, settings: Iterable[str] = ()) -> str:
         SceneError: If there is no such scene, or it cannot be read.
     """
     data = parse_scene(find_scene(source), settings)
-    if {"shaft", "optimise"} <= data.keys():
-        return "optimise"
     return next(name for name, study in STUDIES.items() if study.tables <= data.keys())
 
 
@@ -84,13 +81,13 @@ def run(source: str | Path, settings: Iterable[str] = ()) -> Any:
         settings: Changes to it, "key=value", as in `--set`.
 
     Returns:
-        By the tables of the scene: `ShaftRun` of [shaft.NAME], `OptimisedDesign` if it
-        has [optimise] too, `RotorRun` of [rotor], a list of `SliceComparison` of
-        [roller], `NoiseRun` of [vibration], `SkidRun` of [dynamics], `OptimisedDesign`
-        of [optimise], `Identified` of [identify], `Selection` of [select], `LifeRun` of
-        [cases] and [life], `Sweep` of [cases], else the `Solution` of the bearing under
-        its load. Read its result code: a failed solve does not raise, except at the
-        start of a search.
+        By the tables of the scene: `OptimisedDesign` of [optimise], `Identified` of
+        [identify], `Selection` of [select], `ToleranceRun` of [tolerances], `ShaftRun`
+        of [shaft.NAME], `RotorRun` of [rotor], a list of `SliceComparison` of [roller],
+        `NoiseRun` of [vibration], `SkidRun` of [dynamics], `LifeRun` of [cases] and
+        [life], `Sweep` of [cases], else the `Solution` of the bearing under its load.
+        Read its result code: a failed solve does not raise, except at the start of a
+        search.
 
     Raises:
         SceneError: If the scene cannot be read.

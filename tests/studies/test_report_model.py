@@ -8,7 +8,7 @@ from pages import missing_on_page
 
 from bearingjax.report import Column, Grid, Origin, Report, report_page
 from bearingjax.report.html_report import flat
-from bearingjax.report.report_model import DEGREES, labelled_facts
+from bearingjax.report.report_model import DEGREES, labelled_facts, with_values
 
 
 @pytest.mark.parametrize(
@@ -105,3 +105,8 @@ def test_report_only_selects_sections():
         ("b", "none")
     )
     assert str(report) == "second\nwarning: odd"
+
+
+def test_with_values_leaves_out_columns_without_any():
+    life, wear = Column("life", [None, 0.0], "h"), Column("wear", [None, None], "m")
+    assert with_values(life, wear) == [life]

@@ -14,6 +14,7 @@ from tolerances import ROUNDING
 import bearingjax as bj
 from bearingjax.design import rows_of
 from bearingjax.files import shipped_scenes
+from bearingjax.studies.bearing.read_operating import relative_speed
 from bearingjax.studies.shaft.read import read_shafts
 from bearingjax.studies.solve.report import design_sections
 
@@ -669,3 +670,8 @@ def test_read_scene_coupled_slices():
     setting = ("contact.line_law=coupled_slices", "contact.slices=12")
     element = bj.read_scene("tapered", setting).element
     assert element.line_law == bj.contact.CoupledSlices(12)
+
+
+def test_relative_speed_of_rings():
+    assert relative_speed(None) == 0.0
+    assert relative_speed(bj.element.Speed(3.0, 5.0)) == -2.0

@@ -8,9 +8,10 @@ import pytest
 
 import bearingjax as bj
 from bearingjax import cli
-from bearingjax.cli.entry import _SOLVING, parser
+from bearingjax.cli.entry import parser
 from bearingjax.cli.execute import OUTPUTS
 from bearingjax.files import SceneError, shipped_scenes
+from bearingjax.studies.commands import SOLVING
 from bearingjax.studies.solve.compare import run_compare
 from bearingjax.studies.solve.run import solve_scene
 from bearingjax.studies.study import STUDIES, study_of
@@ -122,7 +123,7 @@ def no_solve(monkeypatch):
 
 def test_every_command_is_tested():
     commands = argparse.ArgumentParser().add_subparsers()
-    names = [one.add(commands).prog.split()[-1] for one in _SOLVING]
+    names = [one.add(commands).prog.split()[-1] for one in SOLVING]
     assert [*SCENES, "validate"] == names  # which has cases, no scene
     assert set(SCENES) == {*STUDIES, "compare"}
 

@@ -14,6 +14,7 @@ from ...report.json_output import to_json
 from ...report.report_model import Column, Grid, Part
 from ...statics.solution import RollerSolution, Solution
 from .life_ratings import RATING_SOURCES, rating_origins, why_not_published
+from .read_operating import relative_speed
 from .read_scene import Scene
 
 _SYMBOLS = ("C", "C0", "C_u")
@@ -183,8 +184,9 @@ def life_section(scene: Scene, solution: Solution, life: Life) -> list[Part]:
     elif life.reliability_factor < 0.999999:
         a1 = float(life.reliability_factor)
         lives[f"reference, a1 {a1:.4g}"] = a1 * life.reference_rating_life
-    per_turn = _hours_per_turn(solution)
-    hours = None if per_turn is None else {k: per_turn * x for k, x in lives.items()}
+    speed, hours = abs(relative_speed(solution.speed)), None
+    if speed:
+        hours = {k: 2.0 * np.pi / 3600.0 / speed * x for k, x in lives.items()}
     return [
         lives_grid(lives, hours),
         *factors_line,
@@ -265,13 +267,6 @@ def describe_turning(turns: Any, at_rest: bool) -> str:
             " against the load"
         )
     return f"turning against the load: {words}"
-
-
-def _hours_per_turn(solution) -> float | None:
-    speed = solution.speed
-    if speed is None or float(speed.inner) == float(speed.outer):
-        return None
-    return 2.0 * np.pi / 3600.0 / abs(float(speed.inner) - float(speed.outer))
 
 
 def life_number(value: Any) -> str:

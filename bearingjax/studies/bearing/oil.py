@@ -26,6 +26,7 @@ from ...statics.empty_places import solution_with_empty_places, take_elements
 from ...statics.solution import Solution
 from .catalogue_keys import FromCatalogue
 from .read_lubricant import LubricantKeys, describe_oil
+from .read_operating import relative_speed
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,7 +86,7 @@ def oil_facts(
         solution: Converged solution.
         catalogue: Catalogue entry of the bearing's designation.
     """
-    if solution.speed is None or float(_relative_speed(solution)) == 0.0:
+    if relative_speed(solution.speed) == 0.0:
         return None
     numbers = solution_with_empty_places(jax.device_put(solution))
     rough = None if oil.roughness is None else as_array(oil.roughness, float)
@@ -100,10 +101,6 @@ def oil_facts(
     facts = _facts(numbers, oil.lubricant, temperature, *known)
     here = take_elements(facts.films, solution.element)
     return jax.device_get(facts._replace(films=here))
-
-
-def _relative_speed(solution):
-    return np.asarray(solution.speed.inner) - np.asarray(solution.speed.outer)
 
 
 @program(quick=True, what="friction and films")

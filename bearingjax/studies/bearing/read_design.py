@@ -32,7 +32,9 @@ def read_row(table: Table) -> design.AbstractBearing:
     Args: as `read_design`.
     """
     kind = table.choice("type", (*ROLLERS, *BALLS))
-    return _balls(table, kind) if kind in BALLS else _rollers(table, kind)
+    if kind in BALLS:
+        return build(BALLS[kind], table, required_numbers(kind), **_materials(table))
+    return _rollers(table, kind)
 
 
 def with_both_rows(
@@ -90,10 +92,6 @@ def pitch_follows(table: Table) -> bool:
     Args: as `read_design`.
     """
     return table.raw("type", None) in SPHERES and "pitch_diameter" not in table
-
-
-def _balls(table: Table, kind: str) -> design.AbstractBearing:
-    return build(BALLS[kind], table, required_numbers(kind), **_materials(table))
 
 
 def _rollers(table: Table, kind: str) -> design.AbstractRollerBearing:

@@ -100,6 +100,11 @@ def _roughness(what: str) -> Any:
     )
 
 
+def _expansion(of: str) -> Any:
+    about, kind = f"thermal expansion of the {of}", "temperature coefficient"
+    return scene_key(about, kind, default=None, otherwise="that of their material")
+
+
 def _of_seat(small: bool) -> dict[str, Any]:
     names = [name for name in LIMIT_CLASSES if name[0].islower() is small]
     return {"choices": names, "words": limit_classes(small), "default": None}
@@ -162,16 +167,8 @@ class FitKeys(Keys):
     )
     shaft_material: WarmMaterial = _seat_key("shaft")
     housing_material: WarmMaterial = _seat_key("housing")
-    ring_expansion: float | None = scene_key(
-        "thermal expansion of the rings",
-        "temperature coefficient",
-        otherwise="that of their material",
-    )
-    element_expansion: float | None = scene_key(
-        "thermal expansion of the rolling elements",
-        "temperature coefficient",
-        otherwise="that of their material",
-    )
+    ring_expansion: float | None = _expansion("rings")
+    element_expansion: float | None = _expansion("rolling elements")
     shaft_roughness: float | None = _roughness("shaft")
     housing_roughness: float | None = _roughness("housing's bore")
     ring_roughness: float | None = _roughness("seats of the rings")
@@ -346,17 +343,14 @@ def read_fits(
         seats["shaft_interference"] = there.shaft_interference
         seats["housing_interference"] = there.housing_interference
         if scatters:
-            bearing = _with_clearance(bearing, there.radial_clearance)
+            cleared = there.radial_clearance
+            rows = [with_radial_clearance(one, cleared) for one in bearings_of(bearing)]
+            bearing = with_bearings(bearing, rows)
         mounting = Mounting(**seats)
         mount(bearing, mounting, conditions)
     notes = FitNotes(place, (keys.shaft or "", keys.housing or ""), unknown)
     parts = {"mounting": mounting, "conditions": conditions, "limits": limits}
     return bearing, parts, notes
-
-
-def _with_clearance(bearing, clearance):
-    rows = [with_radial_clearance(row, clearance) for row in bearings_of(bearing)]
-    return with_bearings(bearing, rows)
 
 
 def _sizes(keys: FitKeys, catalogue: FromCatalogue | None) -> dict[str, float]:

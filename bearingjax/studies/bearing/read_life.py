@@ -9,6 +9,7 @@ from ...life.rating import rated_axially
 from ...life.reference_life import LEAST_LAMINAE
 from ...numerics.warning import Warning
 from .oil import Oil, read_oil
+from .read_operating import relative_speed
 
 
 def read_life(
@@ -27,7 +28,7 @@ def read_life(
     """
     if "life" not in top:
         return None
-    table = top.table("life")
+    table, turning = top.table("life"), relative_speed(speed) != 0.0
     given = read_values(LifeConditions, table)
     if given["viscosity"] is not None and given["contamination"] is None:
         problem = "is missing; the modified life needs it beside `viscosity`"
@@ -38,10 +39,10 @@ def read_life(
         table.fill("edge_stress", None)
     if given["contamination"] is not None:
         given["viscosity"] = _viscosity(top, table, given["viscosity"])
-    if given["viscosity"] is not None and not _turns(speed) and "cases" not in top:
+    if given["viscosity"] is not None and not turning and "cases" not in top:
         problem = "needs a speed of one ring against the other, for its film"
         raise table.error("contamination", problem)
-    if given["required"] is not None and not _turns(speed) and "cases" not in top:
+    if given["required"] is not None and not turning and "cases" not in top:
         problem = "is in hours, and the rings do not turn; write required_revolutions"
         raise table.error("required", problem)
     _check_points(top, bearing, points)
@@ -49,10 +50,6 @@ def read_life(
     with table.building():
         rated_axially(bearing)  # which refuses sets of unlike rows
         return LifeConditions(**given)
-
-
-def _turns(speed) -> bool:
-    return speed is not None and float(speed.inner) != float(speed.outer)
 
 
 def _viscosity(top: Table, table: Table, given: float | None) -> float:

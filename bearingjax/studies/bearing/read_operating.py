@@ -12,6 +12,11 @@ MOST_POINTS = 10_000
 roller as JSON."""
 
 
+def relative_speed(speed: Speed | None) -> float:
+    """Return the speed of the inner ring less that of the outer [rad/s]; 0 at rest."""
+    return 0.0 if speed is None else float(speed.inner) - float(speed.outer)
+
+
 class LoadKeys(Keys):
     about = "Load on the moving ring"
 

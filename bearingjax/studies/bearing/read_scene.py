@@ -26,7 +26,13 @@ from .read_bearing import read_bearing, read_designation
 from .read_choices import KINEMATICS, read_choices
 from .read_fit import FitNotes, read_fits
 from .read_life import lubrication_warnings, read_life
-from .read_operating import MOST_POINTS, OperatingKeys, OutputKeys, SolveKeys
+from .read_operating import (
+    MOST_POINTS,
+    OperatingKeys,
+    OutputKeys,
+    SolveKeys,
+    relative_speed,
+)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -182,9 +188,7 @@ def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
         turns: Relative speed of the rings, of one or many cases [rad/s]; `None`: that
             of the scene.
     """
-    if turns is None:
-        rings = scene.speed or Speed()
-        turns = float(rings.inner) - float(rings.outer)
+    turns = relative_speed(scene.speed) if turns is None else turns
     texts = scene.installed.speed_warnings(turns)
     return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
 

@@ -12,6 +12,7 @@ from ...statics.solution import Solution
 from ...statics.warning import solution_warnings
 from .life_ratings import life_conditions
 from .oil import OilFacts, oil_facts
+from .read_operating import relative_speed
 from .read_scene import Scene
 
 
@@ -74,8 +75,7 @@ def scene_life(scene: Scene, solution: Solution) -> Life:
     Raises:
         SceneError: If the values of [life] do not suit the bearing.
     """
-    speed = scene.speed
-    turning = speed is not None and float(speed.inner) != float(speed.outer)
+    turning = relative_speed(scene.speed) != 0.0
     conditions = life_conditions(scene, turning=turning)
     with scene_errors(scene.name):
         life = rating_life(solution.element, solution, conditions)

@@ -1,32 +1,16 @@
 """`bearingjax life`."""
 
 import dataclasses
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
-from ..options import Commands, add_plot, add_report, add_scene, add_table
-from ..outcome import Outcome, Tools, picture
-from ..solve.solution_outcome import solution_outcome
-
-
-def add(commands: Commands) -> ArgumentParser:
-    """Add the command and its options; return its parser."""
-    command = commands.add_parser(
-        "life",
-        help="rating life, of one load or of a load spectrum",
-        description="Rating life of the bearing of a scene file by ISO 281 and ISO/TS"
-        " 16281, as its [life] says, under its load or, if it has [cases], under all of"
-        " them, whose damage adds up over their hours.",
-        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
-    )
-    add_scene(command)
-    add_table(command, "case, of one load one row")
-    add_plot(command)
-    add_report(command, "pictures")
-    return command
+from ..outcome import Outcome, Tools, outcome_of, picture
+from ..solve.command import solution_outcome
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Compute the rating life of the bearing of a scene."""
+    """Rating life of the bearing of a scene file by ISO 281 and ISO/TS 16281, as its
+    [life] says, under its load or, if it has [cases], under all of them, whose damage
+    adds up over their hours."""
     from ...files.scene_file import has_cases
 
     if has_cases(options.scene, options.set):
@@ -48,35 +32,26 @@ def _life_of_load(options) -> Outcome:
 
 
 def _life_of_cases(options, tools: Tools) -> Outcome:
-    from .life_run import (
-        life_columns,
-        run_life,
-        spectrum_as_dict,
-        spectrum_page,
-        spectrum_report,
-    )
+    from . import life_run
     from .read_cases import read_cases
     from .sweep_run import cases_with_set_preload
 
-    table = read_cases(options.scene, options.set)
-    table = cases_with_set_preload(table)
-    done, scene = run_life(table, tools.shown), table.scene
-    solved = done.converged
-
-    pictures = {
-        "Lives and damage of the cases": picture(
-            "life_overview", done, title=scene.name
-        )
-    }
-    return Outcome(
+    table = cases_with_set_preload(read_cases(options.scene, options.set))
+    done, scene = life_run.run_life(table, tools.shown), table.scene
+    draw = picture("life_overview", done, title=scene.name)
+    return outcome_of(
         scene.name,
         table.inputs,
-        lambda: spectrum_as_dict(done),
-        spectrum_report(done) if solved else None,
-        lambda: life_columns(done),
-        pictures if solved else {},
-        lambda: picture("drawing", scene.running().bearing, scene.name, scene.entry)(),
-        page=lambda: spectrum_page(done),
+        (done,),
+        life_run.spectrum_as_dict,
+        life_run.spectrum_report,
+        life_run.life_columns,
+        {"Lives and damage of the cases": draw},
+        solved=done.converged,
+        drawing=lambda: picture(
+            "drawing", scene.running().bearing, scene.name, scene.entry
+        )(),
+        page=lambda: life_run.spectrum_page(done),
         table_on_page=True,
-        problems=[] if solved else [done.failure_message],
+        problems=[] if done.converged else [done.failure_message],
     )

@@ -3,47 +3,18 @@
 import shlex
 import signal
 import time
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
 import numpy as np
 
 from .. import jax_settings
-from ..options import Commands, add_plot, add_report, add_scene, add_table
 from ..outcome import Outcome, Tools, picture
 from ..outputs import check_table
 from ..status import NOT_SOLVED, SOLVED
 
 
-def add(commands: Commands) -> ArgumentParser:
-    """Add the command and its options; return its parser."""
-    command = commands.add_parser(
-        "sweep",
-        help="many cases: loads, displacements, speeds, designs",
-        description="Solve the [cases] of a scene file.",
-        epilog="Exit status: 0 all solved, 2 bad input, 3 some not solved (the table"
-        " holds a result for each case), 130 interrupted (what is solved is kept).",
-    )
-    add_scene(command)
-    add_table(command, "case")
-    command.add_argument(
-        "--resume",
-        action="store_true",
-        help="solve only the cases that the table lacks, after an interruption",
-    )
-    add_plot(command)
-    add_report(command, "cases")
-    command.add_argument(
-        "--devices",
-        metavar="N",
-        type=int,
-        default=None,
-        help="parts of the processor to spread the cases over; default: all its cores",
-    )
-    return command
-
-
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Solve the cases of a scene."""
+    """Solve the [cases] of a scene file."""
     from ...cases import sweep_table
     from ...files import SceneError
     from ...numerics import Result

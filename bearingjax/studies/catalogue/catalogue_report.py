@@ -1,7 +1,6 @@
 """The catalogue as text, as numbers and as new scenes; the list of shipped scenes."""
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -151,7 +150,9 @@ def catalogue_title(entry: CatalogueEntry) -> str:
 
 
 def _describe(entry):
-    what = f"{_words(entry.type)} bearing, {_sizes(entry)}"
+    sizes = (entry.bore, entry.outside_diameter, entry.width)
+    what = f"{entry.type.replace('_', ' ')} bearing,"
+    what = f"{what} {' x '.join(f'{1e3 * size:.5g}' for size in sizes)} mm"
     return f"{entry.designation}: {what}" if entry.designation else what.capitalize()
 
 
@@ -399,15 +400,6 @@ def _round(value: float) -> float:
     return float(f"{value:.2g}")
 
 
-def _words(kind: str) -> str:
-    return kind.replace("_", " ")
-
-
-def _sizes(entry: CatalogueEntry) -> str:
-    sizes = (entry.bore, entry.outside_diameter, entry.width)
-    return " x ".join(f"{1e3 * size:.5g}" for size in sizes) + " mm"
-
-
 def _loads(entry: CatalogueEntry) -> str:
     if entry.dynamic_capacity is None:
         return f"C, C0 {entry.sources['capacity']}"
@@ -444,11 +436,12 @@ def _toml(value: Any) -> str:
 
 def scene_list() -> str:
     """Return a line for each shipped scene: name, command and title."""
-    lines = []
-    for name, path in shipped_scenes().items():
-        text = path.read_text(encoding="utf-8")
-        lines.append(f"{name:<20}{_command(tomllib.loads(text)):<10}{_title(text)}")
-    return "\n".join(lines)
+    from ..study import study_of
+
+    return "\n".join(
+        f"{name:<20}{study_of(name):<9} {_title(path.read_text(encoding='utf-8'))}"
+        for name, path in shipped_scenes().items()
+    )
 
 
 def _title(text: str) -> str:
@@ -456,18 +449,3 @@ def _title(text: str) -> str:
     head = re.match(r"(?:#.*\n)*", text)
     words = " ".join(line.lstrip("# ") for line in head[0].splitlines()) if head else ""
     return re.split(r"(?<=\w\w[).!?])(?<=[.!?])\s", words)[0].rstrip(".")
-
-
-def _command(data: Mapping[str, Any]) -> str:
-    """Return the command that runs a scene."""
-    tables = {
-        "rotor": "rotor",
-        "vibration": "noise",
-        "shaft": "shaft",
-        "life": "life",
-        "lubricant": "skid",
-        "raceway": "contact",
-        "optimise": "optimise",
-        "cases": "sweep",
-    }
-    return next((tables[key] for key in tables if key in data), "solve")

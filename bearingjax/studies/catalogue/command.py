@@ -1,43 +1,14 @@
-"""`bearingjax catalogue`."""
+"""`bearingjax catalogue`, `new` and `examples`."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
-from ..options import Commands, add_drawing, add_json, add_plot
 from ..outputs import check_outputs, save, write_outputs
 from ..status import BAD_INPUT, SOLVED
 
 
-def add(commands: Commands) -> ArgumentParser:
-    """Add the command and its options; return its parser."""
-    command = commands.add_parser(
-        "catalogue",
-        help="bearings by their designation",
-        description="List the bearings of the catalogue, or say all that is known of"
-        ' some: "6205", "NJ 209 ECP/C3".',
-        epilog="Exit status: 0, or 2 for bad input.",
-    )
-    command.add_argument(
-        "designation", metavar="DESIGNATION", nargs="*", help="default: all that fit"
-    )
-    command.add_argument("--type", help="such as deep_groove_ball")
-    command.add_argument(
-        "--bore", metavar="RANGE", help='"25 mm", "20 mm:40 mm", ":40 mm"'
-    )
-    command.add_argument("--outside", metavar="RANGE", help="outside diameter")
-    command.add_argument(
-        "--min-capacity",
-        dest="capacity",
-        metavar="FORCE",
-        help='least dynamic capacity, "10 kN", or a range "10 kN:20 kN"',
-    )
-    add_json(command)
-    add_plot(command, "draw sections of the bearings that are named")
-    add_drawing(command)
-    return command
-
-
-def run(options: Namespace) -> int:
-    """List bearings of the catalogue."""
+def list_bearings(options: Namespace) -> int:
+    """List the bearings of the catalogue, or say all that is known of some: "6205", "NJ
+    209 ECP/C3"."""
     from ...catalogue.entry import bearing_of_entry, catalogue_entries
     from ...files import SceneError
     from ...report.json_output import write_numbers
@@ -91,3 +62,46 @@ def run(options: Namespace) -> int:
     else:
         print(catalogue_table(chosen), flush=True)
     return BAD_INPUT if failed else SOLVED
+
+
+def print_new_scene(options: Namespace) -> None:
+    """Print a scene of a bearing under a part of its capacity: bearingjax new 6205 >
+    my.toml. Of a bearing that the catalogue does not list give type, sizes and ratings;
+    its inner geometry is then an estimate. `bearingjax new shaft` prints a commented
+    scene of a gearbox."""
+    from ...catalogue.estimated_entry import SIZES, estimated_entry
+    from ...files import SceneError
+    from ..bearing.catalogue_keys import listed_bearing
+    from .catalogue_report import new_scene
+
+    given = {name: getattr(options, name) for name in SIZES}
+    name = " ".join(options.designation)
+    others = [*given.values(), options.contact_angle]
+    if name == "shaft":
+        return print_example(Namespace(name="shaft_gearbox"))
+    if options.type is None:
+        if not name:
+            raise SceneError("new: give a designation, or --type and sizes")
+        if any(value is not None for value in others):
+            raise SceneError(f"new {name}: sizes and ratings go with --type")
+        entry = listed_bearing(name)
+    elif name:
+        raise SceneError(f"new {name}: give a designation or --type, not both")
+    else:
+        entry = estimated_entry(options.type, given, options.contact_angle)
+    print(new_scene(entry), end="", flush=True)
+
+
+def print_example(options: Namespace) -> None:
+    """List the shipped scenes, or print one."""
+    from ...files import SceneError, shipped_scenes
+    from ...files.table import not_among
+    from .catalogue_report import scene_list
+
+    scenes = shipped_scenes()
+    if options.name is None:
+        print(scene_list(), flush=True)
+    elif options.name in scenes:
+        print(scenes[options.name].read_text(encoding="utf-8"), end="", flush=True)
+    else:
+        raise SceneError(f"examples: {not_among(options.name, tuple(scenes))}")

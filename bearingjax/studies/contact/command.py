@@ -1,42 +1,14 @@
 """`bearingjax contact`."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
-from ..options import Commands, add_plot, add_report, add_scene
 from ..outcome import Outcome, Tools, picture
-from ..solve.solution_outcome import why_unsolved
-
-
-def add(commands: Commands) -> ArgumentParser:
-    """Add the command and its options; return its parser."""
-    command = commands.add_parser(
-        "contact",
-        help="one roller on one raceway, its ends included",
-        description="Solve the contact of one roller and one raceway, both elastic"
-        " half-spaces, cell by cell; beside it what independent slices give.",
-        epilog="Exit status: 0 solved, 2 bad input, 3 not solved.",
-    )
-    add_scene(command)
-    command.add_argument(
-        "--roller",
-        type=int,
-        help="of a bearing's scene; default: the one with the largest load",
-    )
-    command.add_argument(
-        "--raceway", choices=("inner", "outer"), help="likewise; default: inner"
-    )
-    command.add_argument(
-        "--free-ends",
-        action="store_true",
-        help="likewise: the roller's end faces bear no stress",
-    )
-    add_plot(command)
-    add_report(command, "pictures")
-    return command
+from ..solve.command import why_unsolved
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Solve a single contact, or one of a bearing."""
+    """Solve the contact of one roller and one raceway, both elastic half-spaces, cell
+    by cell; beside it what independent slices give."""
     from ...files import SceneError
     from ..bearing.read_scene import read_scene
     from ..bearing.solved import SolvedScene

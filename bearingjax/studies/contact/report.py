@@ -180,10 +180,14 @@ def _places(scene, cases):
     """Tabulate the pressure at x = 0 at fixed positions, independent of the cells."""
     length = float(scene.contact.roller_length)
     places = np.array(PLACES) * length
+    solved = [case.solution for case in cases]
     pressure = np.array(
-        [_pressure_at(case.solution, 0.5 * length - places) for case in cases]
+        [
+            np.interp(0.5 * length - places, one.grid.y, one.centre_pressure)
+            for one in solved
+        ]
     )
-    loads = [float(case.solution.load) for case in cases]
+    loads = [float(one.load) for one in solved]
     return Grid(
         [
             Column("load", loads, "N", ".5g", NEWTONS),
@@ -203,11 +207,6 @@ def _convergence(cases):
         f"converged in {shown_count(steps, 'step')}, largest gap left"
         f" {residual:.1e} of the mean displacement"
     )
-
-
-def _pressure_at(solution, y):
-    grid = solution.grid
-    return np.interp(y, np.asarray(grid.y), np.asarray(solution.centre_pressure))
 
 
 def _clean(value):

@@ -145,16 +145,6 @@ def optimisation_as_dict(
     return run_json(numbers, [*best.warnings, *found.after.warnings], task.inputs)
 
 
-def unsolved_start_as_dict(task: Task, error: Exception) -> dict[str, Any]:
-    """Return the output of a task whose first design does not solve.
-
-    Returns:
-        result ("start_not_solved"), message, warnings, inputs and version.
-    """
-    status = {"result": "start_not_solved", "message": str(error)}
-    return run_json(status, task.scene.warnings, task.inputs)
-
-
 def _numbers(found, best):
     before, after = found.before, found.after
     variables = [

@@ -210,7 +210,7 @@ def _linear(task: RotorScene, linear: Rotor) -> RotorResponse:
     assert asked is not None  # callers check it
     frequency = np.linspace(asked.begin, asked.end, asked.points)
     found = harmonic_response(linear, task.loads, frequency, asked.speed)
-    motion = np.asarray(found.motion)[:, _stations(task)]
+    motion = np.asarray(found.motion)[:, task.nodes]
     phase = np.exp(2j * np.pi * np.arange(_SAMPLES) / _SAMPLES)
     moved = np.real(motion[:, None] * phase[None, :, None, None])
     stopped = None
@@ -284,14 +284,9 @@ def _system(
     )
 
 
-def _stations(task: RotorScene) -> list[int]:
-    """Return the node of every station."""
-    return [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
-
-
 def _at_stations(task, system, q) -> np.ndarray:
     """Return the motion of the stations (…, station, 5) from the freedoms (…, n)."""
     motions = q @ np.asarray(system.motions).T
     n = 5 * task.shaft.n_nodes
     nodes = motions[..., :n].reshape(*q.shape[:-1], task.shaft.n_nodes, 5)
-    return nodes[..., _stations(task), :]
+    return nodes[..., task.nodes, :]

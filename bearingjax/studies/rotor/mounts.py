@@ -223,7 +223,8 @@ def read_mounts(
             if keys.bearing not in named:
                 found = [*bearing.installed.seat_warnings(), *found]
             warned += warnings_of(bearing.name, found)
-        mounts.append(_mount(keys, bearing))
+            _check_bearing(keys, bearing.element.bearing)
+        mounts.append(Mount(keys, bearing))
     for name in named:
         if name not in [keys.bearing for keys in holds]:
             raise tables.error(name, "is in no [[rotor.bearings]]; leave it out")
@@ -263,12 +264,6 @@ def _bearing(
     inside = Table(inputs, path.name, f"bearings.{own}")
     placed = read_machine_bearing(top, inside, scene.name, path, speed=speed)
     return _in_rotor(placed, speed)
-
-
-def _mount(keys: MountKeys, bearing: Scene | None) -> Mount:
-    if bearing is not None:
-        _check_bearing(keys, bearing.element.bearing)
-    return Mount(keys, bearing)
 
 
 def _check_bearing(keys: MountKeys, design: Any) -> None:

@@ -8,16 +8,13 @@ from ...files.quantity import SceneError
 from ...numerics.result import Result
 from ...report.json_output import run_json
 from ...rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
+from ...rotor.shaft import STATION_UNITS
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict, life_verdict, verdict_as_dict
 from .motion import RotorResponse, RotorTransient
 from .read import RotorScene
 from .run import RotorRun
 
-STATION_UNITS: dict[str, str] = dict(
-    zip(STATION_FREEDOMS, ("m", "m", "m", "rad", "rad"), strict=True)
-)
-"""Units of the motions of a station."""
 SERIES = "response", "transient"
 """Results with a row per point, and per time."""
 _TURN = 2.0 * np.pi
@@ -159,7 +156,8 @@ def coordinates(count: int) -> list[str]:
 def _of_motions(values):
     """Return the columns of (row, station, 5)."""
     names = coordinates(values.shape[1])
-    headers = [f"{name} [{STATION_UNITS[name.partition('_')[0]]}]" for name in names]
+    units = zip(names, STATION_UNITS * values.shape[1], strict=True)
+    headers = [f"{name} [{unit}]" for name, unit in units]
     flat = values.reshape(len(values), -1).T
     return dict(zip(headers, flat, strict=True))
 
@@ -181,10 +179,9 @@ def _critical(found: CriticalSpeeds) -> dict[str, Any]:
 def _static(run: RotorRun) -> dict[str, Any]:
     task, settled = run.task, run.settled
     assert settled is not None  # checked by the caller
-    nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
     return {
         "station": task.shaft.stations,
-        "displacement": np.asarray(settled.displacement)[nodes],
+        "displacement": np.asarray(settled.displacement)[task.nodes],
         "bearing": [mount.name for mount in task.mounts],
         "bearing_station": [mount.station for mount in task.mounts],
         "load": settled.support_load,

@@ -284,6 +284,11 @@ class RotorScene:
         return self.keys.speed
 
     @property
+    def nodes(self) -> list[int]:
+        """Node of the shaft at every station."""
+        return [self.shaft.node(k) for k in range(self.shaft.n_segments + 1)]
+
+    @property
     def seats(self) -> tuple[tuple[Mount, tuple[int, ...]], ...]:
         """Each bearing with fits, by its first mount, and its stations."""
         found: dict[int, tuple[Mount, tuple[int, ...]]] = {}

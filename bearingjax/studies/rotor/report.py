@@ -4,14 +4,23 @@ import numpy as np
 
 from ...numerics.types import in_numpy
 from ...numerics.units import rpm, shown_count
-from ...report.report_model import NEWTONS, Column, Grid, Part, Report, Section
+from ...report.report_model import (
+    NEWTONS,
+    Column,
+    Grid,
+    Part,
+    Report,
+    Section,
+    with_values,
+)
 from ...rotor import STATION_FREEDOMS, BearingSupport
 from ...rotor.nonlinear import BranchEnd
+from ...rotor.shaft import STATION_UNITS
 from ..bearing.credibility import credibility_section
 from ..bearing.fit_report import fit_report
 from ..solve.report import without_round_off
 from .motion import RotorResponse, RotorTransient
-from .output import STATION_UNITS, mode_numbers
+from .output import mode_numbers
 from .run import RotorRun
 
 _HZ = 0.5 / np.pi
@@ -86,12 +95,11 @@ def _lives(run) -> Section:
         Column("C0/P0", [float(x.static_safety) for x in lives], "1", ".3g", (1.0, "")),
         Column("basic", [float(x.basic_rating_life) for x in lives], "rev"),
         Column("reference", [float(x.reference_rating_life) for x in lives], "rev"),
+        *with_values(
+            Column("modified", [x.modified_rating_life for x in lives], "rev"),
+            Column("life", [x.life_hours for x in lives], "h"),
+        ),
     ]
-    if any(life.modified_rating_life is not None for life in lives):
-        modified = [x.modified_rating_life for x in lives]
-        columns.append(Column("modified", modified, "rev"))
-    if any(life.life_hours is not None for life in lives):
-        columns.append(Column("life", [life.life_hours for life in lives], "h"))
     return [Grid(columns, "rating lives under the loads of the static equilibrium")]
 
 
@@ -112,8 +120,7 @@ def _fit_sections(task):
 def _stations(run):
     """Tabulate the static displacement of every station."""
     task = run.task
-    nodes = [task.shaft.node(k) for k in range(task.shaft.n_segments + 1)]
-    moved = np.round(np.asarray(run.settled.displacement)[nodes], 9)
+    moved = np.round(np.asarray(run.settled.displacement)[task.nodes], 9)
     z = np.asarray(task.shaft.stations)
     columns = [
         Column("station", list(task.station_names)),
@@ -121,7 +128,7 @@ def _stations(run):
         *(
             Column(name, values, unit, ".3f")
             for name, values, unit in zip(
-                STATION_FREEDOMS, moved.T, STATION_UNITS.values(), strict=True
+                STATION_FREEDOMS, moved.T, STATION_UNITS, strict=True
             )
         ),
     ]

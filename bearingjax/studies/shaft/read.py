@@ -310,7 +310,9 @@ def shafts_of(data: dict[str, Any], path: Path) -> ShaftScene:
             one = _read(changed, path, known)
         except SceneError as error:
             raise SceneError(f"{error} (case {case})") from error
-        cases.append(dataclasses.replace(one, hours=_hours(hours)))
+        if hours is not None:  # of which a CSV has numbers already
+            hours = float(to_si(hours, "duration") if isinstance(hours, str) else hours)
+        cases.append(dataclasses.replace(one, hours=hours))
         every.append(values)
     try:
         given = [one.hours for one in cases]
@@ -354,13 +356,6 @@ def _with_lives(scene: ShaftScene, path: Path) -> ShaftScene:
         None if one is None else life_conditions(one, turning) for one in scene.bearings
     )
     return dataclasses.replace(scene, lives=tuple(lives))
-
-
-def _hours(value: Any) -> float | None:
-    """Return the hours of a case, of which a CSV has numbers already [h]."""
-    if value is None or not isinstance(value, str):
-        return value if value is None else float(value)
-    return to_si(value, "duration")
 
 
 def _read(data: dict[str, Any], path: Path, known: dict[str, Any]) -> ShaftScene:

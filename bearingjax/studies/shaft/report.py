@@ -13,6 +13,7 @@ from ...report.report_model import (
     Part,
     Report,
     Section,
+    with_values,
 )
 from ..bearing.credibility import credibility_section
 from ..bearing.life_report import life_number, life_section, verdict_in_words
@@ -151,9 +152,8 @@ def _wheels(run: ShaftRun) -> Section:
             for k, axis in enumerate("xyz")
         ),
         Column("misalignment", angles, "rad", ".1f", _MICRO),
+        *with_values(Column("over the face", across, "m", ".2f")),
     ]
-    if any(value is not None for value in across):
-        columns.append(Column("over the face", across, "m", ".2f"))
     what = "torque on the shaft and force on the wheel, global axes"
     return [Grid(columns, f"{what}{_of_case(run)}")]
 
@@ -168,12 +168,10 @@ def _bearings(run: ShaftRun) -> Section:
         axial.append(float(own[2]))
         tilt.append(float(np.linalg.norm(frame[:2] @ found.displacement[k, 3:])))
     pressure = [
-        None if b.solution is None else float(np.max(b.solution.roller_pressure))
-        for b in run.bearings
+        b.solution and float(np.max(b.solution.roller_pressure)) for b in run.bearings
     ]
-    safety = [
-        None if b.life is None else float(b.life.static_safety) for b in run.bearings
-    ]
+    safety = [b.life and float(b.life.static_safety) for b in run.bearings]
+    torque = [bearing.friction_torque for bearing in run.bearings]
     columns = [
         Column("bearing", [seat.name for seat in system.seats]),
         Column("", [_name(b) for b in run.bearings]),
@@ -183,13 +181,11 @@ def _bearings(run: ShaftRun) -> Section:
         Column("tilt", tilt, "rad", ".3f"),
         Column("pressure", pressure, "Pa", ".3f", (1e-9, "GPa")),
         Column("C0/P0", safety, "1", ".3g", (1.0, "")),
+        *with_values(
+            Column("friction", torque, "N m", ".1f", (1e3, "N mm")),
+            Column("clearance", [b.clearance for b in run.bearings], "m", ".1f"),
+        ),
     ]
-    torque = [bearing.friction_torque for bearing in run.bearings]
-    if any(value is not None for value in torque):
-        columns.append(Column("friction", torque, "N m", ".1f", (1e3, "N mm")))
-    clearance = [bearing.clearance for bearing in run.bearings]
-    if any(value is not None for value in clearance):
-        columns.append(Column("clearance", clearance, "m", ".1f"))
     told = [
         f"friction of {b.name}: {series_words(b.oil.skf)}"
         for b in run.bearings
@@ -283,15 +279,13 @@ def _lives(run: ShaftRun) -> Section:
             Column("basic, ISO 281", hours_of("basic_rating_life"), "h"),
             Column("reference, ISO/TS 16281", hours_of("reference_rating_life"), "h"),
         ]
-        modified = hours_of("modified_rating_life")
-        if any(value is not None for value in modified):
-            rows.append(Column("modified", modified, "h"))
-            kappa = [None if b is None else b.viscosity_ratio for b in known]
-            rows.append(Column("κ", kappa, "1", ".3g", (1.0, "")))
+        modified = Column("modified", hours_of("modified_rating_life"), "h")
+        if with_values(modified):
+            kappa = [life and life.viscosity_ratio for life in known]
+            rows += [modified, Column("κ", kappa, "1", ".3g", (1.0, ""))]
         title = "rating lives" if any(turning) else "at rest: no lives in hours"
-    if any(run.verdicts):
-        over = [None if v is None else v.factor for v in run.verdicts]
-        rows.append(Column("over required", over, "1", ".3g", (1.0, "")))
+    over = [verdict and verdict.factor for verdict in run.verdicts]
+    rows += with_values(Column("over required", over, "1", ".3g", (1.0, "")))
     parts: list[Part] = [Grid(rows, title)]
     for bearing, verdict in zip(run.bearings, run.verdicts, strict=True):
         if bearing.scene is not None and verdict is not None and not verdict.kept:

@@ -385,8 +385,8 @@ def _with_temperatures(task: ShaftScene, state: shafts.ThermalState) -> ShaftSce
             scenes.append(scene)
             lives.append(life)
             continue
-        own = life.viscosity is not None and oil is not None
-        if own and "viscosity" not in scene.inputs.get("life", {}):
+        known = scene.inputs.get("life", {})
+        if life.viscosity is not None and "viscosity" not in known:
             viscosity = oil.lubricant.kinematic_viscosity(rings[k])
             life = dataclasses.replace(life, viscosity=viscosity)
         warm = dataclasses.replace(

@@ -1,38 +1,13 @@
 """`bearingjax validate`."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
-from ..options import Commands, add_json, add_plot, add_report, add_table
 from ..outcome import Outcome, Tools, picture
 
 
-def add(commands: Commands) -> ArgumentParser:
-    """Add the command and its options; return its parser."""
-    command = commands.add_parser(
-        "validate",
-        help="published and independent numbers beside ours",
-        description="Calculate the numbers of the validation cases and set them beside"
-        " those published, measured or computed by others.",
-        epilog="Exit status: 0 all as near as their cases ask for, 2 bad input, 3 some"
-        " not.",
-    )
-    command.add_argument(
-        "cases",
-        metavar="CASE",
-        nargs="*",
-        help="name of a case, or a subject such as life; default: all",
-    )
-    command.add_argument("--list", action="store_true", help="list cases, run none")
-    add_json(command)
-    add_table(command, "number")
-    add_plot(command, "write a picture of ours over theirs")
-    add_report(command, "every number, its source and difference")
-    command.set_defaults(scenes=[], set=[])
-    return command
-
-
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Compare the numbers of cases."""
+    """Calculate the numbers of the validation cases and set them beside those
+    published, measured or computed by others."""
     from . import report
     from .run import compare_case, select_cases
 

@@ -15,6 +15,7 @@ import numpy as np
 from ...files.quantity import SceneError
 from ...files.table import not_among
 from ...validation.case import SUBJECTS, Case, Number, as_number, cases
+from ..commands import SOLVING
 from ..outcome import Tools
 
 
@@ -131,10 +132,9 @@ def command_numbers(
         SceneError: If it is no scene of the command.
         ValueError: If the scene is not solved.
     """
-    home = {"life": "cases.life_command"}.get(command, f"{command}.command")
-    module = importlib.import_module(f"..{home}", __package__)
+    called = next(one for one in SOLVING if one.name == command)
     parser = argparse.ArgumentParser()
-    module.add(parser.add_subparsers())
+    called.add(parser.add_subparsers())
     tables = {name: table for name, table in scene.items() if name != "options"}
     changes = [f"--set={key}={value}" for key, value in settings.items()]
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
@@ -142,7 +142,7 @@ def command_numbers(
         path.write_text(json.dumps({"inputs": tables}), encoding="utf-8")
         given = [command, str(path), *changes, *scene.get("options", ())]
         options = parser.parse_args(given)
-        outcome = module.run(options, Tools(False, None, stack.enter_context))
+        outcome = called.run(options, Tools(False, None, stack.enter_context))
         if outcome.problems:
             raise ValueError("; ".join(outcome.problems))
         return outcome.numbers()

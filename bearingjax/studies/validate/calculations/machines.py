@@ -7,7 +7,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....design import Material
-from ....design.ball_types import AngularContactBallBearing, DeepGrooveBallBearing
 from ....element.balls.ball_speed import EqualShare
 from ....element.bearing_element import BearingElement
 from ....element.inertia import Speed
@@ -27,31 +26,18 @@ from ....rotor.nonlinear import (
 )
 from ....skid import SkidModel, steady
 from ....statics.support import Support
+from .direct import bearing_by
 
 _TURN = 2.0 * np.pi
 
 
-def _ball_bearing(n_balls, ball_diameter, pitch_diameter, contact_angle):
-    grooves: dict[str, Any] = {"outer_osculation": 0.52, "inner_osculation": 0.52}
-    sizes = n_balls, pitch_diameter, ball_diameter
-    if not contact_angle:
-        return DeepGrooveBallBearing(*sizes, **grooves)
-    return AngularContactBallBearing(*sizes, contact_angle=contact_angle, **grooves)
-
-
 def waviness_lines(
-    n_balls: int,
-    ball_diameter: float,
-    pitch_diameter: float,
-    shaft_frequency: float,
-    part: str,
-    order: int,
+    bearing: dict[str, Any], shaft_frequency: float, part: str, order: int
 ) -> dict[str, np.ndarray]:
     """Return the frequencies of force of one order of waviness [rad/s].
 
     Args:
-        n_balls: Number of balls.
-        ball_diameter, pitch_diameter: [m].
+        bearing: Its keywords.
         shaft_frequency: Turns of the inner ring per second, as an angular one [rad/s].
         part: "inner", "outer" or "element".
         order: Waves around the part.
@@ -59,8 +45,8 @@ def waviness_lines(
     Returns:
         `axial` and `radial`: magnitudes, ascending, two each; NaN where there is none.
     """
-    bearing = _ball_bearing(n_balls, ball_diameter, pitch_diameter, 0.0)
-    found = waviness_force(bearing, Speed(inner=shaft_frequency), part, order)
+    speed = Speed(inner=shaft_frequency)
+    found = waviness_force(bearing_by(bearing), speed, part, order)
 
     def two(lines):
         lines = _TURN * np.sort(np.abs(np.asarray(lines)))
@@ -70,34 +56,19 @@ def waviness_lines(
 
 
 def ring_frequencies(
-    n_balls: int,
-    ball_diameter: float,
-    pitch_diameter: float,
-    osculation: float,
-    ring_mass: float,
-    load: float,
+    bearing: dict[str, Any], ring_mass: float, load: float
 ) -> dict[str, float]:
     """Return the natural frequencies of an outer ring on its balls, along a radial load
     and across it, and the lowest and highest of those above both [Hz].
 
     Args:
-        n_balls: Number of balls; one stands in the line of the load.
-        ball_diameter, pitch_diameter: [m].
-        osculation: Groove radius over ball diameter, of both grooves [1].
+        bearing: Its keywords; a ball stands in the line of the load.
         ring_mass: Mass that vibrates [kg].
         load: Radial load [N].
     """
-    bearing = DeepGrooveBallBearing(
-        n_balls,
-        pitch_diameter,
-        ball_diameter,
-        outer_osculation=osculation,
-        inner_osculation=osculation,
-        first_azimuth=np.pi / 2,
-        material=Material(density=7850.0),
-    )
     radial = [0.0, -load, 0.0, 0.0, 0.0, 0.0]
-    model = NoiseModel(BearingElement(bearing), ring_mass, radial, Speed(), tilts=False)
+    element = BearingElement(bearing_by(bearing))
+    model = NoiseModel(element, ring_mass, radial, Speed(), tilts=False)
     found = natural_modes(model)
     share = found.ring**2 * ring_mass
 
@@ -138,25 +109,13 @@ def hertz_oscillator(largest: np.ndarray) -> dict[str, np.ndarray]:
     return {"frequency": np.asarray(found.frequency), "least": least}
 
 
-def preloaded_grooves(
-    inner_radius: float,
-    outer_radius: float,
-    groove_radius: float,
-    ball_diameter: float,
-    contact_angle: float,
-    n_balls: int,
-    elastic_modulus: float,
-) -> dict[str, Any]:
+def preloaded_grooves(elastic_modulus: float, **sizes: Any) -> dict[str, Any]:
     """Return preload and stiffness of a bearing whose radii press its balls.
 
     Args:
-        inner_radius, outer_radius: Radii of both grooves' bottoms [m].
-        groove_radius: Of their sections [m].
-        ball_diameter: Diameter of the balls [m].
-        contact_angle: Under preload [rad].
-        n_balls: Number of balls.
         elastic_modulus: Elastic modulus of balls and rings, whose Poisson's ratio is
             0.3 [Pa].
+        sizes: Other fields of `Grooves`.
 
     Returns:
         `approach` [m], `constant` [N/m^1.5], `preload` [N], `displacement` that presses
@@ -165,21 +124,14 @@ def preloaded_grooves(
         motion, over it, `stiffening` [1]; errors of the cubic expansion at 0.3, 0.5,
         0.8, 1 of `reach` across and at -0.9, -0.5, 0.5, 1 of `displacement` along [1].
     """
-    bearing = Grooves(
-        inner_radius=inner_radius,
-        outer_radius=outer_radius,
-        groove_radius=groove_radius,
-        ball_diameter=ball_diameter,
-        contact_angle=contact_angle,
-        n_balls=n_balls,
-        material=Material(elastic_modulus, 0.3),
-    )
+    bearing = Grooves(**sizes, material=Material(elastic_modulus, 0.3))
     law = bearing.fixed_angle()
     stiffness = np.asarray(law.stiffness())
     moving = np.asarray(bearing.moving_angle().stiffness())
     cubic, pressed = CubicExpansion.from_law(law), law.force(jnp.zeros(3))
     pressing = float(law.preload_displacement)
-    across = np.outer([0.3, 0.5, 0.8, 1.0], [pressing * np.tan(contact_angle), 0, 0])
+    reach = pressing * float(np.tan(bearing.contact_angle))
+    across = np.outer([0.3, 0.5, 0.8, 1.0], [reach, 0.0, 0.0])
     along = np.outer([-0.9, -0.5, 0.5, 1.0], [0.0, 0.0, pressing])
 
     @jax.vmap
@@ -187,7 +139,7 @@ def preloaded_grooves(
         return (cubic.force(motion) - pressed) / (law.force(motion) - pressed) - 1.0
 
     return {
-        "reach": across[-1, 0],
+        "reach": reach,
         "cubic, across": np.asarray(off(across))[:, 0],
         "cubic, along": np.asarray(off(along))[:, 2],
         "approach": float(bearing.approach),
@@ -201,11 +153,7 @@ def preloaded_grooves(
 
 
 def skidding_balls(
-    n_balls: int,
-    ball_diameter: float,
-    pitch_diameter: float,
-    osculation: float,
-    contact_angle: float,
+    bearing: dict[str, Any],
     inner_speed: float,
     oil_temperature: float,
     axial_load: np.ndarray,
@@ -214,10 +162,7 @@ def skidding_balls(
     rolling; the oil is MIL-L-23699, and there is no cage.
 
     Args:
-        n_balls: Number of balls.
-        ball_diameter, pitch_diameter: [m].
-        osculation: Groove radius over ball diameter, of both grooves [1].
-        contact_angle: Unloaded [rad].
+        bearing: Its keywords.
         inner_speed: [rad/s].
         oil_temperature: [K].
         axial_load: (load,) [N].
@@ -227,16 +172,7 @@ def skidding_balls(
         [1], `spin` (tangential, radial, axial) and its `size` [rad/s], `pitch` of the
         spin axis [rad].
     """
-    bearing = AngularContactBallBearing(
-        n_balls,
-        pitch_diameter,
-        ball_diameter,
-        outer_osculation=osculation,
-        inner_osculation=osculation,
-        contact_angle=contact_angle,
-        material=Material(206e9, 0.3, 7850.0),
-    )
-    element = BearingElement(bearing, raceway_control=EqualShare())
+    element = BearingElement(bearing_by(bearing), raceway_control=EqualShare())
     model = SkidModel(element, mil_l_23699(), oil_temperature)
     free, speed = ["ux", "uy", "uz", "gx", "gy"], Speed(inner=inner_speed)
 

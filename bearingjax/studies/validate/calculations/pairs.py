@@ -13,12 +13,9 @@ from ....statics.support import Support
 def preloaded_pair(
     bore: float,
     outside_diameter: float,
-    contact_angle: float,
-    n_balls: int,
-    ball_diameter: float,
-    osculation: float,
     preload: np.ndarray,
     measuring_load: float,
+    **more: Any,
 ) -> dict[str, np.ndarray]:
     """Return axial rigidity and axial clearance of a pair back to back.
 
@@ -27,21 +24,12 @@ def preloaded_pair(
 
     Args:
         bore, outside_diameter: d and D; the pitch diameter is their mean [m].
-        contact_angle: Unloaded contact angle [rad].
-        n_balls: Number of balls.
-        ball_diameter: Diameter of the balls [m].
-        osculation: Groove radius over ball diameter, of both grooves [1].
         preload: Preloads (n,) [N].
         measuring_load: Axial load under which the maker measures clearance [N].
+        more: Other fields of the bearing.
     """
-    bearing = AngularContactBallBearing(
-        n_balls,
-        0.5 * (bore + outside_diameter),
-        ball_diameter,
-        contact_angle=contact_angle,
-        outer_osculation=osculation,
-        inner_osculation=osculation,
-    )
+    pitch = 0.5 * (bore + outside_diameter)
+    bearing = AngularContactBallBearing(pitch_diameter=pitch, **more)
     element = BearingElement(bearing)
     axial = Support(free=["ux", "uy", "uz"])
     solved = [
