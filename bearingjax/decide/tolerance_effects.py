@@ -342,8 +342,8 @@ class Sampled:
             *(element, cases, self.measures),
             *((paths, jnp.asarray(factors)), solves, build),
         )
-        several = isinstance(element, AbstractSystem)
-        most = {False: _MACHINES if several else _BATCH, True: _SLOPES}
+        self._several = isinstance(element, AbstractSystem)
+        most = {False: _MACHINES if self._several else _BATCH, True: _SLOPES}
         self._batches = {k: max(1, n // cases.count) for k, n in most.items()}
 
     def run(
@@ -361,8 +361,8 @@ class Sampled:
     def solve(self, samples: np.ndarray, slopes: bool) -> tuple[Any, Any, Any]:
         """Measures (sample, measure), result codes (sample,) and gradients (sample,
         measure, number) of samples; `None` without `slopes`."""
-        found, run = [], _solve_slopes if slopes else _solve_samples
-        batch = self._batches[slopes]
+        run = _solve_few if slopes or self._several else _solve_many
+        found, batch = [], self._batches[slopes]
         # One shape of samples with gradients: their program is compiled once.
         size = batch * (1 if slopes else min(_BLOCK, -(-len(samples) // batch)))
         for begin in range(0, len(samples), size):
@@ -524,6 +524,12 @@ def _solve(element, cases, measures, numbers, solves, build, samples, batch, slo
     return jax.lax.map(solve_sample, samples, batch_size=batch)
 
 
-_solve_samples = program(_solve)
-# Few samples have gradients, which take longer to compile than to work out.
-_solve_slopes = program(quick=True)(_solve)
+@program(quick=True, level=1, what="samples within tolerances")
+def _solve_many(*given):
+    return _solve(*given)
+
+
+# Gradients, and machines, take longer to compile than their samples to work out.
+@program(quick=True, what="samples within tolerances")
+def _solve_few(*given):
+    return _solve(*given)
