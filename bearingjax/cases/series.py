@@ -14,10 +14,10 @@ from ..numerics.shown import Printable
 from ..numerics.types import with_fields
 from ..numerics.units import unit
 from .cases import Cases
-from .spectrum import revolutions_per_hour
+from .spectrum import relative_speed
 from .sweep import Sweep
 
-GAPS = "refuse", "leave_out", "hold"
+GAPS = "refuse", "leave_out"
 """What a gap of a record may count as."""
 
 LONG, _NAMED, _SAME = 10.0, 3, 1e-9
@@ -81,8 +81,7 @@ def series_cases(
         time: Time of each row, ascending (time,) [s].
         cases: Loads, speeds and the like of each row, without hours.
         gaps: "refuse"; "leave_out": a row before a long step counts a median step, rows
-            that are not finite nothing; "hold": the row before a gap holds until the
-            next one after it.
+            that are not finite nothing.
         row_name: What errors call a row, by its number from 0.
 
     Raises:
@@ -98,11 +97,11 @@ def series_cases(
     fits = time.shape == (cases.count,) and cases.count > 1
     of_shape("series_cases", "time", fits, allowed, time)
     columns = _columns(cases)
-    hours, told = _hold_rows(time, columns, gaps, row_name)
+    hours, told = _hold_rows(time, columns, row_name)
     if told and gaps == "refuse":
         raise ValueError(
-            f"series_cases: `time` has gaps: {'; '.join(told)}. Leave them out, or let"
-            " the rows before them hold (`gaps`)."
+            f"series_cases: `time` has gaps: {'; '.join(told)}. Leave them out"
+            " (`gaps`)."
         )
     if not hours.any():
         raise ValueError(
@@ -131,13 +130,13 @@ def _columns(cases: Cases) -> dict[str, np.ndarray]:
         name = jax.tree_util.keystr(path).strip(".")
         for k, column in enumerate(np.atleast_2d(np.asarray(leaf).T)):
             found[LOADS[k] if name == "load" else f"{name} {k}".rstrip(" 0")] = column
-    turns = revolutions_per_hour(cases, np)
-    if turns is not None and "viscosity" in found:
-        found["viscosity"] = np.where(turns == 0, 1.0, found["viscosity"])
+    if "viscosity" in found:
+        still = relative_speed(cases) == 0
+        found["viscosity"] = np.where(still, 1.0, found["viscosity"])
     return found
 
 
-def _hold_rows(time, columns, gaps, row_name):
+def _hold_rows(time, columns, row_name):
     """Hours that each row counts, and the gaps in words."""
     bad, found = np.zeros(time.shape, bool), []
     for name, values in {"time": time, **columns}.items():
@@ -156,15 +155,9 @@ def _hold_rows(time, columns, gaps, row_name):
     for k in np.flatnonzero(long):
         words = f"{steps[k] / 3600.0:.4g} h until the next row, {usual / 3600.0:.4g} h"
         found.append((rows[k], f"{words} are usual"))
-    if gaps == "leave_out":
-        lost = long | (np.diff(rows) > 1)
-        steps = np.where(lost, np.minimum(steps, usual), steps)
+    lost = long | (np.diff(rows) > 1)
     held = np.zeros(time.shape)
-    held[rows] = np.append(steps, usual)
-    if gaps == "hold":
-        before = np.maximum.accumulate(np.where(bad, -1, np.arange(time.size)))
-        kept = before >= 0
-        held = np.bincount(before[kept], held[kept], time.size)
+    held[rows] = np.append(np.where(lost, np.minimum(steps, usual), steps), usual)
     found.sort()
     told = [f"{row_name(int(k))}: {words}" for k, words in found[:_NAMED]]
     more = len(found) - len(told)
@@ -184,8 +177,7 @@ def series_life(series: Series, solved: Sweep) -> SeriesLife:
         raceways, and rolling elements with them.
     """
     hours = np.asarray(series.cases.hours)
-    turns = revolutions_per_hour(series.cases, np)
-    turns = np.zeros(hours.size) if turns is None else turns
+    turns = relative_speed(series.cases) * 1800.0 / np.pi
     rate = turns * solved.damage
     raceways = np.tensordot(hours * turns, solved.raceway_damage, 1)
     damage = float(hours @ rate)

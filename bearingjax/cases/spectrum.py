@@ -80,3 +80,9 @@ def revolutions_per_hour(cases: Cases, xp: Any = jnp) -> Any:
         return None
     between = speeds[0] - speeds[1] if len(speeds) == 2 else speeds[0]
     return xp.abs(between) * (3600.0 / (2.0 * np.pi))
+
+
+def relative_speed(cases: Cases) -> np.ndarray:
+    """Return the speed of one ring relative to the other (case,) [rad/s]."""
+    turns = revolutions_per_hour(cases, np)
+    return np.zeros(cases.count) if turns is None else turns * np.pi / 1800.0

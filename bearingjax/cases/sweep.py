@@ -150,15 +150,20 @@ def stack_designs(elements: Sequence[BearingElement[Any]]) -> BearingElement[Any
     if not elements:
         raise ValueError("stack_designs: `elements` is empty; one design at least.")
     elements = _with_common_places(elements)
-    structures = [jax.tree.structure(element) for element in elements]
-    shapes = [[np.shape(leaf) for leaf in jax.tree.leaves(e)] for e in elements]
-    for k in range(1, len(elements)):
-        if structures[k] != structures[0] or shapes[k] != shapes[0]:
+    first = structure_of(elements[0])
+    for k, element in enumerate(elements):
+        if structure_of(element) != first:
             raise ValueError(
                 f"stack_designs: design {k} is of another structure than design 0;"
                 " classes, numbers of rows and parts must be the same."
             )
     return jax.tree.map(lambda *leaves: jnp.stack(leaves), *elements)
+
+
+def structure_of(design: Any) -> tuple[Any, ...]:
+    """Return what designs have in common that are stacked: parts and shapes."""
+    leaves, structure = jax.tree.flatten(design)
+    return structure, tuple(map(np.shape, leaves))
 
 
 def _with_common_places(elements):

@@ -17,9 +17,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..cases.cases import Cases, solve_case
-from ..cases.spectrum import revolutions_per_hour, spectrum_life
-from ..cases.sweep import SUMMARIES
+from ..cases.cases import Cases
+from ..cases.spectrum import relative_speed, spectrum_life
+from ..cases.sweep import Keep, structure_of
+from ..cases.sweep_program import Task
 from ..catalogue.entry import (
     CLEARANCE,
     CatalogueEntry,
@@ -30,24 +31,34 @@ from ..catalogue.entry import (
 from ..design.bearing_set import bearings_of, with_bearings
 from ..design.checks import check, must_be, of_class, one_of
 from ..design.places import PLACES, places_for, with_places
-from ..element import FREEDOMS, BearingElement, Speed
+from ..element import FREEDOMS, BearingElement
 from ..element.frame import LOADS, RINGS
 from ..fits.fit_limits import CLEARANCE_CLASSES
 from ..friction.friction import friction_torque
 from ..life import LifeConditions
-from ..life.life import rating_life
 from ..life.life_warning import minimum_load
+from ..life.rating import ratings
 from ..numerics.compiled.programs import program
 from ..numerics.labels import LabelledArray, make_dataset
 from ..numerics.result import Result
 from ..numerics.shown import Printable, Shown
 from ..numerics.types import with_fields
+from ..optimise.system import solved_case
 from ..statics import Installed, SolveOptions, Support
 from ..statics.empty_places import points_of_kind
 from ..statics.support import axial_senses, check_held, restrained_freedoms
 
 _LANES = 64
 """Solves of a batch."""
+
+_LIVES = (
+    "damage",
+    "basic_rating_life",
+    "static_safety",
+    "equivalent_load",
+    "reference_load",
+)
+"""Numbers of the life in a case that are taken."""
 
 _STEEL = 7850.0
 """Density in the masses that are estimated [kg/m³]."""
@@ -167,8 +178,7 @@ class Requirements(Printable):
     @property
     def turns(self) -> np.ndarray:
         """Relative speed of the rings (case,) [rad/s]."""
-        turns = revolutions_per_hour(self.load, np)
-        return np.zeros(self.load.count) if turns is None else turns * np.pi / 1800.0
+        return relative_speed(self.load)
 
     @property
     def all_bounds(self) -> dict[str, Any]:
@@ -185,12 +195,12 @@ def unit_of_number(name: str) -> str:
 
 
 class Miss(NamedTuple):
-    """A requirement that is missed: the number that misses it, `None` if there is none,
+    """A requirement that is missed: the number that misses it, NaN if there is none,
     and its limit [SI]; what they do not tell; how much of it is kept, below 1."""
 
-    requirement: str
-    value: float | None = None
-    limit: float | None = None
+    requirement: str = ""
+    value: float = np.nan
+    limit: float = np.nan
     why: str = ""
     share: float = 0.0
 
@@ -199,7 +209,7 @@ def _missed(name: str, value: Any, ends: tuple[Any, Any]) -> Iterator[Miss]:
     """Yield the bound that a value misses by more than round-off."""
     value, (low, high), near = float(value), ends, 1.0 - 1e-9
     if np.isnan(value):
-        yield Miss(name, None, low or high, "it is not known")
+        yield Miss(name, limit=low or high, why="it is not known")
     elif low is not None and value < near * low:
         yield Miss(name, value, low, share=value / low)
     elif high is not None and near * value > high:
@@ -233,30 +243,27 @@ class Selection(Shown):
     Attributes:
         requirements: What was asked for.
         table: Columns by name (candidate,), in SI: designation, type; `NUMBERS`, NaN
-            where they are not known; mass_printed; of what is missed, the most if it
+            where they are not known, and friction and stiffness where neither a bound
+            nor the rank asks for them; mass_printed; of what is missed, the most if it
             was solved, requirement ("": it fits), value, limit, why.
     """
 
     requirements: Requirements
     table: dict[str, np.ndarray]
 
-    def rows(self, fitting: bool) -> list[dict[str, Any]]:
-        """Return those that fit, or what the others miss, by name of the columns."""
-        missed = ("requirement", "value", "limit", "why")
-        names = [k for k in self.table if k not in missed]
-        names = names if fitting else ["designation", *missed]
+    def _rows(self, names: Iterable[str], fitting: bool) -> list[dict[str, Any]]:
         places = np.flatnonzero((self.table["requirement"] == "") == fitting)
         return [{k: self.table[k][place].item() for k in names} for place in places]
 
     @property
     def fits(self) -> list[dict[str, Any]]:
         """Facts and numbers of bearings that do what is required, the best first."""
-        return self.rows(fitting=True)
+        return self._rows([k for k in self.table if k not in Miss._fields], True)
 
     @property
     def excluded(self) -> list[dict[str, Any]]:
         """The others, and what they miss: requirement, value, limit [SI], why."""
-        return self.rows(fitting=False)
+        return self._rows(["designation", *Miss._fields[:4]], False)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -268,8 +275,8 @@ class Selection(Shown):
     def smallest(self) -> str | None:
         """Designation of what fits with the least outside diameter, then width."""
         fits = self.fits
-        sizes = [(*(row[name] for name in SIZES[1:]), k) for k, row in enumerate(fits)]
-        return fits[min(sizes)[-1]]["designation"] if sizes else None
+        found = min(fits, key=lambda row: [row[k] for k in SIZES[1:]], default=None)
+        return None if found is None else found["designation"]
 
     def shown_facts(self) -> Iterator[Any]:
         """Yield how many fit, which is the smallest, and what excludes the others."""
@@ -327,14 +334,19 @@ def select(
     asked, told = requirements, progress or (lambda words, share: None)
     for name in asked.types:
         one_of("select", "types", name, sorted({entry.type for entry in every}))
-    build = install or (lambda one: Installed(BearingElement(bearing_of_entry(one))))
-    table = _facts(asked, every)
-    misses, made = [*_sieve(asked, every, table)], {}
-    refused: list[ValueError] = []
+    known = {id(entry): place for place, entry in enumerate(catalogue_entries())}
+
+    def build(entry: CatalogueEntry) -> Installed:
+        if install is None and id(entry) in known:
+            return _drawn(known[id(entry)], jax.dtypes.canonicalize_dtype(float))
+        return _of_kind((install or _as_drawn)(entry), entry.type)
+
+    rows, made, refused = [_facts(asked, entry) for entry in every], {}, []
+    misses = [*_sieve(asked, every, rows)]
     for k, entry in enumerate(every):
         if misses[k] is None:
             try:
-                made[k] = _at_speeds(build(entry), asked.load)
+                made[k] = build(entry)
             except ValueError as error:
                 misses[k] = Miss("bearing", why=str(error))
                 refused.append(error)
@@ -343,38 +355,31 @@ def select(
     found = _solve(asked, [*made.values()], told)
     for number, k in enumerate(made):
         mine = {name: values[number] for name, values in found.items()}
-        misses[k] = _judge(asked, mine, table, k)
-    missed = [miss or Miss("", share=2.0) for miss in misses]
-    table["designation"] = np.array([entry.designation for entry in every])
-    for name, dtype in zip(Miss._fields, (str, float, float, str), strict=False):
-        table[name] = np.array([getattr(miss, name) for miss in missed], dtype)
+        misses[k] = _judge(asked, mine, rows[k])
+    for row, entry, miss in zip(rows, every, misses, strict=True):
+        row |= {"designation": entry.designation, **(miss or Miss(share=2.0))._asdict()}
+    names = "designation", "type", *NUMBERS, "mass_printed", *Miss._fields
+    table = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
     ranks = [
         -table[name] if NUMBERS[name][1] == "least" else table[name]
         for name in (*asked.rank_by, *SIZES[1:], "mass")
     ]  # NaN comes last
-    solved, kept = np.isnan(table["rating_life"]), [-miss.share for miss in missed]
-    order = np.lexsort(np.stack([*ranks[::-1], kept, solved]))
+    solved = np.isnan(table["rating_life"])
+    order = np.lexsort(np.stack([*ranks[::-1], -table.pop("share"), solved]))
     return Selection(asked, {name: values[order] for name, values in table.items()})
 
 
-def _facts(asked: Requirements, every: list[CatalogueEntry]) -> dict[str, np.ndarray]:
-    """Return the table of a selection with what the catalogue tells; other masses are
-    that of a solid ring of the envelope, times the usual share of the type, or of all
-    types."""
-
-    def column(name, dtype: Any = float):
-        return np.array([getattr(entry, name) for entry in every], dtype)
-
-    table = {name: column(name, str) for name in ("designation", "type")}
-    table |= {name: np.full(len(every), np.nan) for name in NUMBERS}
-    table |= {name: column(name) for name in (*SIZES, "mass")}
-    known, usual = ~np.isnan(table["mass"]), _usual_masses()
-    for k in np.flatnonzero(~known):
-        share = usual.get(every[k].type, usual[""])
-        table["mass"][k] = share * _solid_mass(every[k])
+def _facts(asked: Requirements, entry: CatalogueEntry) -> dict[str, Any]:
+    """Return what the catalogue tells of a bearing; other masses are that of a solid
+    ring of the envelope, times the usual share of the type, or of all types."""
+    mass, usual = entry.mass, _usual_masses()
+    if mass is None:
+        mass = usual.get(entry.type, usual[""]) * _solid_mass(entry)
+    row: dict[str, Any] = {"type": entry.type, "mass": mass}
+    row |= {name: getattr(entry, name) for name in SIZES}
     for name in ("limiting_speed", "reference_speed"):
-        table[name] = asked.turns.max() / column(name)
-    return table | {"mass_printed": known}
+        row[name] = asked.turns.max() / (getattr(entry, name) or np.nan)
+    return row | {"mass_printed": entry.mass is not None}
 
 
 def _solid_mass(entry: CatalogueEntry) -> float:
@@ -395,28 +400,25 @@ def _usual_masses() -> dict[str, float]:
 
 
 def _sieve(
-    asked: Requirements, every: list[CatalogueEntry], table: dict[str, np.ndarray]
+    asked: Requirements, every: list[CatalogueEntry], rows: list[dict[str, Any]]
 ) -> Iterator[Miss | None]:
     """Yield what each entry misses unsolved; those left get the clearance class."""
     directions: dict[Any, Miss | None] = {}
     facts = {n: asked.bounds[n] for n in (*NUMBERS,)[:6] if n in asked.bounds}
-    wanted = asked.clearance_class
     for k, entry in enumerate(every):
-        found = [m for n, x in facts.items() for m in _missed(n, table[n][k], x)]
+        found = [m for n, x in facts.items() for m in _missed(n, rows[k][n], x)]
         if asked.types and entry.type not in asked.types:
             found = [Miss("types", why=f"{entry.type} is not among them")]
-        if not found and wanted not in (None, entry.clearance_class):
+        if not found and asked.clearance_class not in (None, entry.clearance_class):
             try:
-                every[k] = entry = _of_class(entry, wanted)
+                every[k] = _of_class(entry, asked.clearance_class)
             except ValueError as error:
                 found = [Miss("clearance_class", why=str(error))]
-        if not found:
-            kind = entry.type, entry.design.get("arrangement"), "ribs" in entry.design
-            if kind not in directions:
-                missed = _missed_directions(asked, bearing_of_entry(entry))
-                directions[kind] = next(missed, None)
-            found = [directions[kind]]
-        yield found[0]
+        kind = entry.type, entry.design.get("arrangement"), "ribs" in entry.design
+        if not found and kind not in directions:
+            missed = _missed_directions(asked, bearing_of_entry(entry))
+            directions[kind] = next(missed, None)
+        yield found[0] if found else directions[kind]
 
 
 def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
@@ -429,103 +431,100 @@ def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
     return dataclasses.replace(entry, **changed)
 
 
-def _at_speeds(bearing: Installed, cases: Cases) -> tuple[Any, np.ndarray]:
-    """Return the elements of a bearing, on its seats at each speed, and which of them
-    each case has (case,)."""
-    still = np.zeros(cases.count)
-    speeds = [
-        s if s is not None else still for s in (cases.inner_speed, cases.outer_speed)
-    ]
-    if bearing.mounting is None or not np.any(speeds):
-        return [_of_kind(bearing.element_at())], still.astype(int)
-    distinct, which = np.unique(np.stack(speeds, 1), axis=0, return_inverse=True)
-    pairs = [Speed(*pair) for pair in distinct.tolist()]
-    return [_of_kind(bearing.element_at(pair)) for pair in pairs], which.reshape(-1)
-
-
-def _of_kind(element: BearingElement) -> BearingElement:
-    """Return a bearing with the places of its kind, and without the shoulders of its
-    grooves, which some entries lack, and which change no number here."""
-    names, rows = ("outer_shoulder", "inner_shoulder"), []
+def _of_kind(design: Installed, kind: str) -> Installed:
+    """Return a bearing with the places of its kind, and without what some entries lack
+    and what changes no number here: speeds, limits, shoulders of the grooves."""
+    element, rows = design.drawing, []
     for row in bearings_of(element.bearing):
-        bare = {name: None for name in names if hasattr(row, name)}
+        names = ("outer_shoulder", "inner_shoulder", "rated_contact_angle")
+        bare: dict[str, Any] = {name: None for name in names if hasattr(row, name)}
+        if names[2] in bare:
+            bare[names[2]] = row.nominal_contact_angle
         rows.append(with_fields(row, **bare))
-    # Places for most bearings: few programs compile sooner than many run.
-    most = max(PLACES[1], *(places_for(row.n_places) for row in rows))
-    bearing = with_places(with_bearings(element.bearing, rows), most)
-    return with_fields(element, bearing=bearing)
+    # Few programs compile sooner than many run, and empty places cost little.
+    row = rows[0]
+    stated = getattr(row, f"n_{row.noun}s") // row.n_places
+    most = max(_most_elements().get(kind, 0) // stated, *(r.n_places for r in rows))
+    places = max(PLACES[1], places_for(most))
+    bearing = with_places(with_bearings(element.bearing, rows), places)
+    none = dict.fromkeys(("limits", "limiting_speed", "reference_speed"))
+    return with_fields(design, drawing=with_fields(element, bearing=bearing), **none)
 
 
-def _solve(asked: Requirements, made: list[Any], told: Any) -> dict[str, np.ndarray]:
-    """Return numbers of bearings under all cases by name (bearing, case, …)."""
-    kinds, found = {}, {}
-    for number, (elements, which) in enumerate(made):
-        for k, element in enumerate(elements):
-            shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(element))
-            key = jax.tree.structure(element), shapes
-            kinds.setdefault(key, []).append((number, element, which == k))
-    count, done = asked.load.count, 0
-    for designs in kinds.values():
-        numbers, elements, mine = zip(*designs, strict=True)
-        stack = jax.tree.map(lambda *a: np.stack(a), *elements)
-        design, case = np.nonzero(mine)
-        for begin in range(0, case.size, _LANES):
-            told("bearings under their loads", done / (len(made) * count))
-            d, c = (places[begin : begin + _LANES] for places in (design, case))
-            for name, values in _solve_batch(asked, stack, d, c).items():
-                room = np.empty((len(made), count, *values.shape[1:]), values.dtype)
-                room = found.setdefault(name, room)
-                room[np.array(numbers)[d], c] = values[: d.size]
-            done += d.size
+@functools.cache
+def _most_elements() -> dict[str, int]:
+    """Return the largest number of rolling elements of each type of the catalogue."""
+    found: dict[str, int] = {}
+    for entry in catalogue_entries():
+        count = entry.design.get("n_balls") or entry.design["n_rollers"]
+        found[entry.type] = max(count, found.get(entry.type, 0))
     return found
 
 
-def _solve_batch(asked: Requirements, stack, design, case) -> dict[str, np.ndarray]:
-    """Return numbers of up to `_LANES` solves: of a design each, under a case."""
-    more = _LANES - case.size
-    elements = jax.tree.map(lambda a: a[np.pad(design, (0, more))], stack)
+@functools.cache
+def _drawn(place: int, real: Any) -> Installed:
+    """Return an entry of the catalogue as it is drawn, in numbers of this type."""
+    entry = catalogue_entries()[place]
+    return _of_kind(_as_drawn(entry), entry.type)
 
-    def pad(values):  # a case of NaN ends at once
-        empty = np.full((more, *values.shape[1:]), np.nan)
-        return np.concatenate([values[case], empty])
 
-    cases = jax.tree.map(pad, with_fields(asked.load, hours=None))
-    points = points_of_kind(elements, asked.options.points)
-    options = with_fields(asked.options, points=points)
-    life = asked.life.without_requirement
-    out = _solve_kind(elements, cases, asked.support, options, life, asked.supply)
-    return {name: np.asarray(values) for name, values in out.items()}
+def _as_drawn(entry: CatalogueEntry) -> Installed:
+    return Installed(BearingElement(bearing_of_entry(entry)))
+
+
+def _solve(asked: Requirements, made: list[Installed], told: Any) -> dict[str, Any]:
+    """Return numbers of bearings under all cases by name (bearing, case, …)."""
+    kinds: dict[Any, list[int]] = {}
+    for number, design in enumerate(made):
+        kinds.setdefault(structure_of(design), []).append(number)
+    named, life = {*asked.bounds, *asked.rank_by}, asked.life.without_requirement
+    stiff = any(name.startswith("stiffness") for name in named)
+    kept = Keep(("peak_pressure", "stiffness") if stiff else ("peak_pressure",))
+    supply = asked.supply if "friction_torque" in named else None
+    found, count, done = {}, asked.load.count, 0
+    for numbers in kinds.values():
+        stack = jax.tree.map(lambda *a: np.stack(a), *(made[k] for k in numbers))
+        points = points_of_kind(stack.drawing, asked.options.points)
+        options = with_fields(asked.options, points=points)
+        task = Task(asked.support, options, kept, False, _LIVES, life)
+        pairs = np.arange(len(numbers) * count)
+        for begin in range(0, pairs.size, _LANES):
+            told("bearings under their loads", (done + begin) / (len(made) * count))
+            mine = pairs[begin : begin + _LANES]
+            design, case = np.divmod(np.resize(mine, _LANES), count)
+            cases = jax.tree.map(lambda a: a[case], with_fields(asked.load, hours=None))  # noqa: B023
+            # A case of NaN ends at once.
+            spare = np.arange(_LANES)[:, None] >= mine.size
+            cases = with_fields(cases, load=np.where(spare, np.nan, cases.load))
+            designs = jax.tree.map(lambda a: a[design], stack)  # noqa: B023
+            places = np.array(numbers)[design[: mine.size]], case[: mine.size]
+            for name, values in _solve_kind(designs, cases, task, supply).items():
+                room = np.empty((len(made), count, *values.shape[1:]), values.dtype)
+                found.setdefault(name, room)[places] = values[: mine.size]
+        done += pairs.size
+    return found
 
 
 @program(quick=True, level=1, what="bearings of a kind under their loads")
-def _solve_kind(elements, cases, support, options, life, supply):
+def _solve_kind(designs, cases, task, supply):
     """Return numbers of bearings, each under a case, by name (lane, …)."""
-    first = 6 * RINGS.index(support.moving_ring)
 
-    def solve_one(element, case):
-        solution = solve_case(element, case, support, options)
-        rated = rating_life(element, solution, life)
-        torque = jnp.full_like(rated.damage, jnp.nan)
-        if life.viscosity is not None:
+    def solve_one(design, case):
+        solution = solved_case(design, case, task.support, task.options)
+        found, bearing = task.outputs(solution, case), solution.element.bearing
+        found["minimum_load"] = minimum_load(bearing, ratings(bearing))
+        if supply is not None:
+            found["friction_torque"] = jnp.nan * found["damage"]
             with contextlib.suppress(ValueError):  # of types without constants
-                torque = friction_torque(solution, life.viscosity, supply).torque
-        return {
-            "result": solution.result,
-            "damage": rated.damage,
-            "basic_rating_life": rated.basic_rating_life,
-            "static_safety": rated.static_safety,
-            "load": jnp.maximum(rated.equivalent_load, rated.reference_load),
-            "minimum_load": minimum_load(element.bearing, rated.ratings),
-            "peak_pressure": SUMMARIES["peak_pressure"](solution),
-            "friction_torque": torque,
-            "stiffness": jnp.diagonal(solution.stiffness)[first : first + 5],
-        }
+                torque = friction_torque(solution, task.life.viscosity, supply).torque
+                found["friction_torque"] = torque
+        return found
 
-    return jax.vmap(solve_one)(elements, cases)
+    return jax.vmap(solve_one)(designs, cases)
 
 
-def _judge(asked: Requirements, found, table, k: int) -> Miss | None:
-    """Write numbers of a bearing under all cases into the table, and return what it
+def _judge(asked: Requirements, found, row: dict[str, Any]) -> Miss | None:
+    """Add the numbers of a bearing under all cases to its row, and return what it
     misses the most."""
     failed = np.flatnonzero(found["result"] != Result.CONVERGED)
     if failed.size:
@@ -534,26 +533,28 @@ def _judge(asked: Requirements, found, table, k: int) -> Miss | None:
     cases, turning = asked.load, asked.turns > 0
     used = spectrum_life(cases, found["damage"])
     basic = spectrum_life(cases, 1.0 / found["basic_rating_life"])
-    loads = found["load"][turning] / found["minimum_load"][turning]
-    stiffness = dict(zip((*NUMBERS,)[-5:], found["stiffness"].T, strict=True))
-    numbers = {
+    loads = np.maximum(found["equivalent_load"], found["reference_load"])
+    ratios = (loads / found["minimum_load"])[turning]
+    numbers = {name: found[name] for name in NUMBERS if name in found} | {
         "life_hours": np.nan if used.life_hours is None else used.life_hours,
         "rating_life": used.rating_life,
         "basic_rating_life": basic.rating_life,
-        "static_safety": found["static_safety"].min(),
-        "minimum_load": found["minimum_load"][0],
-        "load_ratio": loads.min(initial=np.inf),
-        "peak_pressure": found["peak_pressure"].max(),
-        "friction_torque": np.average(found["friction_torque"], weights=cases.hours),
-        **{name: values.min() for name, values in stiffness.items()},
+        "load_ratio": ratios if ratios.size else np.inf,
     }
+    if "stiffness" in found:
+        first = 6 * RINGS.index(asked.support.moving_ring)
+        own = np.diagonal(found["stiffness"], axis1=1, axis2=2).T[first:]
+        numbers |= dict(zip((*NUMBERS,)[-5:], own, strict=False))
+    if "friction_torque" in found:
+        torque = np.average(found["friction_torque"], weights=cases.hours)
+        numbers["friction_torque"] = torque
     misses = []
-    for name, value in numbers.items():
-        table[name][k] = value
+    for name, values in numbers.items():
+        ends = np.min(values), np.max(values)
+        row[name] = ends[NUMBERS[name][1] == "most"]
         low, high = asked.all_bounds.get(name, (None, None))
         if low is not None:
-            misses += _missed(name, value, (low, None))
+            misses += _missed(name, ends[0], (low, None))
         if high is not None:
-            greatest = stiffness[name].max() if name in stiffness else value
-            misses += _missed(name, greatest, (None, high))
+            misses += _missed(name, ends[1], (None, high))
     return min(misses, key=lambda miss: miss.share, default=None)

@@ -1,6 +1,6 @@
 """A list of cases: a table, CSV or Parquet, with keys and units in its header."""
 
-import io
+import contextlib
 import math
 import re
 import warnings
@@ -13,7 +13,7 @@ import numpy as np
 from .quantity import QUANTITIES, SceneError, to_si
 from .table import Table, as_written
 from .table_file import read_table
-from .text_file import read_columns, read_text
+from .text_file import read_columns
 
 MOST_CASES = 10**7
 """Most cases of a scene: 1 kB of memory each, with the default outputs."""
@@ -49,146 +49,115 @@ def read_list(
     name, given = table.text("file"), table.raw("file")
     if name is None:
         raise table.error("file", f"{given!r} is not the name of a file")
-    header, columns, lines = _columns(table, name, folder / name, what, record)
     found: dict[str, Any] = {}
-    heads = [_head(table, name, title) for title in header]
-    timed = record and any(key == "time" for key, _ in heads)
-    for (key, unit), values in zip(heads, columns, strict=True):
-        if key in found:
-            raise table.error("file", f"{name}: names a column twice, {key}")
-        kind = "time" if timed and key == "time" else kinds.get(key)
-        if timed and key == "time" and unit is None:
-            found[key] = _seconds(values)
-        else:
-            given = key, kind, unit, values, lines, timed, key in blank
-            found[key] = _cells(table, name, *given)
+    try:
+        header, columns, lines = _columns(folder / name, what, record)
+        heads = [_head(title) for title in header]
+        timed = record and any(key == "time" for key, _ in heads)
+        for (key, unit), values in zip(heads, columns, strict=True):
+            if key in found:
+                raise ValueError(f"names a column twice, {key}")
+            kind = "time" if timed and key == "time" else kinds.get(key)
+            if timed and key == "time" and unit is None:
+                found[key] = _seconds(values)
+            elif kind is None:
+                found[key] = _settings(key, unit, values, lines)
+            else:
+                numbers = _numbers(key, values, lines, timed, key in blank)
+                found[key] = _in_si(key, kind, unit, numbers)
+    except (ValueError, ImportError, OSError) as error:
+        raise table.error("file", f"{name}: {error}") from error
     return found | ({"line": lines} if timed else {})
 
 
-def _head(table, name, title) -> tuple[str, str | None]:
+def _head(title) -> tuple[str, str | None]:
     """Split a column title into key and unit."""
     match = re.fullmatch(r"\s*([\w.]+)\s*(?:\[([^\[\]]*)\])?\s*", title)
-    if match is not None:
-        return match[1], match[2]
-    problem = f'{name}: {title!r} is no header such as "operating.load.Fy [kN]"'
-    raise table.error("file", problem)
+    if match is None:
+        problem = 'is no header such as "operating.load.Fy [kN]"'
+        raise ValueError(f"{title!r} {problem}")
+    return match[1], match[2]
 
 
-def _columns(table, name, path, what, record) -> tuple[Any, Any, Any]:
+def _columns(path, what, record) -> tuple[Any, Any, Any]:
     """Read titles, columns of cells, and the line of each row."""
-    try:
-        if record and path.suffix.lower() == ".parquet":
-            found = read_table(path)
-            count = len(next(iter(found.values()), ()))
-            return list(found), list(found.values()), np.arange(1, count + 1)
-        plain = _plain_columns(path) if record else None
-        rows = [] if plain else read_columns(path)
-    except (ValueError, ImportError, OSError) as error:
-        raise table.error("file", f"{name}: {error}") from error
-    if plain:
-        return plain
+    if record and path.suffix.lower() == ".parquet":
+        found = read_table(path)
+        count = len(next(iter(found.values()), ()))
+        return list(found), list(found.values()), np.arange(1, count + 1)
+    rows = read_columns(path)
     if len(rows) < 2:
-        raise table.error(
-            "file", f"{name}: has no {what}; a header and rows are wanted"
-        )
+        raise ValueError(f"has no {what}; a header and rows are wanted")
     if len(rows) > MOST_CASES:
-        raise table.error(
-            "file", f"{name}: has {len(rows)} {what}; at most {MOST_CASES}"
-        )
+        raise ValueError(f"has {len(rows)} {what}; at most {MOST_CASES}")
     wanted = len(rows[0][1])
     for line, row in rows:
         if len(row) != wanted:
-            problem = f"{name}: line {line} has {len(row)} values, not {wanted}"
-            raise table.error("file", problem)
+            raise ValueError(f"line {line} has {len(row)} values, not {wanted}")
     (_, header), *cells = rows
     columns = zip(*(row for _, row in cells), strict=True)
     return header, list(columns), np.array([line for line, _ in cells])
 
 
-def _plain_columns(path):
-    """Read a record whose cells are numbers or instants, a million rows in a second or
-    two; `None` if it is another file."""
-    head, _, rest = read_text(path).partition("\n")
-    mark = next((m for m in ";\t," if m in head), ",")
-    titles = head.split(mark)
-    if not head.startswith("time") or "\n\n" in rest.rstrip("\n"):
-        return None
-    kinds = [(str(k), "U40" if t == "time" else float) for k, t in enumerate(titles)]
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")  # without rows
-            given: Any = {"delimiter": mark, "comments": None, "ndmin": 1}
-            rows = np.loadtxt(io.StringIO(rest), dtype=kinds, **given)
-    except (ValueError, UserWarning):
-        return None
-    if rows.size > MOST_CASES:
-        return None
-    return titles, [rows[name] for name, _ in kinds], np.arange(2, 2 + rows.size)
-
-
 def _seconds(values) -> np.ndarray:
     """Seconds of instants since the first, NaN of cells that are none."""
+    found = np.full(len(values), "nat", "datetime64[us]")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of offsets, which count
-        found = np.array([_instant(str(value)) for value in values], "datetime64[us]")
+        for k, value in enumerate(values):
+            with contextlib.suppress(ValueError):
+                found[k] = np.datetime64(str(value).strip(), "us")
     known = found[~np.isnat(found)]
     return (found - (known[0] if known.size else found)) / np.timedelta64(1, "s")
 
 
-def _instant(text):
-    try:
-        return np.datetime64(text.strip(), "us")
-    except ValueError:
-        return np.datetime64("nat")
-
-
-def _cells(table, name, key, kind, unit, values, lines, timed, blank):
-    """Convert the cells of a column: SI numbers of a kind, or design settings."""
-    if kind == "" and unit is None:
-        return np.array(_numbers(table, name, key, values, lines, timed, blank))
+def _in_si(key, kind, unit, numbers) -> np.ndarray:
+    """Convert a column of numbers to SI."""
+    if kind == "" and unit is not None:
+        raise ValueError(f"{key} is a pure number; it has no unit, [{unit}]")
     if kind == "":
-        problem = f"{name}: {key} is a pure number; it has no unit, [{unit}]"
-        raise table.error("file", problem)
-    if kind is not None:
-        if unit is None:
-            example = f"{key} [{QUANTITIES[kind][1]}]"
-            problem = f'{name}: {key} has no unit; head the column "{example}"'
-            raise table.error("file", problem)
-        try:
-            one, zero = (to_si(f"{k} {unit}", kind) for k in (1, 0))
-        except SceneError as error:
-            problem = f"{name}: the unit of {key}: {error}"
-            raise table.error("file", problem) from error
-        numbers = np.array(_numbers(table, name, key, values, lines, timed, blank))
-        return numbers * (one - zero) + zero
-    values = [str(value) for value in values]
-    empty = [line for line, value in zip(lines, values, strict=True) if not value]
-    if empty:
-        raise table.error("file", f"{name}: line {empty[0]}: {key} is empty")
+        return numbers
+    if unit is None:
+        example = f"{key} [{QUANTITIES[kind][1]}]"
+        raise ValueError(f'{key} has no unit; head the column "{example}"')
+    try:
+        one, zero = (to_si(f"{k} {unit}", kind) for k in (1, 0))
+    except SceneError as error:
+        raise ValueError(f"the unit of {key}: {error}") from error
+    return numbers * (one - zero) + zero
+
+
+def _settings(key, unit, values, lines) -> list[Any]:
+    """Return the cells of a column as they would stand in a scene."""
+    values = [str(value).strip() for value in values]
+    if "" in values:
+        raise ValueError(f"line {lines[values.index('')]}: {key} is empty")
     if unit is not None:
-        return [f"{value.strip()} {unit}" for value in values]
-    return [_parse_value(value.strip()) for value in values]
+        return [f"{value} {unit}" for value in values]
+    return [_parse_value(value) for value in values]
 
 
-def _numbers(table, name, key, values, lines, timed, blank) -> Any:
-    numbers = []
+def _numbers(key, values, lines, timed, blank) -> np.ndarray:
+    """Return the cells of a column as numbers; NaN where they may be none."""
     if isinstance(values, np.ndarray) and values.dtype.kind in "fi":
         return values.astype(float)
-    for line, value in zip(lines, values, strict=True):
-        if blank and not value.strip():
-            numbers.append(math.nan)
-            continue
-        try:
-            number = float(str(value).replace("−", "-"))
-        except ValueError:
-            number = math.nan
-        if not timed and not math.isfinite(number):
-            problem = f"{name}: line {line}: {key}: {value!r} is not a finite number"
-            if "," in value:
-                problem += "; write a decimal point"
-            raise table.error("file", problem)
-        numbers.append(number)
+    try:
+        numbers = np.array(values).astype(float)
+    except ValueError:
+        numbers = np.array([_number(str(value)) for value in values])
+    for k in [] if timed else np.flatnonzero(~np.isfinite(numbers)):
+        if values[k].strip() or not blank:
+            cure = "; write a decimal point" if "," in values[k] else ""
+            problem = f"{key}: {values[k]!r} is not a finite number{cure}"
+            raise ValueError(f"line {lines[k]}: {problem}")
     return numbers
+
+
+def _number(text):
+    try:
+        return float(text.replace("−", "-"))
+    except ValueError:
+        return math.nan
 
 
 def _parse_value(text):

@@ -38,7 +38,7 @@ from .bearing.read_design import (
 from .bearing.read_fit import FitKeys, TemperatureKeys
 from .bearing.read_lubricant import LubricantKeys
 from .bearing.read_operating import LoadKeys, OperatingKeys, OutputKeys, SolveKeys
-from .cases.read_cases import CasesKeys
+from .cases.case_keys import CasesKeys
 from .contact.read import (
     ContactNumericsKeys,
     ContactOperatingKeys,
@@ -54,7 +54,7 @@ from .optimise.read_optimise import OptimiseKeys
 from .optimise.read_shaft_optimise import ShaftOptimiseKeys
 from .rotor.mounts import SpringKeys
 from .rotor.read import RotorKeys
-from .select.read import select_schema
+from .select.read import SelectKeys
 from .shaft.read import (
     PART_CLASSES,
     DriveKeys,
@@ -138,7 +138,7 @@ def _bearing_scene() -> dict[str, Any]:
 def _select_scene() -> dict[str, Any]:
     """Schema of a choice of bearing: `select`."""
     names = "contact operating numerics fit temperature lubricant life cases"
-    tables = {"select": select_schema()} | _refs(names)
+    tables = {"select": table_schema(SelectKeys)} | _refs(names)
     return object_schema(tables, ["select"], "a choice of bearing")
 
 

@@ -6,6 +6,7 @@ from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
 from bearingjax.cases import SERIES_OUTPUTS, Cases, series_cases, series_life
+from bearingjax.cases.spectrum import relative_speed
 
 
 def record(count, **more):
@@ -31,6 +32,12 @@ def test_rows_that_are_alike_are_one_case():
     np.testing.assert_array_equal(found.cases.load[case], load)
     hours = np.asarray(found.cases.hours)
     np.testing.assert_allclose(hours[case[[0, 1, 3, 5]]], [2, 4, 1, 1])
+
+
+def test_relative_speed_of_the_rings():
+    turning = Cases(np.ones((2, 6)), inner_speed=[5.0, -2.0], outer_speed=[1.0, 1.0])
+    np.testing.assert_allclose(relative_speed(turning), [4.0, 3.0])
+    np.testing.assert_array_equal(relative_speed(Cases(np.ones((2, 6)))), [0.0, 0.0])
 
 
 def test_oil_of_rows_at_rest_makes_no_cases():
@@ -59,15 +66,11 @@ def test_ten_thousand_rows_keep_their_order():
 GAPPED = np.array([0.0, 1.0, 2.0, 3.0, 103.0, 104.0, 105.0]) * 3600.0
 
 
-@pytest.mark.parametrize(
-    ("gaps", "hours"),
-    [("leave_out", [1, 0, 1, 1, 1, 1, 1]), ("hold", [2, 0, 1, 100, 1, 1, 1])],
-)
-def test_gaps_are_left_out_or_held(gaps, hours):
+def test_gaps_are_left_out():
     given = record(7)
     given.load[1, 0] = np.nan
-    found = series_cases(GAPPED, given, gaps=gaps)
-    np.testing.assert_allclose(found.hours, hours)
+    found = series_cases(GAPPED, given, gaps="leave_out")
+    np.testing.assert_allclose(found.hours, [1, 0, 1, 1, 1, 1, 1])
     assert found.case[1] == -1
     assert found.gaps == (
         "row 1: Fx is no finite number",
@@ -80,16 +83,13 @@ def test_a_row_without_a_time_is_a_gap():
     time = np.array([0.0, np.nan, 2.0, 3.0, 4.0, 5.0]) * 3600.0
     found = series_cases(time, record(6), gaps="leave_out")
     np.testing.assert_allclose(found.hours, [1, 0, 1, 1, 1, 1])
-    found = series_cases(time, record(6), gaps="hold")
-    np.testing.assert_allclose(found.hours, [2, 0, 1, 1, 1, 1])
 
 
 def test_many_gaps_are_counted():
     given = record(40)
     given.load[::2, 2] = np.inf
-    found = series_cases(np.arange(40.0), given, gaps="hold")
+    found = series_cases(np.arange(40.0), given, gaps="leave_out")
     assert found.gaps[-1] == "and 17 more" and len(found.gaps) == 4
-    np.testing.assert_allclose(found.hours[0], 0.0)  # nothing before it to hold
 
 
 @pytest.mark.parametrize(
@@ -99,8 +99,8 @@ def test_many_gaps_are_counted():
         ([0.0, 2.0, 1.0], {}, "is 2 s in row 1 and 1 s in row 2; it must ascend"),
         ([0.0, np.nan, 1.0], {}, "has gaps: row 1: time is no finite number"),
         ([0.0, 1.0], {}, r"it must be \(3,\), a time for each row"),
-        ([np.nan] * 3, {"gaps": "hold"}, "it must ascend"),
-        ([0.0, 1.0, 2.0], {"gaps": "skip"}, "'refuse', 'leave_out', 'hold'"),
+        ([np.nan] * 3, {"gaps": "leave_out"}, "it must ascend"),
+        ([0.0, 1.0, 2.0], {"gaps": "skip"}, "'refuse', 'leave_out'"),
     ],
 )
 def test_records_that_are_refused(time, more, words):

@@ -8,10 +8,10 @@ import pytest
 from tolerances import ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.cases.sweep import SUMMARIES
+from bearingjax.cases.sweep import SUMMARIES, structure_of
 from bearingjax.catalogue.entry import bearing_of_entry
 from bearingjax.decide import Requirements
-from bearingjax.decide.select import NUMBERS, _as_bounds, _judge
+from bearingjax.decide.select import _as_bounds, _as_drawn, _judge, _of_kind
 from bearingjax.life.life_warning import minimum_load
 from bearingjax.statics import Installed
 
@@ -91,14 +91,15 @@ def test_select_judges_by_what_is_missed_most():
         "damage": np.array([1e-8, 2e-8]),
         "basic_rating_life": np.array([1e8, 1e8]),
         "static_safety": np.array([1.5, 4.0]),
-        "load": np.array([500.0, 400.0]),
+        "equivalent_load": np.array([500.0, 300.0]),
+        "reference_load": np.array([450.0, 400.0]),
         "minimum_load": np.full(2, 100.0),
         "peak_pressure": np.array([2e9, 2.5e9]),
         "friction_torque": np.array([1.0, 2.0]),
-        "stiffness": np.array([[1e8] * 5, [8e8] * 5]),
+        "stiffness": np.array([1e8, 8e8])[:, None, None] * np.eye(12),
     }
-    table = {name: np.full(1, np.nan) for name in NUMBERS}
-    miss = _judge(asked, found, table, 0)
+    row = {}
+    miss = _judge(asked, found, row)
     assert miss is not None and miss.requirement == "stiffness_uy"
     assert (miss.value, miss.limit, miss.share) == (8e8, 2e8, 0.25)
     turns = 150.0 * 3600.0 / (2.0 * np.pi)
@@ -106,9 +107,19 @@ def test_select_judges_by_what_is_missed_most():
     wanted = {"life_hours": hours, "static_safety": 1.5, "load_ratio": 4.0}
     wanted |= {"peak_pressure": 2.5e9, "friction_torque": 1.75}
     for name, value in wanted.items():
-        assert table[name][0] == pytest.approx(value, rel=ROUNDING)
-    miss = _judge(asked, found | {"result": np.array([0, 3])}, table, 0)
+        assert row[name] == pytest.approx(value, rel=ROUNDING)
+    miss = _judge(asked, found | {"result": np.array([0, 3])}, row)
     assert miss is not None and miss.requirement == "solved" and "case 1" in miss.why
+
+
+@pytest.mark.parametrize(
+    "one, other",
+    [("NA 4900", "NA 4828"), ("QJ 202", "176211"), ("RB 3010", "RB 11012")],
+)
+def test_bearings_of_a_type_share_a_program(one, other):
+    entries = map(bj.catalogue_entry, (one, other))
+    structures = [structure_of(_of_kind(_as_drawn(e), e.type)) for e in entries]
+    assert structures[0] == structures[1]
 
 
 def test_bounds_by_one_number_have_the_sense_of_their_name():

@@ -17,6 +17,7 @@ from bearingjax.files import column_list as cases_list
 from bearingjax.life import LifeConditions
 from bearingjax.numerics.warning import Warning
 from bearingjax.studies.bearing.read_scene import read_scene
+from bearingjax.studies.cases import designs
 from bearingjax.studies.cases import read_cases as cases_table
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.cases.sweep_run import (
@@ -361,7 +362,7 @@ def test_wrong_cases(scene, what):
 
 
 def test_too_many_designs(scene, monkeypatch):
-    monkeypatch.setattr(cases_table, "MOST_DESIGNS", 1)
+    monkeypatch.setattr(designs, "MOST_DESIGNS", 1)
     with pytest.raises(SceneError, match="`cases`: make 2 designs; at most 1"):
         read_cases(scene(GRID))
 

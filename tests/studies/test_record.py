@@ -187,7 +187,7 @@ def test_record_that_is_refused(read, message):
 def test_settings_of_records_that_are_refused(read):
     plain = "operating.load.Fx [kN]\n1\n2\n"
     with pytest.raises(SceneError, match="is of a record in time, a `file` with"):
-        read(plain, 'gaps = "hold"')
+        read(plain, 'gaps = "leave_out"')
     with pytest.raises(SceneError, match="'skip' is not known; it must be one of"):
         read(PLAIN, 'gaps = "skip"')
     dry = SCENE.replace("contamination = 0.5", "")

@@ -63,7 +63,7 @@ def test_select_joins_own_bearings(tmp_path):
     [
         ("C0 [kN]", "C1 [kN]", "has no column C0"),
         ("mass [kg]", "price", "column price is not known"),
-        (",50,", ",x,", "line 2: C: 'x' is not a finite number"),
+        (",50,", ",x,", "bearing 1, X 1: --capacity: 'x kN' does not begin"),
         (",50,", ",50000,", "bearing 1, X 1"),
         ("deep_groove_ball", "sleeve", "bearing 1, X 1: --type: 'sleeve' is not known"),
     ],

@@ -20,29 +20,26 @@ def selection_overview(found: Selection, title: str = "") -> Figure:
     Returns:
         The figure, 8 by 5.5 inches.
     """
-    table, bounds = found.table, found.requirements.all_bounds
+    table, fits = found.table, found.table["requirement"] == ""
     turning = np.isfinite(table["life_hours"]).any()
     name, unit = ("life_hours", "h") if turning else ("static_safety", "")
     mass, values = table["mass"], table[name]
-    fits, shown = table["requirement"] == "", np.isfinite(values)
     marks = [
-        Curve(mass[mine & shown], values[mine & shown], label, colour, "o")
+        Curve(mass[mine], values[mine], label, colour, "o")
         for mine, label, colour in ((~fits, "excluded", GREY), (fits, "fit", OUTER))
     ]
-    if name in bounds and shown.any():
-        ends = np.array([mass[shown].min(), mass[shown].max()])
-        required = np.full(2, bounds[name][0] or bounds[name][1])
-        marks.append(Curve(ends, required, "required", INNER, "--"))
-
-    def finish(ax):
-        ax.set(xscale="log", yscale="log")
-        if fits[0] and shown[0]:
-            best = str(table["designation"][0]), (mass[0], values[0])
-            ax.annotate(*best, (6, 6), textcoords="offset points")
-
-    over, of = Axis("mass", "kg"), Axis(name.replace("_", " "), unit)
+    shown = mass[np.isfinite(values)]
+    least, _ = found.requirements.all_bounds.get(name, (None, None))
+    if least is not None and shown.size:
+        ends = np.array([shown.min(), shown.max()])
+        marks.append(Curve(ends, np.full(2, least), "required", INNER, "--"))
     figure = new_page(8.0, 5.5)
+    over, of = Axis("mass", "kg"), Axis(name.replace("_", " "), unit)
     panel = Panel("Bearings that the catalogue does not exclude", over, of, marks)
-    finish(panel.draw(figure.subplots()))
+    ax = panel.draw(figure.subplots())
+    ax.set(xscale="log", yscale="log")
+    if fits[0]:
+        best = str(table["designation"][0]), (mass[0], values[0])
+        ax.annotate(*best, (6, 6), textcoords="offset points")
     head(figure, title or "Choice of bearing")
     return figure

@@ -4,7 +4,7 @@ import dataclasses
 import difflib
 from typing import Any
 
-from ...catalogue.entry import catalogue_entry
+from ...catalogue.entry import CatalogueEntry, catalogue_entry
 from ...design import AbstractBearing, BearingSet, PreloadSpring, SetRow
 from ...design.bearing_set import shares_rings
 from ...files.schema import Keys, key_of, read_keys, scene_key
@@ -62,7 +62,8 @@ def _read_row(
 
 
 def read_designation(table: Table) -> tuple[dict[str, Any], FromCatalogue] | None:
-    """Expand the `designation` of a [bearing]; `None` without one.
+    """Expand the `designation` of a [bearing], or the entry that a program puts there;
+    `None` without one.
 
     Args:
         table: Table of the bearing; none of its keys are marked as read.
@@ -78,13 +79,13 @@ def read_designation(table: Table) -> tuple[dict[str, Any], FromCatalogue] | Non
     if "designation" not in table:
         return None
     name = text_of(given.pop("designation"))
-    if not isinstance(name, str):
+    if not isinstance(name, str | CatalogueEntry):
         problem = 'is not a designation, a text such as "6205-2RS1/C3"'
         if isinstance(name, int):
             problem = f'is a number; a designation is a text in quotes, "{name}"'
         raise table.error("designation", f"{name!r} {problem}")
     try:
-        entry = catalogue_entry(name)
+        entry = catalogue_entry(name) if isinstance(name, str) else name
     except ValueError as error:
         raise table.error("designation", error) from error
     kind = given.get("type", entry.type)

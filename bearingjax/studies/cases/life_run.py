@@ -9,7 +9,6 @@ from typing import Any
 import jax
 import numpy as np
 
-from ...cases import Cases
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
 from ...cases.series import SERIES_OUTPUTS, SeriesLife, series_life
 from ...cases.spectrum import SpectrumLife, revolutions_per_hour, spectrum_life
@@ -20,6 +19,7 @@ from ...design.published import with_published
 from ...element import RINGS
 from ...files.quantity import SceneError
 from ...files.scene_errors import scene_errors
+from ...files.table import Table
 from ...life.life import LIFE_OUTPUTS, turns_against_load
 from ...life.life_warning import minimum_load
 from ...life.rating import Ratings, ratings
@@ -45,7 +45,7 @@ from ..bearing.life_report import (
 from ..bearing.solved import SolvedScene
 from ..solve.report import design_sections
 from .case_words import case_words, varied_settings
-from .read_cases import CaseTable
+from .read_cases import CaseTable, cases_of_columns
 from .sweep_run import add_hours, all_warnings, design_columns, run_cases
 
 _YEAR = 8766.0
@@ -53,6 +53,9 @@ _YEAR = 8766.0
 
 _LARGEST = "peak_pressure", "largest_load"
 """Outputs of which a record tells the largest."""
+
+_OILED = "modified_rating_life", "viscosity_ratio", "contamination_factor", "a_iso"
+"""Outputs that need a lubricant."""
 
 LIVES = ("basic_rating_life", "reference_rating_life", "modified_rating_life")
 
@@ -181,17 +184,12 @@ def run_life(
             f"{scene.name}: `life.contamination`: needs a speed, in [operating] or in"
             " the cases, for the film"
         )
-    left_out = {"damage_share"}
-    if not turning:
-        left_out |= {"life_hours"}
-    if not oiled:
-        left_out |= {
-            "modified_rating_life",
-            "viscosity_ratio",
-            "contamination_factor",
-            "a_iso",
-        }
-    outputs = [name for name in LIFE_OUTPUTS if name not in left_out]
+    known = {
+        "damage_share": False,
+        "life_hours": turning,
+        **dict.fromkeys(_OILED, oiled),
+    }
+    outputs = [name for name in LIFE_OUTPUTS if known.get(name, True)]
     required = None if scene.life is None else scene.life.required
     if required is not None and not turning:
         raise SceneError(
@@ -199,23 +197,17 @@ def run_life(
             " [operating] or in the cases; or write `required_revolutions`"
         )
     judged = scene.life is not None and scene.life.requires
-    parts = ["damage_share", "limit_ratio"]
-    alike = table.cases.design, table.cases.viscosity, table.cases.oscillation
-    if judged and table.series is None and all(given is None for given in alike):
-        outputs += parts
+    parts, cases = ["damage_share", "limit_ratio"], table.cases
     if table.series is not None:
         outputs += [name for name in SERIES_OUTPUTS if name not in outputs]
+    elif judged and cases.design is cases.viscosity is cases.oscillation is None:
+        outputs += parts
     bearing = scene.element.bearing
-    if (
-        scene.catalogue is not None
-        and scene.catalogue.override(table.varied).rerated_keys
-    ):
+    taken = scene.catalogue
+    if taken is not None and taken.override(table.varied).rerated_keys:
         bearing = with_published(bearing, None)
-    given = (
-        conditions.dynamic_capacity,
-        conditions.static_capacity,
-        conditions.fatigue_load_limit,
-    )
+    names = "dynamic_capacity", "static_capacity", "fatigue_load_limit"
+    given = (getattr(conditions, name) for name in names)
     with scene_errors(scene.name):
         rated = jax.device_get(ratings(bearing, *given))
     wanted = dataclasses.replace(table, outputs=tuple(outputs))
@@ -230,9 +222,8 @@ def run_life(
     numbers = {k: v for k, v in solved.outputs.items() if k in NEEDED}
     kept = {k: v for k, v in solved.outputs.items() if k not in parts}
     solved = dataclasses.replace(solved, outputs=kept)
-    turns = float(asked_for.rating_life)
+    turns, verdict = float(asked_for.rating_life), None
     factor = over_required(scene.life, asked_for.life_hours, turns)
-    verdict = None
     if factor is not None and scene.life is not None:
         basic = factor * float(lives["basic_rating_life"].rating_life) / turns
         found = bearing, scene.life, factor, basic, float(rated.dynamic_capacity)
@@ -287,9 +278,7 @@ def life_columns(run: LifeRun, exact: bool = False) -> dict[str, np.ndarray]:
 def life_row(found: SolvedScene) -> dict[str, np.ndarray]:
     """Return load, speeds, life and verdict of a solved scene as one row, in SI."""
     scene, life = found.scene, found.life
-    speeds = {} if scene.speed is None else vars(scene.speed)
-    speeds = {f"{ring}_speed": float(speed) for ring, speed in speeds.items()}
-    cases = Cases([scene.load], prescribed=scene.prescribed, **speeds)
+    cases = cases_of_columns(Table({}, scene.name), scene, (), None, 1)
     lives = {name: getattr(life, name) for name in LIFE_OUTPUTS}
     outputs = {k: np.asarray(v)[None] for k, v in lives.items() if v is not None}
     del outputs["damage_share"]

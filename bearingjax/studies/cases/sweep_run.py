@@ -8,8 +8,9 @@ import jax
 import numpy as np
 
 from ...cases import Batches, Cases, Sweep, sweep
+from ...cases.cases import case_speed
 from ...cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD
-from ...cases.spectrum import revolutions_per_hour
+from ...cases.spectrum import relative_speed, revolutions_per_hour
 from ...cases.sweep_program import not_run
 from ...cases.sweep_table import columns
 from ...design import rows_of
@@ -17,19 +18,22 @@ from ...element import BearingElement
 from ...files.scene_errors import scene_errors
 from ...fits import radial_clearance
 from ...life.life import LIFE_OUTPUTS, LifeConditions
+from ...numerics.compiled.programs import program
 from ...numerics.labels import summaries
+from ...numerics.types import with_fields
 from ...numerics.units import display_unit, shown_count
 from ...numerics.warning import Warning
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report
-from ...statics.preload import is_opposed, row_preload_force
+from ...statics.preload import is_opposed, remaining_preload
 from ...statics.service_warning import preload_range_warnings, preload_warnings
 from ...statics.solution import solution_kind
 from ...statics.support import Support
 from ..bearing.credibility import credibility_section
 from ..bearing.life_ratings import life_conditions
 from ..solve.run import with_set_preload
-from .read_cases import CaseTable, DesignGroup, turns_of
+from .designs import DesignGroup
+from .read_cases import CaseTable
 
 
 def default_outputs(
@@ -122,7 +126,7 @@ def _life(table: CaseTable, part: DesignGroup) -> LifeConditions | None:
         return life_conditions(part.scene)
     if part.scene.life is None:
         return None
-    return life_conditions(part.scene, turning=bool(turns_of(table.cases).any()))
+    return life_conditions(part.scene, turning=bool(relative_speed(table.cases).any()))
 
 
 def _on_seats(part: DesignGroup, solved: Sweep) -> Sweep:
@@ -159,31 +163,22 @@ def cases_with_set_preload(table: CaseTable) -> CaseTable:
 
 def _preloads(part: DesignGroup, cases: Cases) -> np.ndarray:
     """Return the preload force between the rows of each design, without load, at the
-    speeds of its first case (design,) [N]."""
+    speeds of its first case (design,) [N]; NaN of designs that no case has."""
     if part.scene.preload_of_set is not None:
         return np.array([part.scene.preload_of_set.operating])
-    if part.designs is None:
-        first, design = np.zeros(1, int), None
-    else:
-        design, first = np.unique(np.asarray(cases.design), return_index=True)
-    inner, outer = (
-        None if speed is None else np.asarray(speed)[first]
-        for speed in (cases.inner_speed, cases.outer_speed)
-    )
-    unloaded = Cases(
-        np.zeros((first.size, 6)), inner_speed=inner, outer_speed=outer, design=design
-    )
-    found = sweep(part.element, unloaded, outputs=_preload, support=Support(["uz"]))
-    force = np.asarray(found.outputs["preload"])
-    if design is None:
-        return force
-    of_all = np.full(design.max() + 1, np.nan)  # designs that no case has
-    of_all[design] = force
-    return of_all
+    many = part.designs is not None
+    design = np.asarray(cases.design) if many else np.zeros(1, int)
+    found = np.full(design.max() + 1, np.nan)
+    for k, case in zip(*np.unique(design, return_index=True), strict=True):
+        element = jax.tree.map(lambda a: a[k], part.element) if many else part.element  # noqa: B023
+        one = jax.tree.map(lambda a: np.asarray(a)[case], cases)  # noqa: B023
+        found[k] = _preload(element, with_fields(one, design=None))
+    return found
 
 
-def _preload(solution):
-    return {"preload": row_preload_force(solution)}
+@program(quick=True, what="preload of a set on its seats")
+def _preload(element, case):
+    return remaining_preload(element, case_speed(case), throw=False)
 
 
 def _merge(table: CaseTable, done: list[tuple[np.ndarray, Sweep]]) -> Sweep:

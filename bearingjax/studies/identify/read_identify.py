@@ -15,7 +15,7 @@ from ...files.table import Table
 from ...files.text_file import read_columns
 from ...numerics.units import unit_of
 from ...optimise import Variable
-from ..cases.read_cases import VariedKey
+from ..cases.case_keys import VariedKey
 from ..optimise.read_optimise import check_numbers, read_number, read_variables
 from .subjects import Setup, Subject, read_setup
 

@@ -21,7 +21,8 @@ from ...rotor import Rotor
 from ...rotor.rotor_design import RotorCases, RotorDesign, RotorSeat
 from ..bearing.life_ratings import life_conditions
 from ..bearing.read_scene import scene_of
-from ..cases.read_cases import OPERATING, VariedKey, cases_of_columns, check_varied_key
+from ..cases.case_keys import OPERATING, VariedKey
+from ..cases.read_cases import cases_of_columns, check_varied_key
 from ..optimise.read_optimise import installed_numbers
 from ..optimise.read_shaft_optimise import design_in_cases, shaft_numbers
 from ..rotor.read import RotorScene, rotor_of

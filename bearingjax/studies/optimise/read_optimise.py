@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...cases.cases import Cases
+from ...cases.spectrum import relative_speed
 from ...design import BearingSet, rows_of
 from ...element import FREEDOMS, BearingElement
 from ...files.quantity import SceneError, kind_of, scene_number
@@ -35,8 +36,10 @@ from ...statics.preload import is_opposed
 from ..bearing.life_ratings import life_conditions
 from ..bearing.read_design import PITCH_FOLLOWS, pitch_follows
 from ..bearing.read_fit import no_expansion, read_temperature
-from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
-from ..cases.read_cases import DESIGN, case_table, read_raw, turns_of
+from ..bearing.read_scene import Scene, with_speed_warnings
+from ..cases.case_keys import read_raw
+from ..cases.designs import makes_design
+from ..cases.read_cases import case_table
 
 OBJECTIVES = (
     "peak_pressure",
@@ -246,23 +249,18 @@ def read_operated(
     Returns:
         The scene's table, the scene, its cases of this one design, and its inputs.
     """
-    top = Table(data, path)
-    if "cases" in data:
-        listed = case_table(data, path)
-        scene, cases, inputs = listed.scene, listed.cases, listed.inputs
-        makers = [key for key in listed.varied if key.partition(".")[0] in DESIGN]
-        if makers:
-            words = f"{', '.join(makers)} vary the design; {problem}"
-            raise top.error("cases", words)
-        if not (cases.viscosity is None is cases.oscillation):
-            words = "vary the oil or oscillate, which `life` and `sweep` alone know"
-            raise top.error("cases", words)
-        # On its seats a bearing has the clearance at the speeds of each case.
-        cases = dataclasses.replace(cases, design=None)
-    else:
-        scene = scene_of(data, path)
-        cases, inputs = _operating(scene), scene.inputs
-    return top, with_speed_warnings(scene, turns_of(cases)), cases, inputs
+    top, listed = Table(data, path), case_table(data, path)
+    scene, cases = listed.scene, listed.cases
+    if makers := [key for key in listed.varied if makes_design(key)]:
+        words = f"{', '.join(makers)} vary the design; {problem}"
+        raise top.error("cases", words)
+    if not (cases.viscosity is None is cases.oscillation):
+        words = "vary the oil or oscillate, which `life` and `sweep` alone know"
+        raise top.error("cases", words)
+    # On its seats a bearing has the clearance at the speeds of each case.
+    cases = dataclasses.replace(cases, design=None)
+    scene = with_speed_warnings(scene, relative_speed(cases))
+    return top, scene, cases, listed.inputs
 
 
 def check_present(data: dict[str, Any], path: Path) -> None:
@@ -288,16 +286,6 @@ def _start_values(data: dict[str, Any]) -> dict[str, Any]:
         if isinstance(ends, dict) and "from" in ends and not stands:
             found[f"fit.{name}"] = ends.get("start", ends["from"])
     return found
-
-
-def _operating(scene: Scene) -> Cases:
-    speed = scene.speed
-    return Cases(
-        [scene.load],
-        prescribed=scene.prescribed,
-        inner_speed=None if speed is None else speed.inner,
-        outer_speed=None if speed is None else speed.outer,
-    )
 
 
 def _optimisation(

@@ -5,12 +5,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from ...cases.spectrum import relative_speed
 from ...files.scene_errors import scene_errors
 from ...optimise.life import OfLife, RatingLife
 from ...optimise.optimise import OptimisedDesign, SearchOptions, optimise
 from ...statics.support import RESTRAINED, Support
 from ..bearing.life_ratings import life_conditions
-from ..cases.read_cases import turns_of
 from .read_optimise import Optimisation
 from .read_shaft_optimise import ShaftOptimisation
 
@@ -62,7 +62,7 @@ def _with_life_warnings(task: Optimisation, found: OptimisedDesign) -> Optimised
     measures = task.objective, *(c.measure for c in task.constraints)
     if scene.life is None or any(isinstance(m, OfLife) for m in measures):
         return found
-    turning = bool(turns_of(task.cases).any())
+    turning = bool(relative_speed(task.cases).any())
     life = RatingLife(life_conditions(scene, turning))
     sides = {"before": found.initial, "after": found.element}
     judged = {}

@@ -8,10 +8,10 @@ import numpy as np
 from ...decide.select import NUMBERS, SIZES, Selection, select, unit_of_number
 from ...files.scene_errors import scene_errors
 from ...numerics.labels import column_header
-from ...numerics.units import shown_count, shown_number
+from ...numerics.units import shown_number
 from ...report.html_report import flat
 from ...report.json_output import run_json
-from ...report.report_model import Column, Grid, Part, Report, labelled_facts, load_text
+from ...report.report_model import Column, Grid, Part, Report, labelled_facts
 from .read import Choice
 
 _SHOWN = 10
@@ -70,15 +70,9 @@ def nearest_misses(found: Selection, most: int = 5) -> list[str]:
 def select_report(choice: Choice, found: Selection) -> Report:
     """Return the readable report: what is asked, what fits, what excludes the rest."""
     asked, rows = choice.requirements, found.fits[:_SHOWN]
-    cases = asked.load
-    load = load_text(cases.load[0]) or "prescribed displacements"
-    facts = [("load", load if cases.count == 1 else shown_count(cases.count, "case"))]
-    facts += [("speed", shown_number(float(asked.turns.max()), "rad/s"))]
-    for name, unit in (("required", "h"), ("required_revolutions", "rev")):
-        if (value := getattr(asked.life, name)) is not None:
-            share = f", reached by {100 * float(asked.life.reliability):.5g} %"
-            facts.append(("life", f"{shown_number(float(value), unit, 5)}{share}"))
-    facts += [(key, str(value)) for key, value in flat(choice.written)]
+    written = {k: v for k, v in choice.written.items() if k != "cases"}
+    facts = [("cases", str(asked.load.count))]
+    facts += [(key, str(value)) for key, value in flat(written)]
     fits: list[Part] = [
         f"{choice.name}: of {found.table['type'].size} bearings {len(found.fits)} fit;"
         f" the smallest: {found.smallest or 'none'}"
@@ -86,11 +80,11 @@ def select_report(choice: Choice, found: Selection) -> Report:
     if rows:
         columns = [Column("bearing", [row["designation"] for row in rows])]
         wanted = {*_USUAL, *asked.all_bounds, *asked.rank_by}
-        for name in filter(wanted.__contains__, NUMBERS):
+        for name, (unit, *_) in NUMBERS.items():
             values = np.array([row[name] for row in rows])
-            if not np.isnan(values).all():
-                unit, head = unit_of_number(name), name.replace("_", " ")
-                columns.append(Column(head, values, unit, ".4g", _UNITS.get(unit)))
+            if name in wanted and not np.isnan(values).all():
+                given = values, unit_of_number(name), ".4g", _UNITS.get(unit)
+                columns.append(Column(name.replace("_", " "), *given))
         fits.append(Grid(columns))
         if not all(row["mass_printed"] for row in rows):
             fits.append("masses that are not printed are estimated from the envelope")

@@ -43,7 +43,7 @@ from ...shafts.duty import align_systems
 from ..bearing.life_ratings import life_conditions
 from ..bearing.placed_bearing import read_machine_bearing, seat_misfits
 from ..bearing.read_scene import Scene
-from ..cases.read_cases import CasesKeys, VariedKey
+from ..cases.case_keys import CasesKeys, VariedKey
 from ..rotor.mounts import SpringKeys
 from ..rotor.read import SegmentKeys as RotorSegmentKeys
 from .read_heat import heat_warnings, read_heat
