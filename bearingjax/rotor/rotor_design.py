@@ -9,8 +9,8 @@ from jaxtyping import Array, Float, Int
 
 from ..design.checks import instance, of_class
 from ..element import BearingElement, Speed
-from ..numerics.types import Real, Scalar, as_count, as_real, with_fields
-from ..numerics.units import real, unit
+from ..numerics.types import Scalar, as_count, as_real, with_fields
+from ..numerics.units import unit
 from ..optimise.system import AbstractSystem, Reading
 from ..statics.installed import Installed
 from .bearing_support import BearingSupport
@@ -77,7 +77,9 @@ class RotorSeat(eqx.Module):
     """
 
     installed: Installed
-    preload: Real | None = eqx.field(default=None, **real("N"))
+    preload: Scalar | None = eqx.field(
+        converter=as_real, metadata=unit("N"), default=None
+    )
 
 
 class RotorDesign(AbstractSystem):

@@ -13,7 +13,6 @@ from ...files.quantity import kind_of
 from ...files.scene_file import is_rotor, is_shafts
 from ...files.table import Table, not_among
 from ...numerics.labels import column_header
-from ...numerics.types import as_array
 from ...numerics.units import unit_of
 from ...optimise.system import AbstractSystem
 from ...optimise.variable import with_numbers
@@ -190,8 +189,7 @@ def _rotor_design(scene: RotorScene) -> RotorDesign:
         if placed is None or mount.keys.law is not None:
             seats.append(None)
         else:
-            force = None if preload is None else as_array(preload, float)
-            seats.append(RotorSeat(placed, force))
+            seats.append(RotorSeat(placed, preload))
     rotor = Rotor(scene.shaft, scene.discs, supports, keys.own_damping, keys.rigid)
     return RotorDesign(rotor, seats, scene.loads, keys.modes)
 
