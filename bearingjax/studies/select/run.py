@@ -88,6 +88,9 @@ def select_report(choice: Choice, found: Selection) -> Report:
         fits.append(Grid(columns))
         if not all(row["mass_printed"] for row in rows):
             fits.append("masses that are not printed are estimated from the envelope")
+        bare = {one.designation for one in choice.entries if not one.has_inner_ring}
+        if any(row["designation"] in bare for row in rows):
+            fits.append("those without inner ring (HK, NK, RNA) roll on the shaft")
         fits.append(
             "`bearingjax life` of one tells its warnings, and what is estimated"
         )
