@@ -11,14 +11,14 @@ import numpy as np
 from scipy import stats
 
 from ..cases.cases import Cases
-from ..design.checks import all_of_class, of_class, positive
+from ..design.checks import all_of_class, of_class, of_shape, positive
 from ..numerics.compiled.programs import program
 from ..numerics.result import SolveError
 from ..numerics.shown import Shown
 from ..numerics.units import shown_number, unit_of
 from ..numerics.warning import Warning
 from ..optimise.system import Design, check_design
-from ..optimise.variable import Variable, check_variables
+from ..optimise.variable import Variable, check_same_in_cases, check_variables
 from .least_squares import CLOSE, Fit, least_squares
 from .predict import CaseModel
 
@@ -320,6 +320,12 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
         kind = getattr(model.design, "of_cases", Cases)
         of_class("identify", "cases", cases, kind, kind.__name__)
         start = check_variables(model.design, unknowns, "identify")
+        check_same_in_cases("identify", unknowns, cases, model.varied)
+        for path, values in model.varied.items():
+            Variable(path, -1e300, 1e300).start_in(model.design)  # raises for no number
+            fits = np.shape(values) == (cases.count,)
+            given = f"({cases.count},)", np.asarray(values)
+            of_shape("identify", f"varied {path}", fits, *given)
         try:
             model = model.for_numbers([one.path for one in unknowns], results)
         except ValueError as error:

@@ -163,9 +163,11 @@ class CaseModel(eqx.Module):
             return self._entries(kept, solution.result == Result.CONVERGED)
         wanted = dict.fromkeys(place.output for _, place in self.places)
         lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
-        life = LifeConditions() if lives and self.life is None else self.life
+        life = LifeConditions() if self.life is None else self.life
         keep = Keep(tuple(name for name in wanted if name not in (*lives, *_STATES)))
-        task = Task(self.support, self.options, keep, False, lives, life)
+        task = Task(
+            self.support, self.options, keep, False, lives, life if lives else None
+        )
         kept = task.outputs(solution, case)
         if OPERATING_CLEARANCE in wanted:
             row = rows_of(solution.element.bearing)[0].bearing
@@ -174,8 +176,8 @@ class CaseModel(eqx.Module):
             given = solution.element, solution.speed
             kept[OPERATING_PRELOAD] = remaining_preload(*given, throw=False)
         if _FRICTION in wanted and self.life is not None:
-            given = self.life.viscosity, self.supply
-            kept[_FRICTION] = friction_torque(solution, *given).torque
+            oil: Any = self.life.viscosity if case.viscosity is None else case.viscosity
+            kept[_FRICTION] = friction_torque(solution, oil, self.supply).torque
         real = solution.displacement.dtype
         numbers = {name: kept[name].astype(real) for name in wanted}
         return self._entries(numbers, solution.converged)

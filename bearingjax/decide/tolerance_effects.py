@@ -28,7 +28,7 @@ from ..optimise.measure import AbstractMeasure, label_of
 from ..optimise.search import search_least
 from ..optimise.system import AbstractSystem, Design, check_design, prepare, solved_case
 from ..optimise.trials import Trial, Trials
-from ..optimise.variable import Variable, with_numbers
+from ..optimise.variable import Variable, check_same_in_cases, with_numbers
 from ..statics import SolveOptions, Support
 from ..statics.support import RESTRAINED, check_held
 from .scatter import REPLICATES, Scatter, draw
@@ -332,6 +332,7 @@ class Sampled:
                 high = np.inf if one.upper is None else float(one.upper)
                 self.bounds.append(Bounds(k, low, high))
             self.measures += (one.measure if isinstance(one, Constraint) else one,)
+        check_same_in_cases(owner, self.scatters, cases)
         paths = tuple(dict.fromkeys(p for one in self.scatters for p in one.path))
         factors = np.array([[s.path.get(p, 0.0) for s in self.scatters] for p in paths])
         self.centre = np.array([one.centre for one in self.scatters])

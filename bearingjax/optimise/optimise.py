@@ -24,7 +24,7 @@ from .measure import AbstractMeasure, label_of
 from .search import METHODS, SearchOutcome, search_least, takes_gradients
 from .system import AbstractSystem, Design, check_design
 from .trials import Trial, Trials, optimality
-from .variable import Variable, check_variables
+from .variable import Variable, check_same_in_cases, check_variables
 
 NEAR = 0.05
 """Largest distance of a rejected design that is named, over a variable's range [1]."""
@@ -203,6 +203,7 @@ def optimise(
     if isinstance(cases, Cases):
         check_held("optimise", cases.load, support, cases.prescribed)
     start = check_variables(element, variables)
+    check_same_in_cases("optimise", variables, cases)
     asked = variables, objective, constraints
     problem = Problem(element, cases, *asked, options, support, build)
     slopes = takes_gradients(method)

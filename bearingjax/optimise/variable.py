@@ -253,6 +253,27 @@ def check_variables(
     return start
 
 
+def check_same_in_cases(
+    owner: str, numbers: Iterable[Any], cases: Any, varied: Iterable[str] = ()
+) -> None:
+    """Raise ValueError if a number that is to change is another one in each case.
+
+    Args:
+        owner: Function that was called, for messages.
+        numbers: Variables, or others with `name` and `path`, which is several.
+        cases: Operating cases; those of a system may have `paths`.
+        varied: Dotted paths of more numbers that differ from case to case.
+    """
+    given = [*getattr(cases, "paths", ()), *varied]
+    for one in numbers:
+        for path in one.path:
+            if any(f"{path}.".startswith(f"{other}.") for other in given):
+                raise ValueError(
+                    f"{owner}: {one.name} differs from case to case; take it out of the"
+                    " cases, or leave it as they have it."
+                )
+
+
 def _suggest(word, known):
     close = difflib.get_close_matches(word, known, 1, 0.6)
     return f" (did you mean {close[0]!r}?)" if close else ""

@@ -12,6 +12,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.tree_util import tree_leaves_with_path, tree_map_with_path
 from jaxtyping import Array, Float
 
 from ..cases.cases import check_hours
@@ -58,28 +59,19 @@ class ShaftCases(eqx.Module):
     Attributes:
         hours: Time in each case (case,) [h]; equal if it is not known.
         values: Numbers that differ from case to case, leading axis case.
-        places: Which numbers of the design these are, in the order of its leaves.
+        paths: Dotted paths of these numbers in the design.
 
-    Traced: hours, values. Static: places.
+    Traced: hours, values. Static: paths.
     """
 
     hours: Float[Array | np.ndarray, " case"] = eqx.field(metadata=unit("h"))
     values: tuple[Any, ...]
-    places: tuple[int, ...] = eqx.field(static=True)
+    paths: tuple[str, ...] = eqx.field(static=True)
 
     @property
     def count(self) -> int:
         """Number of cases."""
         return self.hours.shape[0]
-
-    def paths(self, design: "ShaftDesign") -> set[str]:
-        """Return the dotted paths of the numbers that differ from case to case.
-
-        Args:
-            design: From `load_cases`.
-        """
-        leaves, _ = jax.tree_util.tree_flatten_with_path(design)
-        return {dotted_path(leaves[place][0]) for place in self.places}
 
 
 class ShaftDesign(AbstractSystem):
@@ -133,10 +125,8 @@ class ShaftDesign(AbstractSystem):
         return self._in_case(case).solve()
 
     def _in_case(self, case: ShaftCases) -> "ShaftDesign":
-        leaves, tree = jax.tree.flatten(self)
-        for place, value in zip(case.places, case.values, strict=True):
-            leaves[place] = value
-        return jax.tree.unflatten(tree, leaves)
+        own = dict(zip(case.paths, case.values, strict=True))
+        return tree_map_with_path(lambda at, x: own.get(dotted_path(at), x), self)
 
     def is_solved_by_parts(self, cases: ShaftCases) -> bool:
         return cases.count <= FEW and are_known(self, cases)
@@ -145,9 +135,9 @@ class ShaftDesign(AbstractSystem):
         self, cases: ShaftCases, changes: Any
     ) -> tuple[DutyResult, DutyResult | None]:
         if changes is not None:
-            places = range(len(jax.tree.leaves(self)))
-            varies = [place in cases.places for place in places]
-            varies = jax.tree.unflatten(jax.tree.structure(self), varies)
+            varies = tree_map_with_path(
+                lambda at, _: dotted_path(at) in cases.paths, self
+            )
             changes = jax.tree.map(_unless, varies, changes)
         each, moved = [], []
         for k in range(cases.count):
@@ -226,7 +216,7 @@ class ShaftDesign(AbstractSystem):
     def readings(self) -> dict[str, Reading]:
         """Numbers of a case that can be measured: of each bearing, by its name ("A."),
         load, displacement, peak_pressure and with oils friction; of each gear
-        misalignment; the loss in meshes."""
+        misalignment, "misalignment_b" of that with b of several; the loss in meshes."""
         found = {"loss": Reading("loss", 0, "W")}
         for k, seat in enumerate(self.system.seats):
             axes = ("load", LOADS, LOAD_UNITS), ("displacement", FREEDOMS, MOTION_UNITS)
@@ -239,10 +229,13 @@ class ShaftDesign(AbstractSystem):
                 found[f"{seat.name}.peak_pressure"] = pressure
                 if self.oils is not None:
                     found[f"{seat.name}.friction"] = Reading("friction", k, "W")
-        for k, mesh in enumerate(power_flow(self.system).meshes):
+        meshes = power_flow(self.system).meshes
+        wheels = [mesh.wheel for mesh in meshes]
+        for k, mesh in enumerate(meshes):
             if isinstance(self.system.wheel(mesh.wheel), Gear):
+                mate = f"_{mesh.mate}" if wheels.count(mesh.wheel) > 1 else ""
                 own = Reading("misalignment", k, "rad")
-                found.setdefault(f"{mesh.wheel}.misalignment", own)
+                found[f"{mesh.wheel}.misalignment{mate}"] = own
         return found
 
     def warnings(self, cases: Any, solved: Any) -> list[Warning]:
@@ -301,10 +294,11 @@ def load_cases(
     ]
     if any(jax.tree.structure(w) != jax.tree.structure(whole[0]) for w in whole):
         raise ValueError("load_cases: the cases differ in more than numbers.")
+    places = [dotted_path(at) for at, _ in tree_leaves_with_path(whole[0])]
     columns = zip(*map(jax.tree.leaves, whole), strict=True)
     varying = {
-        k: np.stack([np.asarray(x) for x in column])
-        for k, column in enumerate(columns)
+        path: np.stack([np.asarray(x) for x in column])
+        for path, column in zip(places, columns, strict=True)
         if any(not np.array_equal(x, column[0]) for x in column[1:])
     }
     times = np.ones(len(designs)) if hours is None else np.asarray(hours, float)

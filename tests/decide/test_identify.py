@@ -85,9 +85,22 @@ def test_unknown_errors_are_told_by_residuals(exact, noise):
     assert 0.8 < np.sqrt(np.mean(np.square(scales))) < 1.2
     assert np.mean(held) > 0.88
     given = bj.identify(
-        hertz, LOADS, CONTACT, {"approach": exact + one}, 1e-6, known_errors=False
+        hertz,
+        LOADS,
+        CONTACT,
+        {"approach": exact + one},
+        1e-6,
+        wanted=["n"],
+        candidates={"approach": 2e-6},
+        known_errors=False,
     )
     np.testing.assert_allclose(given.standard_error, found.standard_error, rtol=1e-3)
+    # A further reading has twice the error that the residuals tell.
+    best = given.candidates[0]
+    rows = jacobian(given.estimate) / given.error["approach"][0]
+    more = np.concatenate([rows, rows[[best.case]] / 2.0])
+    of = [np.linalg.inv(part.T @ part)[1, 1] for part in (more, rows)]
+    np.testing.assert_allclose(best.drop, 1.0 - of[0] / of[1], rtol=1e-2)
     far = bj.identify(
         hertz, LOADS, CONTACT, {"approach": exact + one}, 1.0, known_errors=False
     )

@@ -1,6 +1,7 @@
 """Numbers of bearings, pairs and rotors from measurements."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax
@@ -11,9 +12,10 @@ from published import inputs, theirs
 from tolerances import DIFFERENCE
 
 import bearingjax as bj
-from bearingjax.decide import CaseModel
+from bearingjax.decide import CaseModel, predict
 from bearingjax.decide.identify import _read_call
 from bearingjax.optimise import Variable
+from bearingjax.rotor import rotor_design
 
 CASE = "nsk_preloaded_pairs"
 PATHS = (
@@ -170,6 +172,28 @@ def test_names_of_numbers():
         CaseModel(bearing)
 
 
+def test_friction_is_that_of_the_oil_of_each_case(monkeypatch):
+    """As the life, which has the viscosity of its case; solves are made up."""
+    bearing = bj.DeepGrooveBallBearing(
+        9, 39e-3, 7.938e-3, outer_osculation=0.525, inner_osculation=0.52
+    )
+    life = bj.LifeConditions(viscosity=2e-5, contamination=0.5)
+    model = CaseModel(bj.BearingElement(bearing), life=life)
+    solved = SimpleNamespace(converged=True, displacement=jnp.zeros(6))
+    task = SimpleNamespace(outputs=lambda *_: {})
+    monkeypatch.setattr(predict, "solved_case", lambda *_: solved)
+    monkeypatch.setattr(predict, "Task", lambda *_: task)
+    monkeypatch.setattr(
+        predict, "friction_torque", lambda _, oil, __: SimpleNamespace(torque=oil)
+    )
+    numbers = model.for_numbers([], ["friction_torque"])
+    load, oil = np.zeros((2, 6)), [1e-5, 3e-5]
+    for given, used in (({"viscosity": oil}, oil), ({}, 2e-5)):
+        cases = bj.Cases(load, inner_speed=100.0, **given)
+        found = numbers(jnp.zeros(0), cases)["friction_torque"]
+        np.testing.assert_allclose(found, used)
+
+
 ANGLE = "bearing.contact_angle"
 REFUSED = {
     "name": (
@@ -207,6 +231,23 @@ def test_identify_rejects_for_a_design(name):
     )
     with pytest.raises((ValueError, TypeError), match=words):
         bj.identify(**{**given, **changes})
+
+
+VARIED = {
+    "unknown": ({ANGLE: [0.2, 0.3]}, f"{ANGLE} differs from case to case"),
+    "count": ({"bearing.inner_osculation": [0.52]}, r"has shape \(1,\)"),
+    "path": ({"bearing.wobble": [1.0, 2.0]}, "has no number"),
+}
+
+
+@pytest.mark.parametrize("name", VARIED)
+def test_numbers_that_may_not_differ_from_case_to_case(name):
+    varied, words = VARIED[name]
+    model = CaseModel(spindle().design.seats[0].installed.drawing, varied=varied)
+    cases = bj.Cases([[0.0, 0.0, 1e3, 0.0, 0.0, 0.0]] * 2)
+    unknowns = [Variable(ANGLE, 0.2, 0.5)]
+    with pytest.raises(ValueError, match=words):
+        bj.identify(model, cases, unknowns, {"displacement_uz": 1e-5}, 1e-7)
 
 
 def spindle():
@@ -286,6 +327,51 @@ def test_preload_housing_and_unbalance_of_a_rotor():
         )
         change = (8.0 * near - far) / (12.0 * float(step[k]))
         np.testing.assert_allclose(slopes[name][:, k], change, rtol=DIFFERENCE)
+
+
+def test_preload_pushes_along_the_shaft_and_fits_turn_with_it(monkeypatch):
+    """Each in the axes of its support; the solve for the preload is made up."""
+    speeds = []
+
+    def element_at(installed, speed, *, throw):
+        speeds.append(float(speed.inner))
+        return installed.drawing
+
+    monkeypatch.setattr(bj.Installed, "element_at", element_at)
+    monkeypatch.setattr(
+        rotor_design, "preload_offset", lambda _, force, *, throw: 1e-8 * force
+    )
+    design = spindle().design
+    seats = [dataclasses.replace(design.seats[0], preload=300.0), design.seats[1]]
+    supports = dataclasses.replace(design, seats=seats).rotor_at(jnp.array(90.0))
+    for k, along in enumerate((3e-6, 5e-6)):
+        own = supports.supports[k].offset
+        np.testing.assert_allclose(own, [0.0, 0.0, along, 0.0, 0.0], rtol=1e-12)
+    assert speeds == [90.0, -90.0]
+
+
+def test_readings_of_a_rotor_are_those_of_its_stations(monkeypatch):
+    """Between which there may be more nodes; the solves are made up."""
+    model = spindle()
+    shaft = bj.rotor.Shaft([0.0, 0.125, 0.5], 0.025, divisions=[2, 3])
+    rotor = dataclasses.replace(model.design.rotor, shaft=shaft)
+    design = dataclasses.replace(model.design, rotor=rotor, seats=(None, None))
+    settled = SimpleNamespace(rotor=rotor, result=0)
+    moved = jnp.asarray(10.0 * np.arange(6.0)[:, None] + np.arange(5.0))
+    parts = {
+        "static_equilibrium": settled,
+        "modes": SimpleNamespace(frequency=jnp.arange(4.0)),
+        "unbalance_response": SimpleNamespace(amplitude=moved[None]),
+    }
+    for name, one in parts.items():
+        monkeypatch.setattr(rotor_design, name, lambda *_, one=one, **__: one)
+    case = SimpleNamespace(speed=jnp.array(1.0))
+    found = design.solve_case(case, None, None)
+    for name, wanted in (("uy_0", 1.0), ("ux_1", 20.0), ("gy_2", 54.0)):
+        place = design.readings()[name]
+        assert float(jnp.ravel(found.amplitude)[place.entry]) == wanted
+    place = design.readings()["frequency_2"]
+    assert float(found.frequency[place.entry]) == 1.0
 
 
 def test_rotor_of_wrong_parts_is_refused():

@@ -14,6 +14,7 @@ from bearingjax.shafts import (
     Drive,
     Gear,
     Pulley,
+    ShaftDesign,
     ShaftLine,
     ShaftLoad,
     ShaftSystem,
@@ -229,6 +230,16 @@ def test_idler_and_belt():
     pulls = {m.wheel: np.asarray(m.force) for m in flow.meshes if m.wheel in "45"}
     np.testing.assert_allclose(pulls["4"], [0.0, 2.0 * 30.0 / 0.05, 0.0], atol=1e-9)
     np.testing.assert_allclose(pulls["5"], -pulls["4"], atol=1e-9)
+    # Each mesh of the idler has a misalignment; belts have none.
+    found = ShaftDesign(system, (None,) * 8).readings()
+    places = {n: one.entry for n, one in found.items() if "misalignment" in n}
+    meshes = [(mesh.wheel, mesh.mate) for mesh in flow.meshes]
+    assert places == {
+        "1.misalignment": meshes.index(("1", "2")),
+        "2.misalignment_1": meshes.index(("2", "1")),
+        "2.misalignment_3": meshes.index(("2", "3")),
+        "3.misalignment": meshes.index(("3", "2")),
+    }
 
 
 def test_free_loads_count_in_the_balance():

@@ -1,5 +1,6 @@
 """[identify] in scenes, its measured table, and what its command makes of it."""
 
+import dataclasses
 import tomllib
 
 import jax
@@ -196,6 +197,10 @@ def test_conditions_of_temperature(tmp_path):
     scene.write_text(WARM.replace("2 K", "2 degC"), "utf-8")
     with pytest.raises(SceneError, match="is a difference; write it in K"):
         read_identification(scene)
+    more = 'candidates = { "temperature.inner_ring" = "2 degC" }\nerrors ='
+    scene.write_text(WARM.replace("errors =", more), "utf-8")
+    with pytest.raises(SceneError, match="candidates.*a difference; write it in K"):
+        read_identification(scene)
     scene.write_text(WARM.replace("errors =", "wanted = []\n#"), "utf-8")
     with pytest.raises(SceneError, match="beside a prior they must be known"):
         read_identification(scene)
@@ -288,11 +293,14 @@ def test_readings_and_conditions_of_shafts(tmp_path):
     task = machine(tmp_path, SHAFTS, text)
     model, cases = task.subject.model, task.subject.cases
     assert task.unknowns[0].path == ("system.shafts.0.outer_diameter.0",)
-    assert cases.paths(model.design) == {"system.loads.0.force"}
+    assert cases.paths == ("system.loads.0.force",)
     np.testing.assert_allclose(cases.values[0][:, 1], [-1e3, -6e3])
     place = model.place("A.displacement_gx")
     assert place == ("displacement", 3, "rad")
     assert model.place("B.load_Fy") == ("load", 7, "N")
+    assert model.place("B.peak_pressure") == ("peak_pressure", 1, "Pa")
+    oiled = dataclasses.replace(model.design, oils=(None, None)).readings()
+    assert oiled["B.friction"] == ("friction", 1, "W")
     for wrong, words in {
         "A.displacement_wx [mrad]": "A.displacement_wx",
         "speed [rpm]": "'speed' is not known",
@@ -319,6 +327,52 @@ def test_readings_and_numbers_of_a_rotor(tmp_path):
         machine(tmp_path, ROTOR, "rotor.speed [rpm],frequency_5 [Hz]\n0,120\n")
     with pytest.raises(SceneError, match="'rotor.sped' is not known"):
         machine(tmp_path, ROTOR, "rotor.sped [rpm],frequency_1 [Hz]\n0,120\n")
+
+
+LAW_OF_FRONT = """
+[[rotor.bearings]]
+station = 2
+bearing = "front"
+offset = "5 um"
+law = "moving_angle"
+"""
+
+
+def test_what_a_law_of_a_rotor_would_not_follow(tmp_path):
+    """Numbers of its bearing, and fits at other speeds."""
+    first, *_, last = ROTOR.partition("\n[rotor.excitation]")
+    scene = first + LAW_OF_FRONT + "\n[rotor.excitation]" + last
+    scene = scene.replace('preload = "300 N"', 'offset = "5 um"')  # solves nothing
+    known = '"rotor.discs.0.mass" = { from = "9 kg", to = "11 kg" }'
+    scene = scene.partition('"rotor.bearings.0.preload"')[0] + known + "\n"
+    readings = "rotor.speed [rpm],frequency_1 [Hz]\n0,120\n{},119\n".format
+    angle = '"bearings.front.contact_angle" = { from = "10 deg", to = "20 deg" }\n'
+    with pytest.raises(SceneError, match="'bearings.front.contact_angle' is not known"):
+        machine(tmp_path, scene + angle, readings(100))
+    fits = """contact_angle = "15 deg"
+[bearings.front.fit]
+shaft = "k5"
+housing = "H6"
+bore = "35 mm"
+outside_diameter = "72 mm"
+ring_width = "17 mm"
+housing_diameter = "110 mm"
+"""
+    scene = scene.replace('contact_angle = "15 deg"', fits)
+    with pytest.raises(SceneError, match="the `law` of front stays that of its fits"):
+        machine(tmp_path, scene, readings(100))
+
+
+def test_unknown_of_an_array_that_differs_in_the_cases(tmp_path):
+    """A condition in another entry of it would hold them all."""
+    two = '{ length = "100 mm", outer_diameter = "40 mm" }'
+    scene = SHAFTS.replace(
+        '{ length = "200 mm", outer_diameter = "40 mm" }', f"{two},{two}"
+    )
+    head = "shaft.s.segments.1.outer_diameter [mm],A.displacement_gx [mrad]"
+    task = machine(tmp_path, scene, f"{head}\n40,0.15\n50,0.1\n")
+    with pytest.raises(SceneError, match="segments.0.outer_diameter differs from case"):
+        run_identification(task)
 
 
 @pytest.mark.slow

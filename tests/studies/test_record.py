@@ -141,6 +141,7 @@ def test_oscillations_turn_with_their_mean_speed(read):
 WRONG = {
     "is 600 s in line 3 and 500 s in line 4; it must ascend": HEAD
     + "0,1,9\n600,2,9\n500,1,9",
+    "is 600 s in line 4 and 500 s in line 5": HEAD + "\n0,1,9\n600,2,9\n500,1,9",
     "is 600 s in line 3 and 600 s in line 4": HEAD + "0,1,9\n600,2,9\n600,1,9",
     "has gaps: line 3: Fx is no finite number. Leave": HEAD
     + "0,1,9\n600,nan,9\n700,1,9",

@@ -16,14 +16,16 @@ from ...files.text_file import read_columns
 from ...numerics.units import unit_of
 from ...optimise import Variable
 from ..cases.case_keys import VariedKey
-from ..optimise.read_optimise import check_numbers, read_number, read_variables
+from ..optimise.read_optimise import (
+    check_numbers,
+    read_number,
+    read_spread,
+    read_variables,
+)
 from .subjects import Setup, Subject, read_setup
 
 ERROR = ".error"
 """Ends the header of a column of standard deviations."""
-
-_WARMER = 100.0
-"""A larger error of a temperature was written as one, in °C [K]."""
 
 
 def _tables(about: str, **rest: Any) -> Any:
@@ -188,15 +190,13 @@ def _unknowns(table: Table, design: Any, numbers) -> Any:
     unknowns, priors = read_variables(table, design, numbers), {}
     for one in unknowns:
         part, unit = table.table(one.name), unit_of(design, one.path[0])
-        error = part.real("prior_error", unit, None)
+        error = read_spread(part, "prior_error", unit, None)
         prior = read_number(part, "prior", unit, None)
         if (prior is None) != (error is None):
             given, other = ("prior", "prior_error")[:: 1 if error is None else -1]
             raise part.error(given, f"is given without `{other}`")
-        if unit == "K" and error is not None and error > _WARMER:
-            raise part.error("prior_error", "is a difference; write it in K")
         if prior is not None:
-            priors[one.name] = prior, _positive(part, "prior_error", unit)
+            priors[one.name] = prior, error
     return unknowns, priors
 
 
@@ -214,12 +214,6 @@ def _errors(table: Table, given: Table | None, read: dict, units: dict) -> Any:
 
 
 def _positive_numbers(table: Table | None, units: dict[str, str]) -> dict[str, float]:
-    names = () if table is None else table.keys()
-    return {name: _positive(table, name, units[name]) for name in names}
-
-
-def _positive(table: Any, name: str, unit: str) -> float:
-    value = table.real(name, unit)
-    if not value > 0:
-        raise table.error(name, f"{table.raw(name)} is not above 0")
-    return value
+    if table is None:
+        return {}
+    return {name: read_spread(table, name, units[name]) for name in table.keys()}

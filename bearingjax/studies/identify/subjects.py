@@ -145,6 +145,10 @@ class Setup(NamedTuple):
             if column.key != "rotor.speed":
                 raise table.error("file", not_among(column.key, ["rotor.speed"]))
             speed = np.asarray(column.values, float)
+        for mount in self.scene.mounts if np.any(speed != self.scene.speed) else ():
+            if mount.keys.law is not None and mount.scene.fits is not None:
+                problem = f"varies `rotor.speed`; the `law` of {mount.name} stays that"
+                raise table.error("file", f"{problem} of its fits at one speed")
         kept = {"rotor.speed [rad/s]": speed}
         return Subject(self.scene, self.model, RotorCases(speed), kept)
 
@@ -197,12 +201,14 @@ def _rotor_design(scene: RotorScene) -> RotorDesign:
 def _numbers(scene: RotorScene) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield the numbers of a rotor by scene key, with their paths in `RotorDesign`."""
     found: dict[str, tuple[str, ...]] = {}
+    held = {mount.name for mount in scene.mounts if mount.keys.law is not None}
     for k, mount in enumerate(scene.mounts):
         head, own = f"rotor.bearings.{k}", f"rotor.supports.{k}"
         keys = mount.keys
         springs = {"damping": keys.damping.diagonal}
         if mount.scene is not None and keys.law is None:
-            for key, paths in installed_numbers(mount.scene).items():
+            own_numbers = installed_numbers(mount.scene).items()
+            for key, paths in () if mount.name in held else own_numbers:
                 name = f"bearings.{mount.name}.{key.removeprefix('bearing.')}"
                 within = tuple(f"seats.{k}.installed.{path}" for path in paths)
                 found[name] = (*found.get(name, ()), *within)

@@ -102,6 +102,8 @@ class Optimisation(SearchTask):
     cases: Cases
 
 
+_WARMER = 100.0
+"""A larger difference of temperatures was written as one, in °C [K]."""
 OF_FREEDOM = ("displacement", "stiffness")
 """Objectives that refer to one freedom."""
 _QUANTITY: dict[str, Any] = {"type": "string"}
@@ -416,6 +418,19 @@ def read_number(table: Table, key: str, unit: str, *default: float | None) -> An
     if unit == "K":
         return read_temperature(table, key, *default)
     return table.real(key, unit, *default)
+
+
+def read_spread(table: Table, key: str, unit: str, *default: float | None) -> Any:
+    """Read a deviation or width of a number, above 0; of a temperature a difference.
+
+    Args: as `read_number`.
+    """
+    value = table.real(key, unit, *default)
+    if value is not None and not value > 0.0:
+        raise table.error(key, f"{table.raw(key)} is not above 0")
+    if unit == "K" and value is not None and value > _WARMER:
+        raise table.error(key, "is a difference; write it in K")
+    return value
 
 
 def read_variables(

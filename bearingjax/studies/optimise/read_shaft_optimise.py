@@ -121,7 +121,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     measures += [shaft_measure(one, "measure", *known) for one in keys.constraints]
     design, cases = design_in_cases(scene, has_power(measures), table)
     numbers = shaft_numbers(scene)
-    varying = cases.paths(design)
+    varying = set(cases.paths)
     heads = tuple(dict.fromkeys(".".join(key.split(".")[:2]) for key in numbers))
     check_numbers(free, Table(data, path), scene)
     for key in free.keys():

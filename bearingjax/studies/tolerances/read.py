@@ -29,6 +29,7 @@ from ..optimise.read_optimise import (
     measured_in,
     read_number,
     read_operated,
+    read_spread,
 )
 from ..optimise.read_shaft_optimise import (
     ShaftConstraintKeys,
@@ -50,8 +51,6 @@ _SIZES = {
 which they add."""
 SHAPES = ("normal", "uniform")
 """Shapes of a distribution."""
-_MOST_KELVIN = 100.0
-"""Standard deviation of a temperature above which degrees of a scale were meant [K]."""
 
 
 class MeasureKeys(ConstraintKeys):
@@ -289,8 +288,13 @@ def _scatters(
             paths, limits = sizes[key]
         elif key in numbers:
             paths, limits = dict.fromkeys(numbers[key], 1.0), None
+            for one in found:
+                if one.name in numbers and set(one.path) & set(paths):
+                    raise table.error(key, f"is the same number as {one.name}")
             for size, (others, _) in sizes.items():
-                same = key.endswith("internal_clearance") and size.endswith("clearance")
+                own = size.removesuffix("fit.clearance")
+                same = own != size and key.startswith(own)
+                same &= key.endswith("internal_clearance")
                 if set(others) & set(paths) or same:
                     problem = f"stands beside the class of {size}, which scatters; name"
                     raise table.error(key, f"{problem} that, or give no class")
@@ -305,15 +309,11 @@ def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
     low, high, mean = (
         read_number(part, word, unit, None) for word in ("from", "to", "mean")
     )
-    deviation = part.real("deviation", unit, None)
+    deviation = read_spread(part, "deviation", unit, None)
     if limits is not None:
         low, high = (
             own if x is None else x for x, own in zip((low, high), limits, strict=True)
         )
-    if unit == "K" and (deviation or 0.0) > _MOST_KELVIN:
-        raise part.error("deviation", f"is above {_MOST_KELVIN:g} K; give it in K")
-    if deviation is not None and not deviation > 0.0:
-        raise part.error("deviation", "must be above 0")
     if (low is None) != (high is None):
         raise part.error("from" if low is None else "to", "is missing beside the other")
     if low is None and None in (mean, deviation):
@@ -325,10 +325,9 @@ def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
         raise part.error("mean", "must lie between `from` and `to`")
     cost, narrowing = None, part.table("narrowing")
     if narrowing.keys():
-        by, costs = narrowing.real("by", unit), narrowing.number("costs")
-        for name, value in (("by", by), ("costs", costs)):
-            if not value > 0.0:
-                raise narrowing.error(name, "must be above 0")
+        by, costs = read_spread(narrowing, "by", unit), narrowing.number("costs")
+        if not costs > 0.0:
+            raise narrowing.error("costs", "must be above 0")
         cost = costs / by
     if part.choice("shape", SHAPES, "normal") == "uniform":
         if low is None or (mean, deviation) != (None, None):
