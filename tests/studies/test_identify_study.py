@@ -305,6 +305,7 @@ def test_readings_and_conditions_of_shafts(tmp_path):
         "A.displacement_wx [mrad]": "A.displacement_wx",
         "speed [rpm]": "'speed' is not known",
         "bearings.A.wobble [mm]": "wobble",
+        "hours [h]": "hours of a case change no reading",
     }.items():
         with pytest.raises(SceneError, match=words):
             machine(tmp_path, SHAFTS, f"{wrong},A.displacement_gx [mrad]\n1,1\n")

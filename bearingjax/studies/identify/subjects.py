@@ -130,6 +130,8 @@ class Setup(NamedTuple):
         return Subject(self.scene, model, cases, dict(case_columns(cases)) | kept)
 
     def _shafts(self, table, columns, count) -> Subject:
+        if any(column.key == "hours" for column in columns):
+            raise table.error("file", "hours of a case change no reading of shafts")
         rows = [{c.key: c.values[k] for c in columns} for k in range(count)]
         listed = {"spectrum": [row | {"hours": "1 h"} for row in rows]}
         scene = shafts_of(self.data | {"cases": listed}, self.path)
