@@ -143,7 +143,7 @@ def test_excerpt_agrees_within_one_per_cent(shown, printed, agree):
 
 
 def test_pages_hold_blocks_that_run_and_links_that_lead_somewhere():
-    assert len(PAGES) == 6
+    assert len(PAGES) == 9
     for page in PAGES:
         before = ""
         for block in blocks(page):

@@ -39,7 +39,7 @@ def test_code_runs(path):
 
 def test_notebooks_are_executed_without_local_paths():
     paths = sorted(FOLDER.glob("*.ipynb"))
-    assert len(paths) == 9
+    assert len(paths) == 12
     for path in paths:
         for cell in cells(path):
             if cell["cell_type"] == "code":

@@ -58,4 +58,5 @@ def _histogram(spread, values, ax):
         ax.plot(x, normal, color="0.1", linestyle="--", label="by the gradient")
         ax.legend(fontsize="small")
     ax.set_yticks([])
+    ax.locator_params("x", nbins=5)  # lives of five digits
     Panel("", axis, Axis("density"), []).draw(ax)
