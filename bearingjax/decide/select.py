@@ -66,8 +66,8 @@ _STEEL = 7850.0
 SIZES = ("bore", "outside_diameter", "width")
 NUMBERS = {
     "bore": ("m", "exact", "d"),
-    "outside_diameter": ("m", "exact", "D"),
-    "width": ("m", "exact", "B, T of tapers, H of thrust bearings"),
+    "outside_diameter": ("m", "most", "D"),
+    "width": ("m", "most", "B, T of tapers, H of thrust bearings"),
     "mass": ("kg", "most", "as printed, else estimated from the envelope"),
     "limiting_speed": ("1", "most", "greatest speed over that of the catalogue"),
     "reference_speed": ("1", "most", "greatest speed over that of the catalogue"),
@@ -115,8 +115,9 @@ class Requirements(Printable):
             moving ring, at rest (6,) [N, N m].
         life: Conditions of the life, with that which is required; without ratings.
         bounds: Bounds of `NUMBERS` by name [SI]: a pair (least, greatest), either of
-            which may be `None`; or one number, which is the greatest mass, share of a
-            speed, pressure or friction, the exact size, and the least of all others.
+            which may be `None`; or one number, which is the exact bore, the greatest
+            outside diameter, width, mass, share of a speed, pressure or friction, and
+            the least of all others.
         types: Types that may be chosen; none named: all.
         clearance_class: Class of radial clearance, "C3", of types that have classes;
             `None`: CN, and other types too.

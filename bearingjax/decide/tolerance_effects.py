@@ -233,9 +233,13 @@ def tighten(
     ending = search_least("slsqp", trials, 1, max_steps, 1e-3)
     widths = widths_at(ending.unit)
     first, last = (sampled.misses(*sampled.run(w, 1)) for w in (1.0, widths))
-    paid = float(price @ (1.0 - widths[free]))
+    paid, text = float(price @ (1.0 - widths[free])), ending.text
+    if not ending.converged:
+        least = sampled.misses(*sampled.run(widths_at(np.zeros(price.size)))).smoothed
+        if least > most_misses:
+            text = f"no widths reach it: of the narrowest {100.0 * least:.3g} % miss"
     return Tightening(
-        widths, paid, first.share, last.share, last.error, ending.converged, ending.text
+        widths, paid, first.share, last.share, last.error, ending.converged, text
     )
 
 

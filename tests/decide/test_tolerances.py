@@ -174,6 +174,7 @@ def test_tighten_takes_the_one_that_pays(element, closed_form):
     assert dear.widths == pytest.approx(found.widths, abs=0.02)
     out = tighten(*given, numbers(cost=2.0), asked, 1e-4, samples=8000)
     assert not out.converged and out.widths[0] == pytest.approx(0.2)
+    assert out.message.startswith("no widths reach it: of the narrowest")
 
 
 def test_tighten_refuses_what_is_none(element, closed_form):
