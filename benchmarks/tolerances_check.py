@@ -1,5 +1,4 @@
-"""Are the shares, quantiles and derivatives of `tolerances` right, and do they tighten
-the right tolerance?
+"""Are quantiles, misses and derivatives of `tolerances` those of brute force?
 
 Brute force: five bearings on the seats of the scene tolerances_seats, their sizes drawn
 by NumPy as plain random numbers, each bearing solved by itself with `solve_load` and

@@ -56,6 +56,7 @@ TABLE = {
     "unbalance": {"gmm": 1e-6, "kgmm": 1e-3},
     "frequency": {"Hz": TURN, "kHz": 1e3 * TURN, "rpm": TURN / 60},
     "rate": {"Hz": 1.0, "kHz": 1e3},
+    "natural frequency": {"Hz": 1.0, "kHz": 1e3},
     "power": {
         **{"µW": 1e-6, "mW": 1e-3, "W": 1.0, "kW": 1e3, "MW": 1e6},
         **{"PS": 75 * G, "hp": 550 * LB * G * 12 * IN},
