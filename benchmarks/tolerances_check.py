@@ -8,9 +8,12 @@ width of each tolerance, beside differences of whole runs of the same samples wi
 widths a fifth larger and smaller. Shafts: a shaft whose near bearing bears most; its
 life is required, narrowing costs the same at both, and `tighten` chooses.
 
-README: brute force within 3.4 standard errors (five bearings, seven statistics of life
+README: brute force within 3.3 standard errors (five bearings, seven statistics of life
     and clearance); derivatives of the share within 1.6; on a shaft the tolerance of the
-    bearing that bears most is narrowed | 4; 3 | yes
+    bearing that bears most is narrowed (to 46 %, 22 % misses become 14 %) | 4; 3 | yes
+
+jax 0.10.1, float64, two cores shared with others: 50 to 97 CPU s for each bearing, 140
+for the derivatives, 190 for the shaft.
 """
 
 import tempfile
@@ -154,7 +157,7 @@ def on_a_shaft():
     found = bj.tolerances(design, cases, scatters, [life], **task.options)
     limit = float(np.quantile(found.values[:, 0], 0.2))
     asked = [Constraint(life, lower=limit)]
-    done = tighten(design, cases, scatters, asked, 0.12, **task.options)
+    done = tighten(design, cases, scatters, asked, 0.16, **task.options)
     return {
         "widths": dict(zip([s.name for s in scatters], done.widths, strict=True)),
         "before": done.before,
