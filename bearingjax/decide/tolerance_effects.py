@@ -193,8 +193,10 @@ def tighten(
     smooth requirements; `before` and `after` are counted in samples of another seed.
 
     Args:
-        element, cases, measures, options: As in `tolerances`; a `Constraint` at least
-            is among `measures`.
+        element: The design.
+        cases: Its operating cases.
+        measures: What is asked; a `Constraint` at least is among it.
+        options: Of `Sampled`, as in `tolerances`.
         scatters: The numbers that scatter; those with a `cost` may be narrowed.
         most_misses: Largest share that may miss a requirement [1].
         narrowest: Least width over that given [1].
@@ -276,14 +278,18 @@ class Sampled:
     """Samples of a design whose numbers scatter.
 
     Args:
-        element, cases, scatters, measures: As in `tolerances`.
+        element: The design.
+        cases: Its operating cases.
+        scatters: The numbers that scatter.
+        measures: What is asked; requirements are in a `Constraint`.
         samples: Least number of samples; taken are 8 times a power of 2.
         seed: Seed of the samples.
         correlation: Correlations of all numbers (number, number); of those that are not
             normal, of the normal scores behind them. `None`: there are none.
         support: What holds the rings; displacements are those of the cases.
         solve: Numerics of the load solves; `None`: `SolveOptions()`.
-        build: As in `optimise`.
+        build: Returns the design to be solved from that with other numbers; `None`: it
+            is that one.
         told: Called between batches with the share that is done; `None`: nothing.
 
     Raises:

@@ -117,10 +117,11 @@ def outcome_of(
     """Return the outcome of a run whose outputs are made of the same results.
 
     Args:
-        name, inputs: As in `Outcome`.
+        name: Name of the scene, the title of the page.
+        inputs: All inputs, as written in a scene.
         found: Arguments of the functions that follow.
         numbers, report, columns: Return JSON, report and table; `None`: no table.
-        pictures: As in `Outcome`.
+        pictures: Plots by title.
         solved: Whether there is anything to report and to draw.
         more: The other fields of `Outcome`.
     """
@@ -142,7 +143,7 @@ def unsolved_start(
 
     Args:
         scene: Its scene, with a `name` and `warnings`.
-        inputs: As in `Outcome`.
+        inputs: All inputs, as written in a scene.
         error: Why it does not solve.
         result: Its result in the JSON.
     """

@@ -138,6 +138,7 @@ def test_misses_of_two_requirements(element, closed_form):
     given = element, bj.Cases([np.zeros(6)]), numbers()
     found = tolerances(*given, asked).misses
     exact = 2.0 * stats.norm.sf(2.0, 0.0, SPREAD)
+    # Five of its standard errors, and a sample of the ten thousand.
     assert found.share == pytest.approx(exact, abs=5.0 * found.error + 1e-4)
     assert found.by_middle == pytest.approx([0.0, 0.0], abs=0.2)
     assert tolerances(*given, [linear]).misses is None

@@ -376,6 +376,26 @@ def test_unknown_of_an_array_that_differs_in_the_cases(tmp_path):
         run_identification(task)
 
 
+def test_springs_that_differ_by_direction_are_numbers_of_their_own(tmp_path):
+    """One number for all directions would make them alike without a word."""
+    text = ROTOR.partition("[identify]")[0]
+    text = text.replace('radial = "100 N/um"', 'x = "100 N/um", y = "50 N/um"')
+    axes = '{ x = "300 N/um", y = "200 N/um", z = "300 N/um" }'
+    text = text.replace('stiffness = "300 N/um"', f"stiffness = {axes}")
+    setup = read_setup(tomllib.loads(text), tmp_path)
+    there = design_numbers(setup.model.design, entries=True)
+    for key, value in {
+        "rotor.bearings.1.stiffness.x": 1e8,
+        "rotor.bearings.1.stiffness.y": 5e7,
+        "rotor.bearings.0.housing.stiffness.y": 2e8,
+        "rotor.bearings.0.housing.stiffness.z": 3e8,
+    }.items():
+        (path,) = setup.numbers[key]
+        assert float(there[path]) == value
+    whole = "rotor.bearings.1.stiffness.radial", "rotor.bearings.0.housing.stiffness"
+    assert not set(whole) & set(setup.numbers)
+
+
 @pytest.mark.slow
 def test_diameter_of_a_shaft_from_its_slope(tmp_path):
     """Readings of the system itself, at another diameter."""

@@ -70,7 +70,11 @@ class Identification(NamedTuple):
     Attributes:
         subject: The scene, its model and the cases of the measured table.
         unknowns: Numbers of the design, named as in the scene.
-        readings, errors, wanted, candidates, errors_known: As in `decide.identify`.
+        readings: Measured numbers by name (case,) [SI].
+        errors: Their standard deviations by name [SI]; `None`: not known.
+        wanted: Names of what is to be known better.
+        candidates: Standard deviations of further readings by name [SI].
+        errors_known: Whether the errors hold, or up to a factor.
         units: SI units of all numbers, by name.
         inputs: The scene as it was read, in SI, with [identify].
     """

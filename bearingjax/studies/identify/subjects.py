@@ -218,15 +218,21 @@ def _numbers(scene: RotorScene) -> Iterator[tuple[str, tuple[str, ...]]]:
                 yield f"{head}.preload", (f"seats.{k}.preload",)
         elif keys.stiffness is not None:
             springs["stiffness"] = keys.stiffness.diagonal
-        for name in springs:
-            for side, axes in {"radial": "01", "axial": "2", "tilt": "34"}.items():
+        for name, (x, y, *_) in springs.items():
+            across = {"radial": "01"} if x == y else {"x": "0", "y": "1"}
+            for side, axes in (across | {"axial": "2", "tilt": "34"}).items():
                 paths = tuple(f"{own}.{name}.{axis}.{axis}" for axis in axes)
                 yield f"{head}.{name}.{side}", paths
         if keys.housing is not None:
             yield f"{head}.housing.mass", (f"{own}.housing.mass",)
             for name in ("stiffness", "damping"):
-                paths = tuple(f"{own}.housing.{name}.{axis}.{axis}" for axis in "012")
-                yield f"{head}.housing.{name}", paths
+                place = f"{own}.housing.{name}"
+                each = [f"{place}.{axis}.{axis}" for axis in range(3)]
+                if len(set(getattr(keys.housing, name))) == 1:
+                    yield f"{head}.housing.{name}", tuple(each)
+                    continue
+                for axis, path in zip("xyz", each, strict=True):
+                    yield f"{head}.housing.{name}.{axis}", (path,)
     yield from found.items()
     for k in range(len(scene.keys.shaft)):
         for name in ("outer_diameter", "bore"):
