@@ -139,3 +139,20 @@ def test_a_search_of_shafts_refuses_it_too():
         SceneError, match=r"give \[bearings.floating\] `pitch_diameter`"
     ):
         read_optimisation("shaft_fan", settings)
+
+
+def test_one_number_does_not_make_unlike_rows_alike(tmp_path):
+    other = '{ type = "angular_contact_ball", n_balls = 15, pitch_diameter = "70 mm",'
+    other += ' ball_diameter = "11 mm", outer_osculation = 0.53,'
+    other += ' inner_osculation = 0.53, contact_angle = "25 deg" }'
+    rows = '[[set.rows]]\nposition = "-9 mm"\n[[set.rows]]\nposition = "9 mm"\n'
+    rows += f"mirrored = true\nbearing = {other}\n"
+    text = other.strip("{ }").replace(", ", "\n").replace("25 deg", "15 deg")
+    ends = '{ from = "10 deg", to = "30 deg" }'
+    search = f'objective = "peak_pressure"\nvariables = {{ "bearing.NAME" = {ends} }}'
+    text = f'[bearing]\n{text}\n[set]\narrangement = "rows"\n{rows}'
+    text += f'[operating]\nload = {{ Fz = "1 kN" }}\n[optimise]\n{search}\n'
+    path = tmp_path / "unlike.toml"
+    path.write_text(text.replace("NAME", "contact_angle"))
+    with pytest.raises(SceneError, match="several values in this scene, 15 deg, 25"):
+        read_bearing_optimisation(path)

@@ -433,6 +433,24 @@ def read_spread(table: Table, key: str, unit: str, *default: float | None) -> An
     return value
 
 
+def check_shared(table: Table, key: str, design: Any, paths: Iterable[str]) -> None:
+    """Raise SceneError if a number has several values, which one would make alike.
+
+    Args:
+        table: Table that names it.
+        key: Its key.
+        design: The design.
+        paths: Its paths in the design.
+    """
+    there = design_numbers(design, entries=True)
+    values = sorted({float(there[path]) for path in paths})
+    if len(values) > 1:
+        unit = unit_of(design, next(iter(paths)))
+        words = [scene_number(x, kind_of(unit)) if unit else f"{x:g}" for x in values]
+        problem = f"has several values in this scene, {', '.join(words)}; one number"
+        raise table.error(key, f"{problem} would make them alike")
+
+
 def read_variables(
     table: Table,
     design: Any,
@@ -454,6 +472,7 @@ def read_variables(
     for key in table.keys():
         if key not in numbers:
             raise table.error(key, _no_number(key, table, numbers))
+        check_shared(table, key, design, numbers[key])
         part = table.table(key)
         unit = unit_of(design, numbers[key][0])
         low, high = (read_number(part, word, unit) for word in ("from", "to"))

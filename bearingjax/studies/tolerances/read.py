@@ -24,6 +24,7 @@ from ..bearing.read_scene import Scene
 from ..optimise.read_optimise import (
     ConstraintKeys,
     check_numbers,
+    check_shared,
     installed_numbers,
     kind_of_measure,
     measured_in,
@@ -287,6 +288,7 @@ def _scatters(
         if key in sizes:
             paths, limits = sizes[key]
         elif key in numbers:
+            check_shared(table, key, design, numbers[key])
             paths, limits = dict.fromkeys(numbers[key], 1.0), None
             for one in found:
                 if one.name in numbers and set(one.path) & set(paths):
