@@ -850,6 +850,7 @@ DOUBTED = (
         },
     ),
     (lambda: ball_element([0.0]), {"no_hours": ([2e3, 0, 0, 0, 0], 0.0)}),
+    (lambda: ball_element([0.0]), {"short_swing": ([2e3, 0, 0, 0, 0], 150.0, 0.1)}),
     (
         nj_element,
         {
@@ -871,8 +872,9 @@ def doubted():
         found = bj.sweep(
             make(),
             bj.Cases(
-                np.array([[*load, 0.0] for load, _ in cases]),
-                inner_speed=np.array([speed for _, speed in cases]),
+                np.array([[*case[0], 0.0] for case in cases]),
+                inner_speed=np.array([case[1] for case in cases]),
+                oscillation=np.array([sum(case[2:]) for case in cases]),
             ),
             outputs=["n_loaded"],
             options=bj.statics.SolveOptions(points=2 * LAMINAE + 1),
