@@ -222,7 +222,8 @@ def test_clearances_of_every_listed_bore_are_those_of_its_range(kind, taper):
         assert kind in ("deep_groove_ball", "cylindrical_roller", "needle_roller")
         return
     name, low, high = TABLES[kind]
-    rows = getattr(fit_limits, f"{name}_TAPERED" if taper else name)
+    table = fit_limits.CLEARANCES[f"{name}_tapered" if taper else name]["up_to"]
+    rows = {int(end): row for end, row in table.items()}
     reached = {next(end for end in rows if 1e3 * b <= end + 1e-9) for b in bores}
     assert set(rows) - reached == {e for e in rows if not low <= e <= high}
     for bore in (b for b in bores if not taper or b > 0.03):
@@ -232,11 +233,11 @@ def test_clearances_of_every_listed_bore_are_those_of_its_range(kind, taper):
 
 
 TABLES = {
-    "deep_groove_ball": ("_BALLS", 6, 315),
-    "cylindrical_roller": ("_CYLINDERS", 24, 180),
-    "needle_roller": ("_CYLINDERS", 24, 400),
-    "self_aligning_ball": ("_SELF_ALIGNING", 10, 140),
-    "spherical_roller": ("_SPHERICAL", 24, 280),
-    "toroidal_roller": ("_TOROIDAL", 30, 280),
+    "deep_groove_ball": ("ball", 6, 315),
+    "cylindrical_roller": ("cylindrical_roller", 24, 180),
+    "needle_roller": ("cylindrical_roller", 24, 400),
+    "self_aligning_ball": ("self_aligning_ball", 10, 140),
+    "spherical_roller": ("spherical_roller", 24, 280),
+    "toroidal_roller": ("toroidal_roller", 30, 280),
 }
 """Clearances by type, and the ends of the ranges of the least and largest bore [mm]."""
