@@ -5,12 +5,11 @@ The letters that makers add are data, in `suffixes.toml`.
 
 import functools
 import re
-import tomllib
 from collections.abc import Mapping
-from importlib.resources import files
 from typing import Any, NamedTuple
 
 from ..fits.fit_limits import CLEARANCE_CLASSES, MOTOR_CLASS
+from ..numerics.constants import read_package_table
 
 MAKERS = (
     *("SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "JTEKT", "TIMKEN", "NACHI"),
@@ -62,7 +61,6 @@ class _Letters(NamedTuple):
 @functools.cache
 def _table(name: str) -> tuple[_Letters, ...]:
     """Read the `suffixes` or the `prefixes`."""
-    text = (files("bearingjax.catalogue") / "suffixes.toml").read_text(encoding="utf-8")
     return tuple(
         _Letters(
             re.compile("|".join(one["forms"])),
@@ -70,7 +68,7 @@ def _table(name: str) -> tuple[_Letters, ...]:
             one.get("role", ""),
             tuple(one.get("types", ())),
         )
-        for one in tomllib.loads(text)[name]
+        for one in read_package_table("bearingjax.catalogue", "suffixes.toml")[name]
     )
 
 

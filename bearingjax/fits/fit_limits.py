@@ -1,9 +1,8 @@
 """Limits of the bore, outside diameter and internal clearance of bearings."""
 
-import tomllib
-from importlib.resources import files
 from typing import Any
 
+from ..numerics.constants import read_package_table
 from .iso286 import Limits, size_range
 
 _MICRON = 1e-6
@@ -69,8 +68,8 @@ half with the lower half of the next class.
 Source: designations of SKF.
 """
 
-CLEARANCES: dict[str, Any] = tomllib.loads(
-    files(__package__).joinpath("clearance_classes.toml").read_text(encoding="utf-8")
+CLEARANCES: dict[str, Any] = read_package_table(
+    "bearingjax.fits", "clearance_classes.toml"
 )
 """Of each kind of bearing the printed clearances, and the bores that they are of."""
 

@@ -15,26 +15,14 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from .. import design
 from ..catalogue.entry import CatalogueEntry
-from ..design import (
-    AbstractBearing,
-    AngularContactBallBearing,
-    CylindricalRollerBearing,
-    CylindricalThrustRollerBearing,
-    DeepGrooveBallBearing,
-    FourPointBallBearing,
-    SelfAligningBallRow,
-    SphericalRollerRow,
-    SphericalThrustRollerBearing,
-    TaperedRollerBearing,
-    ThrustBallBearing,
-    ToroidalRollerBearing,
-    rows_of,
-)
+from ..design import AbstractBearing, ThrustBallBearing, rows_of
 from ..design.abstract import nearest_entry
 from ..design.checks import check, one_of
 from ..design.keywords import BALLS, ROLLERS
 from ..life.rating import static_capacity as rated
+from ..numerics.constants import read_package_table, rows_by_name
 from ..numerics.labels import to_xarray
 from ..numerics.shown import Printable
 from ..numerics.types import Number, Scalar, as_real
@@ -67,127 +55,20 @@ class _Type(NamedTuple):
 
     series: dict[str, tuple[float, ...]]
     kz: float
-    span: float | None
+    span: float | None = None
     film: float | None = None
     others: str | None = None
 
 
-def _by_name(**rows):
-    """Rows by each of the names in a key, such as s62_622."""
-    return {name: row for key, row in rows.items() for name in key[1:].split("_")}
-
-
-# R1, R2, S1, S2.
-_DEEP_GROOVE = _by_name(
-    s62_622=(3.9e-7, 1.7, 3.23e-3, 36.5),
-    s2_3=(4.4e-7, 1.7, 2.00e-3, 100.0),
-    s42_43=(5.4e-7, 0.96, 3.00e-3, 40.0),
-    s60_630=(4.1e-7, 1.7, 3.73e-3, 14.6),
-    s63_623=(3.7e-7, 1.7, 2.84e-3, 92.8),
-    s64=(3.6e-7, 1.7, 2.43e-3, 198.0),
-    s160_161=(4.3e-7, 1.7, 4.63e-3, 4.25),
-    s617_618_628_637_638=(4.7e-7, 1.7, 6.50e-3, 0.78),
-    s619_639=(4.3e-7, 1.7, 4.75e-3, 3.6),
-)
-# R1, R2, R3, S1, S2, S3.
-_ANGULAR = {
-    "other": (5.03e-7, 1.97, 1.90e-12, 1.30e-2, 0.68, 1.91e-12),
-    "72B": (4.33e-7, 2.02, 2.44e-12, 1.82e-2, 0.71, 2.44e-12),
-    "73B": (4.54e-7, 2.02, 1.84e-12, 1.64e-2, 0.71, 1.84e-12),
-    "72AC": (3.58e-7, 3.64, 3.55e-12, 1.14e-2, 1.55, 3.55e-12),
-    "73AC": (3.48e-7, 3.64, 1.66e-12, 9.85e-3, 1.55, 1.66e-12),
-}
-_FOUR_POINT = {"QJ": (4.78e-7, 2.42, 1.40e-12, 1.20e-2, 0.90, 1.40e-12)}
-_SELF_ALIGNING = {
-    "12": (3.25e-7, 6.51, 2.43e-12, 4.36e-3, 9.33, 2.43e-12),
-    "13": (3.11e-7, 5.76, 3.52e-12, 5.76e-3, 8.03, 3.52e-12),
-    "22": (3.13e-7, 5.54, 3.12e-12, 5.84e-3, 6.60, 3.12e-12),
-    "23": (3.11e-7, 3.87, 5.41e-12, 0.01, 4.35, 5.41e-12),
-    "112": (3.25e-7, 6.16, 2.48e-12, 4.33e-3, 8.44, 2.48e-12),
-    "130": (2.39e-7, 5.81, 1.10e-12, 7.25e-3, 7.98, 1.10e-12),
-    "139": (2.44e-7, 7.96, 5.63e-13, 4.51e-3, 12.11, 5.63e-13),
-}
-# R1, S1; of all series.
-_THRUST = {"51": (1.03e-6, 1.6e-2)}
-# R1, S1, S2.
-_CYLINDRICAL = _by_name(
-    s2_3=(1.09e-6, 0.16, 0.0015),
-    s4=(1.00e-6, 0.16, 0.0015),
-    s10=(1.12e-6, 0.17, 0.0015),
-    s12_20=(1.23e-6, 0.16, 0.0015),
-    s22=(1.40e-6, 0.16, 0.0015),
-    s23=(1.48e-6, 0.16, 0.0015),
-)
-# R1, R2, S1, S2.
-_TAPERED = {
-    "other": (2.31e-6, 10.9, 0.019, 2.0),
-    "302": (1.76e-6, 10.9, 0.017, 2.0),
-    "303": (1.69e-6, 10.9, 0.017, 2.0),
-    "313": (1.84e-6, 10.9, 0.048, 2.0),
-    "320": (2.38e-6, 10.9, 0.014, 2.0),
-    "322": (2.27e-6, 10.9, 0.018, 2.0),
-    "322B": (2.38e-6, 10.9, 0.026, 2.0),
-    "323": (2.38e-6, 10.9, 0.019, 2.0),
-    "323B": (2.79e-6, 10.9, 0.030, 2.0),
-    "329": (2.31e-6, 10.9, 0.009, 2.0),
-    "330": (2.71e-6, 11.3, 0.010, 2.0),
-    "331": (2.71e-6, 10.9, 0.015, 2.0),
-    "332": (2.71e-6, 10.9, 0.018, 2.0),
-}
-# R1 to R4, S1 to S4; E: with the rollers of the series E.
-_SPHERICAL = _by_name(
-    s213E_222E=(1.6e-6, 5.84, 2.81e-6, 5.8, 3.62e-3, 508.0, 8.8e-3, 117.0),
-    s222=(2.0e-6, 5.54, 2.92e-6, 5.5, 5.10e-3, 414.0, 9.7e-3, 100.0),
-    s223=(1.7e-6, 4.1, 3.13e-6, 4.05, 6.92e-3, 124.0, 1.7e-2, 41.0),
-    s223E=(1.6e-6, 4.1, 3.14e-6, 4.05, 6.23e-3, 124.0, 1.7e-2, 41.0),
-    s230=(2.4e-6, 6.44, 3.76e-6, 6.4, 4.13e-3, 755.0, 1.1e-2, 160.0),
-    s231=(2.4e-6, 4.7, 4.04e-6, 4.72, 6.70e-3, 231.0, 1.7e-2, 65.0),
-    s232=(2.3e-6, 4.1, 4.00e-6, 4.05, 8.66e-3, 126.0, 2.1e-2, 41.0),
-    s238=(3.1e-6, 12.1, 3.82e-6, 12.0, 1.74e-3, 9495.0, 5.9e-3, 1057.0),
-    s239=(2.7e-6, 8.53, 3.87e-6, 8.47, 2.77e-3, 2330.0, 8.5e-3, 371.0),
-    s240=(2.9e-6, 4.87, 4.78e-6, 4.84, 6.95e-3, 240.0, 2.1e-2, 68.0),
-    s241=(2.6e-6, 3.8, 4.79e-6, 3.7, 1.00e-2, 86.7, 2.9e-2, 31.0),
-    s248=(3.8e-6, 9.4, 5.09e-6, 9.3, 2.80e-3, 3415.0, 1.2e-2, 486.0),
-    s249=(3.0e-6, 6.67, 5.09e-6, 6.62, 3.90e-3, 887.0, 1.7e-2, 180.0),
-)
-# R1, R2, S1, S2; by the digits of C 30 and so on.
-_TOROIDAL = {
-    "22": (1.17e-6, 2.08e-6, 1.32e-3, 0.8e-2),
-    "23": (1.20e-6, 2.28e-6, 1.24e-3, 0.9e-2),
-    "30": (1.40e-6, 2.59e-6, 1.58e-3, 1.0e-2),
-    "31": (1.37e-6, 2.77e-6, 1.30e-3, 1.1e-2),
-    "32": (1.33e-6, 2.63e-6, 1.31e-3, 1.1e-2),
-    "39": (1.45e-6, 2.55e-6, 1.84e-3, 1.0e-2),
-    "40": (1.53e-6, 3.15e-6, 1.50e-3, 1.3e-2),
-    "41": (1.49e-6, 3.11e-6, 1.32e-3, 1.3e-2),
-    "49": (1.49e-6, 3.24e-6, 1.39e-3, 1.5e-2),
-    "59": (1.77e-6, 3.81e-6, 1.80e-3, 1.8e-2),
-    "60": (1.83e-6, 5.22e-6, 1.17e-3, 2.8e-2),
-    "69": (1.85e-6, 4.53e-6, 1.61e-3, 2.3e-2),
-}
-# R1, S1; of all series.
-_CYLINDRICAL_THRUST = {"81": (2.25e-6, 0.154)}
-# R1 to R4, S1 to S5.
-_SPHERICAL_THRUST = {
-    "292": (1.32e-6, 1.57, 1.97e-6, 3.21, 4.53e-3, 0.26, 0.02, 0.10, 0.60),
-    "292E": (1.32e-6, 1.65, 2.09e-6, 2.92, 5.98e-3, 0.23, 0.03, 0.17, 0.56),
-    "293": (1.39e-6, 1.66, 1.96e-6, 3.23, 5.52e-3, 0.25, 0.02, 0.10, 0.60),
-    "293E": (1.16e-6, 1.64, 2.00e-6, 3.04, 4.26e-3, 0.23, 0.025, 0.15, 0.58),
-    "294E": (1.25e-6, 1.67, 2.15e-6, 2.86, 6.42e-3, 0.21, 0.04, 0.20, 0.54),
-}
 _TYPES: dict[type, _Type] = {
-    DeepGrooveBallBearing: _Type(_DEEP_GROOVE, 3.1, 3.4),
-    AngularContactBallBearing: _Type(_ANGULAR, 4.4, 3.4, others="other"),
-    FourPointBallBearing: _Type(_FOUR_POINT, 3.1, 3.2, others="QJ"),
-    SelfAligningBallRow: _Type(_SELF_ALIGNING, 4.8, 3.8),
-    ThrustBallBearing: _Type(_THRUST, 3.8, 2.6, others="51"),
-    CylindricalRollerBearing: _Type(_CYLINDRICAL, 5.1, 3.9, 0.02),
-    TaperedRollerBearing: _Type(_TAPERED, 6.0, 4.8, 0.002, "other"),
-    SphericalRollerRow: _Type(_SPHERICAL, 5.5, 3.8),
-    ToroidalRollerBearing: _Type(_TOROIDAL, 5.3, None),
-    CylindricalThrustRollerBearing: _Type(_CYLINDRICAL_THRUST, 4.4, 3.9, others="81"),
-    SphericalThrustRollerBearing: _Type(_SPHERICAL_THRUST, 5.6, None),
+    getattr(design, name): _Type(
+        **numbers | {"series": rows_by_name(numbers["series"])}
+    )
+    for name, numbers in read_package_table(
+        "bearingjax.friction", "friction_skf.toml"
+    ).items()
 }
+"""The constants of each type, by its class."""
 
 
 class SkfFriction(Printable):
@@ -249,9 +130,9 @@ def skf_series_of(entry: CatalogueEntry) -> str | None:
     if kind is None:
         return None
     digits, letters = entry.series
-    for design in ("AC", "B", "E"):
-        if letters.startswith(design) and digits + design in kind.series:
-            return digits + design
+    for inside in ("AC", "B", "E"):
+        if letters.startswith(inside) and digits + inside in kind.series:
+            return digits + inside
     return digits if digits in kind.series else kind.others
 
 
@@ -427,15 +308,15 @@ def _spherical_thrust(row, unit):
 
 _VARIABLES: dict[type, Callable[..., tuple[Any, Any]]] = {
     AbstractBearing: _angular,
-    DeepGrooveBallBearing: _deep_groove,
-    SelfAligningBallRow: partial(_angular, powers=(2.0, -0.12, 3.5)),
+    design.DeepGrooveBallBearing: _deep_groove,
+    design.SelfAligningBallRow: partial(_angular, powers=(2.0, -0.12, 3.5)),
     ThrustBallBearing: _thrust_balls,
-    CylindricalRollerBearing: _cylindrical,
-    TaperedRollerBearing: _tapered,
-    CylindricalThrustRollerBearing: _thrust_rollers,
-    ToroidalRollerBearing: _toroidal,
-    SphericalRollerRow: _spherical,
-    SphericalThrustRollerBearing: _spherical_thrust,
+    design.CylindricalRollerBearing: _cylindrical,
+    design.TaperedRollerBearing: _tapered,
+    design.CylindricalThrustRollerBearing: _thrust_rollers,
+    design.ToroidalRollerBearing: _toroidal,
+    design.SphericalRollerRow: _spherical,
+    design.SphericalThrustRollerBearing: _spherical_thrust,
 }
 """G_rr and G_sl of a unit by class, of its constants and loads, in mm and N."""
 

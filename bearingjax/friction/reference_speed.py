@@ -5,33 +5,15 @@ from typing import Any
 
 from ..catalogue.entry import CatalogueEntry
 from ..design.checks import positive
+from ..numerics.constants import read_package_table, rows_by_name
 from ..numerics.types import Number
 
-_FACTORS = {
-    "deep_groove_ball": {"02": (2.0, 0.0002), "03": (2.3, 0.0002)},
-    "angular_contact_ball": {"02": (2.0, 0.00025)},
-    "cylindrical_roller": {"02": (2.0, 0.0003), "22": (3.0, 0.0004), "23": (4.0, 4e-4)},
-    "spherical_roller": {
-        "22": (4.0, 0.00019),
-        "23": (4.5, 0.0003),
-        "30": (4.5, 0.00017),
-        "31": (5.5, 0.00027),
-        "32": (6.0, 0.00036),
-        "40": (6.5, 0.00027),
-        "41": (7.0, 0.00049),
-    },
-    "tapered_roller": {
-        **dict.fromkeys(("02", "03", "30"), (3.0, 0.0004)),
-        **dict.fromkeys(("22", "23", "31", "32"), (4.5, 0.0004)),
-    },
-    "cylindrical_thrust_roller": {"11": (3.0, 0.0015), "12": (4.0, 0.0015)},
-    "spherical_thrust_roller": {
-        "92": (3.7, 0.0003),
-        "93": (4.5, 0.0004),
-        "94": (5.0, 0.0005),
-    },
+_FACTORS: dict[str, dict[str, Any]] = {
+    kind: rows_by_name(rows)
+    for kind, rows in read_package_table(
+        "bearingjax.friction", "reference_speed.toml"
+    ).items()
 }
-
 
 _RADIAL = 12.0, 0.05, 0.016, 0.34
 _THRUST = 24.0, 0.02, 0.020, 0.16

@@ -4,13 +4,12 @@ import dataclasses
 import functools
 import importlib
 import json
-import tomllib
 from argparse import ArgumentParser, _SubParsersAction
 from collections.abc import Callable, Iterator, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from ..numerics.constants import read_package_table
 from .outputs import OUTPUTS
 
 Option = tuple[str, Mapping[str, Any]]
@@ -105,9 +104,7 @@ def _commands(declared: Mapping[str, Any]) -> Iterator[Command]:
         yield Command(name, **{**one, "options": options})
 
 
-_DECLARED = tomllib.loads(
-    (files("bearingjax.studies") / "commands.toml").read_text(encoding="utf-8")
-)
+_DECLARED = read_package_table("bearingjax.studies", "commands.toml")
 SOLVING = tuple(_commands(_DECLARED["solving"]))
 """Commands that solve scenes; `execute` writes their outcome."""
 LOOKING_UP = tuple(_commands(_DECLARED["looking_up"]))

@@ -20,7 +20,7 @@ from ...design.bearing_set import pitch_radius
 from ...design.checks import check, count, integration, is_traced, one_of
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
-from ...numerics.gravity import GRAVITY
+from ...numerics.constants import GRAVITY
 from ...numerics.implicit import stop_gradient
 from ...numerics.in_time import IntegrationOptions
 from ...numerics.result import Result, raise_unless_converged

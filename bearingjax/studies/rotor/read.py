@@ -13,7 +13,7 @@ from ...files.quantity import scene_number
 from ...files.scene_file import find_scene, is_rotor, parse_scene
 from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, written_numbers
-from ...numerics.gravity import GRAVITY
+from ...numerics.constants import GRAVITY
 from ...numerics.warning import Warning
 from ...rotor import (
     AbstractDamping,

@@ -25,7 +25,7 @@ from ...files.schema import (
 )
 from ...files.table import Table
 from ...life.life import LifeConditions
-from ...numerics.gravity import GRAVITY
+from ...numerics.constants import GRAVITY
 from ...numerics.warning import Warning, warnings_of
 from ...shafts import (
     Coupling,
