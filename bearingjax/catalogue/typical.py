@@ -5,7 +5,7 @@ type share a few ratios to it, given here by a middle and a spread (one standard
 deviation) over makers' catalogues and the literature.
 """
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -43,15 +43,14 @@ class Proportions(NamedTuple):
     by_arc: bool = False
 
 
-def _read(filling_arc=None, **numbers) -> Proportions:
+def _read(filling_arc=None, **numbers: Any) -> Proportions:
     """The proportions of a type, from its table with angles in degrees."""
-    if filling_arc is not None:
-        numbers |= {"filling": np.radians(filling_arc), "by_arc": True}
     numbers["angle"] = np.radians(numbers["angle"])
-    made = {
-        k: v if k == "by_arc" else Typical(*map(float, v)) for k, v in numbers.items()
-    }
-    return Proportions(**{"length": None} | made)
+    if filling_arc is not None:
+        numbers["filling"] = np.radians(filling_arc)
+    for key, pair in numbers.items():
+        numbers[key] = Typical(*map(float, pair))
+    return Proportions(by_arc=filling_arc is not None, **numbers)
 
 
 PROPORTIONS: dict[str, Proportions] = {
