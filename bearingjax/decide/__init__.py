@@ -10,13 +10,14 @@ Names
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`.
 - A choice of bearing: `select`, `Requirements`, `Selection`.
-- What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`.
+- What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`,
+  `class_scatters`.
 - Their results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
 """
 
 from .identify import Candidate, Identified, identify
 from .predict import CaseModel
-from .scatter import Scatter, within
+from .scatter import Scatter, class_scatters, within
 from .select import Requirements, Selection, select
 from .tolerance_effects import (
     Misses,
@@ -30,5 +31,5 @@ from .tolerance_effects import (
 __all__ = [
     "identify", "Identified", "Candidate", "CaseModel", "select",
     "Requirements", "Selection", "tolerances", "tighten", "Scatter", "within",
-    "Tolerances", "Spread", "Misses", "Tightening",
+    "class_scatters",     "Tolerances", "Spread", "Misses", "Tightening",
 ]  # fmt: skip

@@ -5,11 +5,24 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import equinox as eqx
 import numpy as np
 from jaxtyping import Float
 
-from ..design.checks import must_be
+from ..design import rows_of
+from ..design.checks import must_be, of_class
+from ..fits import radial_clearance
+from ..statics import Installed
 
+SIZES = {
+    "clearance": {"radial_clearance": 1.0},
+    "shaft": {"shaft_interference": 1.0},
+    "bore": {"shaft_interference": -1.0},
+    "housing": {"housing_interference": -1.0},
+    "outside_diameter": {"housing_interference": 1.0},
+}
+"""Sizes of `fits.SizeLimits` by their name in [fit], with the numbers of a `Mounting`
+to which they add."""
 REPLICATES = 8
 """Sets of samples, each shuffled by itself, whose spread is the error of a result."""
 SIGMAS = 6.0
@@ -107,6 +120,38 @@ def within(
     must_be("within", "deviation", scale, scale > 0.0, "above 0")
     ends = ((end - middle) / scale for end in (lower, upper))
     return truncnorm(*ends, loc=middle, scale=scale)
+
+
+def class_scatters(installed: Installed) -> tuple[Installed, tuple[Scatter, ...]]:
+    """Return the sizes of the classes of fit and clearance of a bearing, as `within`.
+
+    Args:
+        installed: The bearing on its seats; sizes scatter between its `limits`.
+
+    Returns:
+        The bearing, whose clearance before mounting is a number of its mounting if it
+        scatters; and the sizes, named "clearance", "shaft", "bore", "housing" and
+        "outside_diameter". There are none without `limits`.
+
+    Raises:
+        TypeError: If it is no `Installed`.
+    """
+    of_class("class_scatters", "installed", installed, Installed, "an Installed")
+    found = []
+    limits = {} if installed.limits is None else installed.limits._asdict()
+    for name, (low, high) in limits.items():
+        if low < high:
+            paths = {f"mounting.{path}": factor for path, factor in SIZES[name].items()}
+            found.append(Scatter(paths, within(float(low), float(high)), name))
+    if any(one.name == "clearance" for one in found):
+        free = radial_clearance(rows_of(installed.drawing.bearing)[0].bearing)
+        installed = eqx.tree_at(
+            lambda one: one.mounting.radial_clearance,
+            installed,
+            np.asarray(free, float),
+            is_leaf=lambda leaf: leaf is None,
+        )
+    return installed, tuple(found)
 
 
 def draw(

@@ -143,6 +143,9 @@ _LARGE = {
     "rad": (0.1, 180.0 / np.pi, "deg"),
 }
 
+_SMALL_FORCE = 100.0
+"""Force below which a single number is shown in N."""
+
 DISPLAYED = {
     shown: (factor, 0.0, unit)
     for kinds in (_SHOWN.items(), [(k, large[1:]) for k, large in _LARGE.items()])
@@ -178,7 +181,8 @@ def shown_number(value: float, unit: str, digits: int = 4) -> str:
     """
     if unit == "K":
         return f"{value - CELSIUS:.{digits}g} °C"
-    factor, shown = display_unit(unit, abs(value))
+    small = unit == "N" and abs(value) < _SMALL_FORCE
+    factor, shown = (1.0, unit) if small else display_unit(unit, abs(value))
     return f"{factor * value:.{digits}g} {shown}".rstrip()
 
 

@@ -6,9 +6,16 @@ from scipy import stats
 from tolerances import DIFFERENCE, ROUNDING, SOLVER
 
 import bearingjax as bj
-from bearingjax.decide import Scatter, tighten, tolerances, within
+from bearingjax.decide import (
+    Scatter,
+    class_scatters,
+    tighten,
+    tolerances,
+    within,
+)
 from bearingjax.decide.scatter import draw
 from bearingjax.decide.tolerance_effects import QUANTILES, Sampled, _variance_shares
+from bearingjax.fits import Limits, SizeLimits
 from bearingjax.optimise import Constraint, OperatingClearance, PeakPressure, RatingLife
 from bearingjax.statics import Installed
 
@@ -84,6 +91,30 @@ def test_within_is_cut_off_at_three_deviations():
     assert made.spread == pytest.approx(0.9866e-6, rel=1e-4)  # of ±3 standard ones
     free = Scatter("a", stats.norm(5.0, 2.0))
     assert free.ends == pytest.approx((-1.0, 11.0), rel=ROUNDING)
+
+
+def test_sizes_of_classes_scatter_within_their_limits(element):
+    free, still = Limits(3e-6, 15e-6), Limits(0.0, 0.0)
+    limits = SizeLimits(free, Limits(2e-6, 11e-6), Limits(-10e-6, 0.0), still, still)
+    seats = bj.Mounting(25e-3, 52e-3, 80e-3, 10e-6, 0.0)
+    given = Installed(element, None, seats, limits=limits)
+    found, scatters = class_scatters(given)
+    assert [one.name for one in scatters] == ["clearance", "shaft", "bore"]
+    assert [one.path for one in scatters] == [
+        {"mounting.radial_clearance": 1.0},
+        {"mounting.shaft_interference": 1.0},
+        {"mounting.shaft_interference": -1.0},
+    ]
+    np.testing.assert_allclose(scatters[0].ends, free, rtol=ROUNDING)
+    own = element.bearing.radial_internal_clearance
+    assert given.mounting.radial_clearance is None
+    assert float(found.mounting.radial_clearance) == pytest.approx(float(own))
+    assert class_scatters(Installed(element, None, seats)) == (
+        Installed(element, None, seats),
+        (),
+    )
+    with pytest.raises(TypeError, match="installed"):
+        class_scatters(element)
 
 
 def test_draw_has_distributions_and_correlation():

@@ -9,13 +9,12 @@ import equinox as eqx
 import numpy as np
 from scipy import stats
 
-from ...decide import Scatter, within
-from ...design import rows_of
+from ...decide import Scatter, class_scatters, within
+from ...decide.scatter import SIZES
 from ...files.quantity import SceneError
 from ...files.scene_file import find_scene, is_shafts, parse_scene
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.table import Table, not_among
-from ...fits import Limits, radial_clearance
 from ...numerics.units import unit_of
 from ...optimise import Constraint
 from ...optimise.smooth import SMOOTHING_EXPONENT
@@ -41,15 +40,6 @@ from ..optimise.read_shaft_optimise import (
 )
 from ..shaft.read import ShaftScene, read_shafts
 
-_SIZES = {
-    "clearance": {"radial_clearance": 1.0},
-    "shaft": {"shaft_interference": 1.0},
-    "bore": {"shaft_interference": -1.0},
-    "housing": {"housing_interference": -1.0},
-    "outside_diameter": {"housing_interference": 1.0},
-}
-"""Sizes of `SizeLimits` by their name in [fit], with the numbers of a `Mounting` to
-which they add."""
 SHAPES = ("normal", "uniform")
 """Shapes of a distribution."""
 
@@ -91,7 +81,7 @@ def _numbers_key() -> Any:
         "numbers that scatter, by their key in the scene, in quotes: `{ from, to }`,"
         " `{ mean, deviation }` or both, `shape` (normal or uniform), `narrowing ="
         " { by, costs }`; sizes of classes of fit and clearance scatter by themselves:"
-        f" {', '.join(f'`fit.{name}`' for name in _SIZES)}",
+        f" {', '.join(f'`fit.{name}`' for name in SIZES)}",
         default=None,
         name="numbers",
         reader=lambda table, name: table.table(name),
@@ -185,8 +175,12 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         places = {"": ""}
     sizes = {}
     for head, own in places.items():
-        design, found = _sizes(design, head, own)
-        sizes |= found
+        part, scatters = class_scatters(_part(design, own))
+        design = eqx.tree_at(lambda d, own=own: _part(d, own), design, part)
+        sizes |= {
+            f"{head}fit.{s.name}": ({f"{own}{p}": f for p, f in s.path.items()}, s.ends)
+            for s in scatters
+        }
     check_numbers(table.table("numbers"), Table(data, path), scene)
     scatters = _scatters(table.table("numbers"), design, numbers, sizes)
     if not scatters:
@@ -222,6 +216,13 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
     )
 
 
+def _part(design: Any, path: str) -> Any:
+    """What stands at a dotted path that ends in a dot; all of it at none."""
+    for name in path.split(".")[:-1]:
+        design = design[int(name)] if name.isdecimal() else getattr(design, name)
+    return design
+
+
 def _correlation(pairs: Iterable[CorrelationKeys], names: list[str]) -> np.ndarray:
     found = np.eye(len(names))
     for one in pairs:
@@ -236,44 +237,6 @@ def _correlation(pairs: Iterable[CorrelationKeys], names: list[str]) -> np.ndarr
             problem = "contradicts the correlations before it: no numbers have them all"
             raise one.table.error("value", problem)
     return found
-
-
-def _sizes(design: Any, head: str, own: str) -> tuple[Any, dict[str, Any]]:
-    """Sizes of classes of fit and clearance, by their key: factors by path and limits.
-
-    Args:
-        design: The whole design.
-        head: Before the keys of the bearing.
-        own: Before its paths in the design.
-
-    Returns:
-        The design, with the clearance before mounting as a number of the mounting if it
-        scatters; the sizes.
-    """
-
-    def installed(whole: Any) -> Any:
-        for name in own.split(".")[:-1]:
-            whole = whole[int(name)] if name.isdecimal() else getattr(whole, name)
-        return whole
-
-    limits = installed(design).limits
-    if limits is None:
-        return design, {}
-    found: dict[str, Any] = {}
-    for name, ends in limits._asdict().items():
-        low, high = map(float, ends)
-        if low < high:
-            paths = {f"{own}mounting.{path}": f for path, f in _SIZES[name].items()}
-            found[f"{head}fit.{name}"] = paths, Limits(low, high)
-    if f"{head}fit.clearance" in found:
-        free = radial_clearance(rows_of(installed(design).drawing.bearing)[0].bearing)
-        design = eqx.tree_at(
-            lambda d: installed(d).mounting.radial_clearance,
-            design,
-            np.asarray(free, float),
-            is_leaf=lambda leaf: leaf is None,
-        )
-    return design, found
 
 
 def _scatters(
