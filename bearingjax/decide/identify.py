@@ -1,7 +1,7 @@
 """Numbers of a bearing from measurements, with their standard errors."""
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -14,8 +14,8 @@ from ..cases.cases import Cases
 from ..design.checks import all_of_class, of_class, of_shape, positive
 from ..numerics.compiled.programs import program
 from ..numerics.result import SolveError
-from ..numerics.shown import Shown
-from ..numerics.units import shown_number, unit_of
+from ..numerics.shown import Shown, facts_of
+from ..numerics.units import shown_change, shown_number, unit_of
 from ..numerics.warning import Warning
 from ..optimise.system import Design, check_design
 from ..optimise.variable import Variable, check_same_in_cases, check_variables
@@ -66,6 +66,7 @@ class Identified(Shown):
 
     Attributes:
         names: Names of the unknowns.
+        units: Their SI units; empty: none, or not known.
         estimate: Their values (unknown,) [SI].
         standard_error: Standard errors (unknown,) [SI]; infinite where the readings
             leave a number open.
@@ -96,6 +97,7 @@ class Identified(Shown):
     """
 
     names: tuple[str, ...]
+    units: tuple[str, ...]
     estimate: np.ndarray
     standard_error: np.ndarray
     interval: np.ndarray
@@ -121,6 +123,18 @@ class Identified(Shown):
     def converged(self) -> bool:
         """Whether `result` is "converged"."""
         return self.result == "converged"
+
+    def shown_facts(self) -> Iterator[Any]:
+        """Yield the unknowns with their standard errors, and what to think of them."""
+        rows = self.names, self.estimate, self.standard_error, self.units
+        for name, value, error, unit in zip(*rows, strict=True):
+            text = f"{shown_number(value, unit)} ± {shown_change(error, unit)}"
+            yield 1, name, text, "estimate, standard error"
+        for text in (*self.untold, *map(str, self.warnings)):
+            yield 1, "not told" if text in self.untold else "warning", text, ""
+        yield from facts_of(
+            self, ("identifiable", "chi_square", "degrees_of_freedom", "message")
+        )
 
 
 def identify(
@@ -206,6 +220,7 @@ def identify(
         words += f", {float(fit.left):.1e} standard errors of a reading from the end"
     return Identified(
         names=tuple(one.name for one in given.unknowns),
+        units=given.units,
         estimate=estimate,
         standard_error=standard,
         interval=estimate[:, None] + np.outer(standard, [-wide, wide]),
@@ -278,6 +293,12 @@ class _Problem(NamedTuple):
     @property
     def used(self) -> np.ndarray:
         return np.isfinite(self.reading)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        model, of = self.model, self.unknowns
+        known = isinstance(model, CaseModel)
+        return tuple(unit_of(model.design, x.path[0]) if known else "" for x in of)
 
     def split(self, flat: Any, measured: bool = False) -> dict[str, np.ndarray]:
         """Numbers by name; only of names with readings, if `measured`."""
@@ -427,7 +448,7 @@ def _untold(given: _Problem, rows: Any) -> tuple[str, ...]:
     """Combinations of unknowns that the readings do not tell, in words."""
     _, size, axes = np.linalg.svd(rows)
     size = np.pad(size, (0, len(axes) - size.size))
-    texts, model = [], given.model
+    texts = []
     for axis in axes[(UNTOLD * size < 1.0) | (size <= 1e-7 * size[0])]:
         axis = axis / axis[np.argmax(abs(axis))]
         order = [k for k in np.argsort(-abs(axis)) if abs(axis[k]) > 0.05]
@@ -437,11 +458,8 @@ def _untold(given: _Problem, rows: Any) -> tuple[str, ...]:
             continue
         parts = []
         for k in order:
-            step, unit = 0.01 * axis[k] * given.width[k], ""
-            if isinstance(model, CaseModel):
-                unit = unit_of(model.design, given.unknowns[k].path[0])
-            shown = shown_number(step, "" if unit == "K" else unit, 3)
-            parts.append(f"{shown} K" if unit == "K" else shown)
+            step = 0.01 * axis[k] * given.width[k]
+            parts.append(shown_change(step, given.units[k], 3))
         ratio = ":".join(f"{abs(axis[k]):.2g}" for k in order)
         texts.append(
             f"{names} trade {ratio}, in parts of their ranges: changes of"

@@ -186,6 +186,11 @@ def shown_number(value: float, unit: str, digits: int = 4) -> str:
     return f"{factor * value:.{digits}g} {shown}".rstrip()
 
 
+def shown_change(value: float, unit: str, digits: int = 4) -> str:
+    """A difference, such as an error, as `shown_number` shows numbers: "2 K"."""
+    return f"{value:.{digits}g} K" if unit == "K" else shown_number(value, unit, digits)
+
+
 def rpm(speed: Any) -> str:
     """Format a speed in rpm.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...decide import Spread
 from ...decide.tolerance_effects import QUANTILES
-from ...numerics.units import shown_count, shown_number
+from ...numerics.units import shown_change, shown_count, shown_number
 from ...numerics.warning import Warning
 from ...optimise import Constraint
 from ...optimise.variable import rated_paths
@@ -42,7 +42,9 @@ def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
                 for w, x in zip(("from", "to"), ends, strict=True)
             ),
             Column("mean", _in_units(task, [one.centre for one in scatters])),
-            Column("deviation", _in_units(task, [x.spread for x in scatters], True)),
+            Column(
+                "deviation", _in_units(task, [x.spread for x in scatters], shown_change)
+            ),
         ]
     )
     causes = [Column("number", [one.name for one in scatters])]
@@ -137,21 +139,22 @@ def _key(spread: Spread) -> str:
     return spread.name.replace(" ", "_")
 
 
-def _in_units(task, values, difference: bool = False) -> list[str]:
-    return [
-        f"{x:.4g} K" if unit == "K" and difference else shown_number(x, unit)
-        for x, unit in zip(values, task.units, strict=True)
-    ]
+def _in_units(task, values, show=shown_number) -> list[str]:
+    return [show(x, unit) for x, unit in zip(values, task.units, strict=True)]
 
 
 def _results(spreads) -> Grid:
     """Tabulate quantiles and moments, below each those by the gradient."""
     rows = []
     for one in spreads:
-        numbers = *one.quantiles, one.mean, one.deviation
-        rows.append([one.name, *(shown_number(x, one.unit) for x in numbers)])
-        both = (shown_number(x, one.unit) for x in one.first_order)
-        rows.append(["  by the gradient", *[""] * len(QUANTILES), *both])
+        ends = [shown_number(x, one.unit) for x in one.quantiles]
+        for name, first, moments in (
+            (one.name, ends, (one.mean, one.deviation)),
+            ("  by the gradient", [""] * len(ends), one.first_order),
+        ):
+            mean, deviation = moments
+            last = shown_number(mean, one.unit), shown_change(deviation, one.unit)
+            rows.append([name, *first, *last])
     heads = "", *(f"{100.0 * share:g} %" for share in QUANTILES), "mean", "deviation"
     columns = zip(heads, zip(*rows, strict=True), strict=True)
     title = "what that share of the samples does not exceed"
@@ -196,8 +199,8 @@ def _tightening(task, narrower) -> list[Part]:
     old = np.array([one.width for one in task.given[2]])
     columns = [
         Column("number", [one.name for one in task.given[2]]),
-        Column("width", _in_units(task, old, True)),
-        Column("narrower", _in_units(task, old * narrower.widths, True)),
+        Column("width", _in_units(task, old, shown_change)),
+        Column("narrower", _in_units(task, old * narrower.widths, shown_change)),
         Column("of that given", narrower.widths, "", ".3g", _PERCENT),
     ]
     before, after, error = (
