@@ -10,6 +10,8 @@ from fractions import Fraction
 from importlib.resources import files
 from typing import Any
 
+from ..numerics.constants import read_package_table
+
 _NUMBER = re.compile(
     r"\s*([-+−]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+−]?[0-9]+)?)(.*)"
 )
@@ -33,46 +35,17 @@ _ANGLE = {"frequency": "({}) turn"}
 _ANGLE |= dict.fromkeys(("tilting stiffness", "tilting damping"), "({})/rad")
 """Units whose radians may be left out; as a frequency, cycles are counted then."""
 
-QUANTITIES = {
-    "length": ("m", "mm"),
-    "angle": ("rad", "deg"),
-    "force": ("N", "kN"),
-    "moment": ("N m", "N m"),
-    "speed": ("rad/s", "rpm"),
-    "duration": ("h", "h"),
-    "pressure": ("Pa", "GPa"),
-    "density": ("kg/m³", "kg/m^3"),
-    "stiffness": ("N/m", "N/mm"),
-    "tilting stiffness": ("N m/rad", "kN m/rad"),
-    "line load": ("N/m", "N/mm"),
-    "line constant": ("N/m^(19/9)", "N/m^(19/9)"),
-    "point constant": ("N/m^(3/2)", "N/m^(3/2)"),
-    "time": ("s", "s"),
-    "temperature": ("K", "°C"),
-    "square of a temperature": ("K²", "K^2"),
-    "temperature coefficient": ("1/K", "1/K"),
-    "pressure coefficient": ("1/Pa", "1/GPa"),
-    "viscosity": ("Pa s", "mPa s"),
-    "kinematic viscosity": ("m²/s", "mm^2/s"),
-    "density slope": ("kg/(m³ K)", "kg/(m^3 K)"),
-    "thermal conductivity": ("W/(m K)", "W/(m K)"),
-    "moment of inertia": ("kg m²", "kg mm^2"),
-    "sliding speed": ("m/s", "mm/s"),
-    "reciprocal speed": ("s/m", "s/m"),
-    "mass": ("kg", "kg"),
-    "unbalance": ("kg m", "g mm"),
-    "acceleration": ("m/s²", "m/s^2"),
-    "frequency": ("rad/s", "Hz"),
-    "natural frequency": ("Hz", "Hz"),
-    "damping": ("N s/m", "N s/mm"),
-    "tilting damping": ("N m s/rad", "N m s/rad"),
-    "rate": ("1/s", "1/s"),
-    "power": ("W", "kW"),
-    "thermal conductance": ("W/K", "W/K"),
-    "heat capacity": ("J/K", "kJ/K"),
+_LISTED = read_package_table("bearingjax.files", "quantities.toml")
+QUANTITIES: dict[str, tuple[str, str]] = {
+    k: tuple(v) for k, v in _LISTED["kinds"].items()
 }
 """Kind of quantity to its SI unit and a unit suggested in messages. Of several kinds
 with the same unit, the first is taken where only the unit is known."""
+_UNITS: dict[str, str] = _LISTED["units"]
+"""Single names of units by kind; any product or quotient of the right dimension may be
+written as well."""
+_SLIPS: dict[str, dict[str, str]] = _LISTED["slips"]
+"""What to write in place of names that mean another thing, or one of two, by kind."""
 
 
 def scene_number(value: float, kind: str, largest: float | None = None) -> str:
@@ -112,37 +85,6 @@ class SceneError(ValueError):
     """A scene that cannot be read; the message names file, line, key, fault and
     remedy."""
 
-
-_UNITS = {
-    "length": "nm µm mm cm dm m km mil in ft",
-    "angle": "µrad mrad rad ° deg ′ arcmin ″ arcsec gon turn",
-    "force": "µN mN N kN MN kp kgf lbf",
-    "moment": "µNm mNm Nmm Ncm Nm kNmm kNm MNm",
-    "speed": "rpm",
-    "duration": "s min h d a",
-    "pressure": "Pa hPa kPa MPa GPa mbar bar psi kpsi Mpsi",
-    "time": "ns µs ms s min h d a",
-    "temperature": "K °C °F",
-    "viscosity": "Pas mPas P cP",
-    "kinematic viscosity": "St cSt",
-    "mass": "µg mg g kg t oz lb",
-    "unbalance": "gmm kgmm",
-    "frequency": "Hz kHz rpm",
-    "rate": "Hz kHz",
-    "natural frequency": "Hz kHz",
-    "power": "µW mW W kW MW PS hp",
-}
-"""Single names of units by kind; any product or quotient of the right dimension may be
-written as well."""
-_SLIPS = {
-    "temperature": dict.fromkeys(("C", "c", "Celsius", "celsius", "Grad"), "°C")
-    | {"F": "°F", "Fahrenheit": "°F", "grad": "°C", "deg": "°C", "°": "°C"},
-    "angle": dict.fromkeys(("Grad", "grad", "grade"), "deg for degrees, or gon"),
-    "power": dict.fromkeys(("HP", "ps", "CV", "cv"), "hp, 745.7 W, or PS, 735.5 W"),
-    "acceleration": {"g": "m/s^2; 1 g is 9.80665 m/s^2"},
-}
-"""What to write in place of names that mean another thing, or one of two, by kind.
-Degrees are Grad in German, where they are written by hand as grad are of 400."""
 
 _WEIGHTS = {"lb": "lbf", "lbs": "lbf", "kg": "kgf"}
 

@@ -67,11 +67,6 @@ def find_scene(source: str | Path) -> Path:
     return path
 
 
-def is_contact(data: dict[str, Any]) -> bool:
-    """Whether parsed data describe one contact, not a bearing."""
-    return "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
-
-
 def is_rotor(data: dict[str, Any]) -> bool:
     """Whether parsed data describe a rotor, not a bearing."""
     return "bearing" not in data and "rotor" in data
@@ -89,12 +84,13 @@ def parse_bearing(path: Path, settings: Iterable[str]) -> dict[str, Any]:
         SceneError: As `parse_scene`; if it is the scene of one contact or of a rotor.
     """
     data = parse_scene(path, settings)
+    contact = "bearing" not in data and not {"roller", "raceway"}.isdisjoint(data)
     for is_it, command, what in (
-        (is_contact, "contact", "one contact, a [roller] on a [raceway]"),
-        (is_rotor, "rotor", "a [rotor]"),
-        (is_shafts, "shaft", "a system of shafts"),
+        (contact, "contact", "one contact, a [roller] on a [raceway]"),
+        (is_rotor(data), "rotor", "a [rotor]"),
+        (is_shafts(data), "shaft", "a system of shafts"),
     ):
-        if is_it(data):
+        if is_it:
             problem = f"is the scene of {what}, not of a [bearing]"
             cure = f"`bearingjax {command} {path.stem}` solves it"
             raise SceneError(f"{path.name}: {problem}; {cure}")

@@ -10,7 +10,6 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -141,20 +140,16 @@ def _number_format(column: np.ndarray) -> str:
 
 
 def _write_csv(arrays: Mapping[str, np.ndarray], path: Path) -> None:
+    columns = [
+        np.where(one, "true", "false") if one.dtype == bool else one
+        for one in arrays.values()
+    ]
     with open(path, "w", newline="", encoding="utf-8") as file:
         lines = csv.writer(file, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
         lines.writerow(arrays)
-        for first in range(0, max(map(len, arrays.values()), default=0), _BLOCK):
-            parts = (column[first : first + _BLOCK] for column in arrays.values())
-            lines.writerows(zip(*map(_cells, parts), strict=True))
-
-
-def _cells(column: np.ndarray) -> list[Any]:
-    return (
-        np.where(column, "true", "false").tolist()
-        if column.dtype == bool
-        else (column.tolist())
-    )
+        for first in range(0, max(map(len, columns), default=0), _BLOCK):
+            parts = (column[first : first + _BLOCK].tolist() for column in columns)
+            lines.writerows(zip(*parts, strict=True))
 
 
 def read_table(path: str | Path, texts: Iterable[str] = ()) -> dict[str, np.ndarray]:

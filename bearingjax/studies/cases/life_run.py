@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 import re
-from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -162,15 +161,12 @@ class LifeRun(Shown):
         return order, share[order]
 
 
-def run_life(
-    table: CaseTable, progress: bool = False, stop: Callable[[], bool] | None = None
-) -> LifeRun:
+def run_life(table: CaseTable, progress: bool = False) -> LifeRun:
     """Solve the cases of a scene for their lives, and sum their damage.
 
     Args:
         table: From `read_cases`.
         progress: Show a progress bar.
-        stop: As in `sweep`.
 
     Raises:
         SceneError: For cases whose life cannot be computed.
@@ -211,7 +207,7 @@ def run_life(
     with scene_errors(scene.name):
         rated = jax.device_get(ratings(bearing, *given))
     wanted = dataclasses.replace(table, outputs=tuple(outputs))
-    solved = run_cases(wanted, progress, stop)
+    solved = run_cases(wanted, progress)
     lives = {
         name: spectrum_life(table.cases, 1.0 / np.asarray(getattr(solved, name)))
         for name in LIVES

@@ -13,6 +13,7 @@ from ...files.quantity import SceneError, to_si
 from ...files.scene_file import shipped_scenes
 from ...files.table import not_among
 from ...friction import thermal_speed
+from ...numerics.constants import read_package_table
 from ..bearing.catalogue_keys import as_keys
 
 _SHARE: dict[str, tuple[float, str]] = {
@@ -26,39 +27,12 @@ _SPEED = 1500.0
 """Speed of a new scene, or half of the reference or limiting speed if that is less
 [rpm]."""
 
-_SPEED_FACTORS = {
-    "deep_groove_ball": 480e3,
-    "angular_contact_ball": 285e3,
-    "double_row_ball": 240e3,
-    "four_point_ball": 265e3,
-    "self_aligning_ball": 425e3,
-    "thrust_ball": 72e3,
-    "cylindrical_roller": 240e3,
-    "needle_roller": 205e3,
-    "tapered_roller": 163e3,
-    "spherical_roller": 148e3,
-    "toroidal_roller": 192e3,
-    "spherical_thrust_roller": 127e3,
-    "cylindrical_thrust_roller": 46e3,
-    "crossed_roller": 37e3,
-}
-"""Speed times mean diameter of a bearing whose speeds are not known [rpm mm]: half of
-the least that the catalogue has of the type, of crossed rollers half of what THK allows
-with grease."""
+_TYPICAL = read_package_table("bearingjax.studies.catalogue", "new_scene.toml")
 
 _DIRT = 'contamination = "grease, normal"  # of an oil "oil bath -/17/14" and the like'
 
 _PAIRED = ("angular_contact_ball", "tapered_roller")
 """Types that are often mounted in pairs."""
-
-_WARM = {
-    "shaft": 60,
-    "inner_ring": 60,
-    "elements": 60,
-    "outer_ring": 50,
-    "housing": 45,
-}
-"""Typical temperatures [°C]."""
 
 
 def select(
@@ -295,7 +269,10 @@ def _more_tables(entry: CatalogueEntry) -> list[str]:
             *_seats(entry),
             "",
             "[temperature]",
-            *(f'{part} = "{degrees} °C"' for part, degrees in _WARM.items()),
+            *(
+                f'{part} = "{degrees} °C"'
+                for part, degrees in _TYPICAL["temperatures"].items()
+            ),
         ]
     share = _load(entry)[-1].partition("{ ")[2].partition(" }")[0]
     return [
@@ -387,7 +364,8 @@ def _row(entry: CatalogueEntry) -> Any:
 def _speed(entry: CatalogueEntry) -> str:
     known = entry.reference_speed or entry.limiting_speed
     mean = 0.5e3 * (entry.bore + entry.outside_diameter)
-    most = 0.5 * _rpm(known) if known else _SPEED_FACTORS[entry.type] / mean
+    most = _TYPICAL["speed_factors"][entry.type] / mean
+    most = 0.5 * _rpm(known) if known else most
     return f"{_round(min(_SPEED, most)):g} rpm"
 
 

@@ -14,7 +14,6 @@ from ...files.scene_file import assign, find_scene, parse_bearing
 from ...files.schema import Keys, key_of, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...fits.fits import WARM_PARTS
-from ...life.life import LifeConditions
 from ...numerics.units import unit_of
 from ...optimise import SearchOptions
 from ...optimise.constraint import Constraint
@@ -117,18 +116,9 @@ def _freedom(of: str) -> Any:
     )
 
 
-def bound_key(end: str, bare: str = "") -> Any:
-    """Return a bound of a measure as a key.
-
-    Args:
-        end: Which one, in words.
-        bare: Measure whose bound is a bare number; empty: none.
-    """
-    about = f"{end} bound, in the unit of the measure"
-    if not bare:
-        return scene_key(about, default=None, reader=read_raw, json=_QUANTITY)
+def _bound(end: str) -> Any:
+    about = f"{end} bound, in the unit of the measure; of `static_safety` a bare number"
     both = {"anyOf": [_QUANTITY, {"type": "number"}]}
-    about = f"{about}; of `{bare}` a bare number"
     return scene_key(about, default=None, reader=read_raw, json=both)
 
 
@@ -136,8 +126,8 @@ class BoundKeys(Keys):
     about = "[[optimise.constraints]]: a bound on a measure"
 
     measure: str
-    at_least: Any
-    at_most: Any
+    at_least: Any = _bound("lower")
+    at_most: Any = _bound("upper")
 
     def check(self) -> None:
         if self.at_least is None and self.at_most is None:
@@ -164,11 +154,7 @@ class BoundKeys(Keys):
 
 
 class ConstraintKeys(BoundKeys):
-    about = "[[optimise.constraints]]: a bound on a measure"
-
     measure: str = scene_key("what is bounded", choices=MEASURES)
-    at_least: Any = bound_key("lower", "static_safety")
-    at_most: Any = bound_key("upper", "static_safety")
     freedom: str | None = _freedom("measure")
 
 
@@ -296,7 +282,7 @@ def _optimisation(
     keys = read_keys(OptimiseKeys, table)
     with table.building():
         PeakPressure(exponent=keys.exponent)
-    measured = measured_in(scene, cases, keys.exponent)
+    measured = Measured(scene, cases, keys.exponent)
     objective = measured.objective(keys)
     table.table("variables", required=True)
     check_numbers(keys.variables, top, scene)
@@ -509,47 +495,26 @@ def _no_number(key, table, numbers):
     return not_among(key, near)
 
 
-def _life(scene: Scene, cases: Cases) -> RatingLife | None:
-    """Return the rating life in hours by [life], or `None` without speeds."""
-    if cases.inner_speed is None and cases.outer_speed is None:
-        return None
-    return RatingLife(life_conditions(scene), True)
+_OPERATING = {"clearance": OperatingClearance, "preload": OperatingPreload}
+_LARGEST = {
+    "peak_pressure": PeakPressure,
+    "mean_pressure": MeanPressure,
+    "edge_load": EdgeLoad,
+}
 
 
-def measured_in(scene: Scene, cases: Cases, exponent: float) -> "Measured":
-    """Return what can be measured of the bearing of a scene.
+class Measured(NamedTuple):
+    """What can be measured of the bearing of a scene.
 
-    Args:
+    Attributes:
         scene: The scene.
         cases: Its operating cases.
         exponent: Exponent of smooth maxima.
     """
-    bearing = scene.element.bearing
-    return Measured(
-        exponent,
-        bearing.is_ball,
-        _life(scene, cases),
-        life_conditions(scene, False),
-        is_opposed(bearing),
-    )
 
-
-class Measured(NamedTuple):
-    """Measures of a bearing.
-
-    Attributes:
-        exponent: Exponent of the norms.
-        balls: Whether its rolling elements are balls.
-        life: Its rating life in hours, or `None` without a speed.
-        conditions: Conditions of its static safety.
-        opposed: Whether rows of it press each other.
-    """
-
+    scene: Scene
+    cases: Cases
     exponent: float
-    balls: bool
-    life: RatingLife | None
-    conditions: LifeConditions
-    opposed: bool
 
     def objective(self, keys: OptimiseKeys) -> Any:
         """Build the objective."""
@@ -567,30 +532,26 @@ class Measured(NamedTuple):
 
     def measure(self, keys: OptimiseKeys | ConstraintKeys, key: str) -> Any:
         """Build the measure that a key of a table names."""
-        kind = getattr(keys, key)
+        kind, bearing = getattr(keys, key), self.scene.element.bearing
+        still = self.cases.inner_speed is None and self.cases.outer_speed is None
+        problem = ""
+        if kind == "rating_life" and still:
+            problem = "rating_life is in hours: it needs a speed in [operating]"
+        if kind == "edge_load" and bearing.is_ball:
+            problem = "balls have no ends; `edge_load` is for rollers"
+        if kind == "preload" and not is_opposed(bearing):
+            problem = "preload is between rows that press each other; there are no such"
+            problem += " rows"
+        if problem:
+            raise keys.table.error(key, problem)
         if kind == "rating_life":
-            if self.life is None:
-                problem = "rating_life is in hours: it needs a speed in [operating]"
-                raise keys.table.error(key, problem)
-            return self.life
-        if kind == "peak_pressure":
-            return PeakPressure(exponent=self.exponent)
-        if kind == "mean_pressure":
-            return MeanPressure(exponent=self.exponent)
-        if kind == "edge_load":
-            if self.balls:
-                problem = "balls have no ends; `edge_load` is for rollers"
-                raise keys.table.error(key, problem)
-            return EdgeLoad(exponent=self.exponent)
-        if kind == "clearance":
-            return OperatingClearance()
-        if kind == "preload":
-            if not self.opposed:
-                problem = "preload is between rows that press each other; there are no"
-                raise keys.table.error(key, f"{problem} such rows")
-            return OperatingPreload()
+            return RatingLife(life_conditions(self.scene), True)
         if kind == "static_safety":
-            return StaticSafety(self.conditions)
+            return StaticSafety(life_conditions(self.scene, False))
+        if kind in _OPERATING:
+            return _OPERATING[kind]()
+        if kind in _LARGEST:
+            return _LARGEST[kind](exponent=self.exponent)
         freedom = keys.freedom or keys.table.choice("freedom", FREEDOMS[:5])
         of = Displacement if kind == "displacement" else Stiffness
         return of(freedom, exponent=self.exponent)

@@ -31,7 +31,6 @@ from .read_optimise import (
     ConstraintKeys,
     SearchKeys,
     SearchTask,
-    bound_key,
     check_numbers,
     check_present,
     installed_numbers,
@@ -55,11 +54,7 @@ def _part_key() -> Any:
 
 
 class ShaftConstraintKeys(BoundKeys):
-    about = "[[optimise.constraints]]: a bound on a measure"
-
     measure: str = key_of(ConstraintKeys, "measure", choices=SHAFT_OBJECTIVES)
-    at_least: Any = bound_key("lower", "static_safety")
-    at_most: Any = bound_key("upper", "static_safety")
     of: str | None = _part_key()
 
 

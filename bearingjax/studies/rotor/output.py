@@ -7,7 +7,7 @@ import numpy as np
 from ...files.quantity import SceneError
 from ...numerics.result import Result
 from ...report.json_output import run_json
-from ...rotor import STATION_FREEDOMS, CriticalSpeeds, Modes, Onset
+from ...rotor import STATION_FREEDOMS, Modes
 from ...rotor.shaft import STATION_UNITS
 from ..bearing.fit_report import fit_as_dict
 from ..bearing.life_report import life_as_dict, life_verdict, verdict_as_dict
@@ -45,11 +45,22 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
     """
     parts: dict[str, Any] = {}
     if run.modes is not None:
-        parts |= _modes(run.modes)
-    if run.critical is not None:
-        parts |= _critical(run.critical)
+        there = np.imag(run.modes.eigenvalue) > 0
+        parts |= {name: values[there] for name, values in mode_numbers(run.modes)}
+    if (found := run.critical) is not None:
+        there, names = np.isfinite(found.speed), ("speed", "whirl", "damping_ratio")
+        parts |= {f"critical_{name}": getattr(found, name)[there] for name in names}
     if run.task.seats:
-        parts["fit"] = _fit_results(run.task)
+        parts["fit"] = [
+            {
+                "bearing": mount.name,
+                "stations": stations,
+                "speed": run.task.speed,
+                **fit_as_dict(mount.scene),
+            }
+            for mount, stations in run.task.seats
+            if mount.scene is not None
+        ]
     if run.settled is not None:
         parts["static"] = _static(run)
     if run.lives:
@@ -64,7 +75,14 @@ def rotor_as_dict(run: RotorRun) -> dict[str, Any]:
             if mount.scene is not None
         ]
     if run.campbell is not None and run.task.campbell is not None:
-        parts["campbell"] = _campbell(run.campbell, run.task.campbell, run.onsets)
+        parts["campbell"] = {
+            "speed": run.task.campbell,
+            **dict(mode_numbers(run.campbell)),
+            **{
+                f"onset_{name}": [getattr(onset, name) for onset in run.onsets]
+                for name in ("speed", "frequency", "mode")
+            },
+        }
     if run.response is not None:
         parts["response"] = _response(run.response)
     if run.transient is not None:
@@ -162,20 +180,6 @@ def _of_motions(values):
     return dict(zip(headers, flat, strict=True))
 
 
-def _modes(found: Modes) -> dict[str, Any]:
-    there = np.imag(found.eigenvalue) > 0
-    return {name: values[there] for name, values in mode_numbers(found)}
-
-
-def _critical(found: CriticalSpeeds) -> dict[str, Any]:
-    there = np.isfinite(found.speed)
-    return {
-        "critical_speed": found.speed[there],
-        "critical_whirl": found.whirl[there],
-        "critical_damping_ratio": found.damping_ratio[there],
-    }
-
-
 def _static(run: RotorRun) -> dict[str, Any]:
     task, settled = run.task, run.settled
     assert settled is not None  # checked by the caller
@@ -187,29 +191,6 @@ def _static(run: RotorRun) -> dict[str, Any]:
         "load": settled.support_load,
         "stiffness": settled.stiffness,
     }
-
-
-def _fit_results(task: RotorScene) -> list[dict[str, Any]]:
-    return [
-        {
-            "bearing": mount.name,
-            "stations": stations,
-            "speed": task.speed,
-            **fit_as_dict(mount.scene),
-        }
-        for mount, stations in task.seats
-        if mount.scene is not None
-    ]
-
-
-def _campbell(
-    found: Modes, speeds: np.ndarray, onsets: tuple[Onset, ...]
-) -> dict[str, Any]:
-    begun = {
-        f"onset_{name}": [getattr(onset, name) for onset in onsets]
-        for name in ("speed", "frequency", "mode")
-    }
-    return {"speed": speeds, **dict(mode_numbers(found)), **begun}
 
 
 def _response(found: RotorResponse) -> dict[str, Any]:

@@ -30,17 +30,6 @@ BALL_UNITS = {
 """Quantities of each ball or roller, with their units; the cage force is for rollers
 and for balls in time, the rolling spin for rollers."""
 
-OF_ONE = (
-    "azimuth",
-    "orbit_speed",
-    "rolling_orbit_speed",
-    "slip",
-    "spin",
-    "rolling_spin",
-    "cage_force",
-)
-"""Quantities with one value per ball or roller; the others have one per raceway."""
-
 OF_TIME = {
     "time": "s",
     "cage_speed": "rad/s",
@@ -127,8 +116,10 @@ def each_ball(run: SkidRun) -> dict[str, np.ndarray]:
         values = np.asarray(values)
         if name == "spin" and run.state is None:  # of rollers, about their axes
             values = values[..., None] * np.array([0.0, 0.0, 1.0])
-        one = name in OF_ONE
-        results[name] = values if one else by_raceway(values, found.contact_load)
+        of_contacts = values.shape == found.contact_load.shape
+        results[name] = (
+            by_raceway(values, found.contact_load) if of_contacts else values
+        )
     return results
 
 

@@ -22,11 +22,11 @@ from ...statics.support import Support
 from ..bearing.read_scene import Scene
 from ..optimise.read_optimise import (
     ConstraintKeys,
+    Measured,
     check_numbers,
     check_shared,
     installed_numbers,
     kind_of_measure,
-    measured_in,
     read_number,
     read_operated,
     read_spread,
@@ -169,7 +169,7 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         top, scene, cases, inputs = read_operated(data, path, problem)
         table = top.table("tolerances")
         keys = read_keys(ToleranceKeys, table)
-        measured = measured_in(scene, cases, SMOOTHING_EXPONENT)
+        measured = Measured(scene, cases, SMOOTHING_EXPONENT)
         measures = [measured.measure(one, "measure") for one in keys.measures]
         design, numbers = scene.installed, installed_numbers(scene)
         places = {"": ""}
