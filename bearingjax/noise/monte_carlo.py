@@ -27,7 +27,7 @@ from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
 from .scatter import SampledErrors, Tolerances, sample_errors
 from .spectrum import AbstractWindow, Hann, spectrum
-from .vibration import bandwidth, needed_steps, vibration
+from .vibration import Vibration, bandwidth, needed_steps, vibration
 
 _DIRECTIONS = 3
 OnRecords = Callable[[Array, Array], Any]
@@ -94,6 +94,20 @@ def sampled_model(model: NoiseModel, tolerances: Tolerances, key: Array) -> Nois
     errors = errors if len(parts) > 1 else errors[0]
     changed = with_bearings(bearing, rows), errors
     return eqx.tree_at(lambda m: (m.element.bearing, m.errors), model, changed)
+
+
+def sampled_record(
+    model: NoiseModel, tolerances: Tolerances, key: Array, counts: tuple[int, ...]
+) -> Vibration:
+    """Return the record of one bearing.
+
+    Args:
+        model, tolerances, key: As in `sampled_model`.
+        counts: Turns, turns to settle, samples and steps, as in `vibration`. Static.
+    """
+    names = "turns", "settle", "samples", "steps"
+    given: Any = dict(zip(names, counts, strict=True))
+    return vibration(sampled_model(model, tolerances, key), **given, throw=False)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -290,18 +304,10 @@ def wrap(numbers: Array, kind: str | None) -> Array:
 @program(quick=True, level=1)
 def _records(model, tolerances, factors, numbers, kind, counts):
     """Return accelerations (bearing, time, 3) and result codes of a batch."""
-    turns, settle, samples, steps = counts
     tolerances = tolerances.scale(factors)
 
     def record(key):
-        found = vibration(
-            sampled_model(model, tolerances, key),
-            turns=turns,
-            settle=settle,
-            samples=samples,
-            steps=steps,
-            throw=False,
-        )
+        found = sampled_record(model, tolerances, key, counts)
         return found.acceleration[:, :_DIRECTIONS], found.result
 
     return jax.vmap(record)(wrap(numbers, kind))

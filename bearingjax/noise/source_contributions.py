@@ -32,10 +32,10 @@ from ..numerics.units import unit
 from .bands import LEAST_SHIFT, Bands, band_power, shift
 from .level import REFERENCE_ACCELERATION, level
 from .model import NoiseModel
-from .monte_carlo import Progress, RecordOptions, Records, sampled_model, unwrap, wrap
+from .monte_carlo import Progress, RecordOptions, Records, sampled_record, unwrap, wrap
 from .scatter import Tolerances
 from .spectrum import Hann, spectrum
-from .vibration import bandwidth, vibration
+from .vibration import bandwidth
 
 
 class SourceContributions(Printable):
@@ -313,19 +313,11 @@ def _mean_square(acceleration, along):
 @program(quick=True, level=1)
 def _slopes(model, tolerances, numbers, kind, counts, along):
     """Return derivatives of every bearing's mean square by the scales of sources."""
-    turns, settle, samples, steps = counts
     one = jnp.ones((), model.mass.dtype)
     factors = {name: one for name in tolerances.sources}
 
     def square(factors, key):
-        found = vibration(
-            sampled_model(model, tolerances.scale(factors), key),
-            turns=turns,
-            settle=settle,
-            samples=samples,
-            steps=steps,
-            throw=False,
-        )
+        found = sampled_record(model, tolerances.scale(factors), key, counts)
         return _mean_square(found.acceleration[:, :3], along)
 
     return jax.vmap(jax.grad(square), in_axes=(None, 0))(factors, wrap(numbers, kind))

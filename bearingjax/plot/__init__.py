@@ -27,16 +27,18 @@ Names
   `sliding_map`.
 """
 
-from .balls import contact_angles, ellipses
-from .contact import contact_map, contact_overview, contact_surface
-from .contact_lines import centre_pressure, contact_line_load
-from .contact_stress import contact_stress
-from .decisions.identify_overview import identify_overview
-from .decisions.selection import selection_overview
-from .decisions.tolerances import tolerance_overview
+from .contact import (
+    centre_pressure,
+    contact_line_load,
+    contact_map,
+    contact_overview,
+    contact_stress,
+    contact_surface,
+)
+from .decisions import identify_overview, selection_overview, tolerance_overview
 from .drawings.drawing import drawing
-from .drawings.section import cross_section
-from .drawings.sections import cross_sections
+from .drawings.section import cross_section, cross_sections
+from .element_contacts import contact_angles, ellipses, pressure_map, pressure_profiles
 from .life import life_overview
 from .load import load_displacement, load_zone, stiffness_over_speed
 from .noise import (
@@ -45,22 +47,27 @@ from .noise import (
     contact_state_map,
     level_distribution,
     noise_envelope,
+    noise_overview,
     noise_spectrum,
     source_bars,
 )
-from .noise_page import noise_overview
 from .optimise_overview import optimise_overview
 from .page import overview
-from .pressure import pressure_map, pressure_profiles
 from .profiles import profile
 from .rotors.rotor import rotor_section
-from .rotors.rotor_modes import campbell_diagram, mode_shapes
-from .rotors.rotor_motion import orbits, waterfall, waveforms
-from .rotors.rotor_page import rotor_overview
-from .rotors.rotor_response import linear_curve, response_curve, speed_curve
+from .rotors.rotor_vibration import (
+    campbell_diagram,
+    linear_curve,
+    mode_shapes,
+    orbits,
+    response_curve,
+    rotor_overview,
+    speed_curve,
+    waterfall,
+    waveforms,
+)
 from .shafts import shaft_overview
-from .skidding.skid import cage_speed, power_bars, skid_overview
-from .skidding.skid_contact import heat_map, sliding_map
+from .skidding.skid import cage_speed, heat_map, power_bars, skid_overview, sliding_map
 from .skidding.skid_curves import (
     cage_force_over_orbit,
     cage_force_over_time,

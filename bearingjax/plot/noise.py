@@ -1,4 +1,4 @@
-"""Plots of bearing noise: record, spectrum, bands, contact states."""
+"""Plots of bearing noise: record, spectrum, bands, contact states, and their page."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +11,7 @@ from ..noise.level import LOWEST_LEVEL
 from ..noise.lines import UNNAMED
 from ..noise.scatter import SOURCES
 from .panel import Ax, Axis, Curve, Panel, chart, finish
-from .style import CURVES, GREY, SMALL, Axes, axes_or_new
+from .style import CURVES, GREY, SMALL, Axes, Figure, axes_or_new, head, new_page
 
 STATES = ("#D55E00", "#E69F00", "#F0F0F0", "#56B4E9", "#0072B2")
 """Colours of 0, 1, 2, 3, 4 contacts."""
@@ -345,3 +345,47 @@ def source_bars(contributions: noise.SourceContributions, ax: Ax = None) -> Any:
     label = "part of the mean square of the acceleration [%]"
     finish(ax, "Sources of the noise", label, axis="x")
     return ax
+
+
+def noise_overview(run: Any, title: str = "") -> Figure:
+    """Plot record, spectrum, bands, contact states and envelope on one page.
+
+    A measured spectrum, and the envelope of a record, stand beside the calculated one
+    along the sensor. Of random bearings also the distribution of their levels, and what
+    makes it.
+
+    Args:
+        run: Results of a scene of noise, with a record.
+        title: Head of the page; "Noise" if empty.
+
+    Returns:
+        The figure, 15 inches wide.
+    """
+    task, analysis, many = run.task, run.analysis, run.many
+    rows = 3 if many is None else 4
+    figure = new_page(15.0, 4.8 * rows)
+    across: Any = [figure.add_subplot(rows, 2, k) for k in (1, 2, 3, 4)]
+    given = {"reference": task.reference}
+    acceleration_over_time(analysis.record, across[0])
+    noise_spectrum(analysis.spectrum, analysis.lines, across[1], **given)
+    band_bars(task.bands, analysis.band_level, across[2], norm=task.norm, **given)
+    contact_state_map(analysis.record, analysis.states, across[3])
+    measured, sensor = task.measured, task.model.sensor
+    ax = figure.add_subplot(rows, 1 if measured is None else 2, 3 + 2 * bool(measured))
+    found, there = analysis.envelope, analysis.measured_envelope
+    unknown = measured is not None and not measured.has_unit
+    beside = {"measured": there and there.spectrum, "has_unit": not unknown}
+    noise_envelope(found.spectrum, found.lines, ax, band=found.band, **beside)
+    if measured is not None:
+        ax = figure.add_subplot(rows, 2, 6)
+        beside = {"measured": measured.spectrum, "has_unit": measured.has_unit}
+        noise_spectrum(run.heard, (), ax, **beside, **given)
+        along = "the loudest axis" if sensor is None else "the sensor"
+        ax.set_title(f"Calculated along {along}, and {measured.name}", parse_math=False)
+    if many is not None:
+        level = many.levels.level
+        level_distribution(level, figure.add_subplot(rows, 2, 7), **given)
+        if many.contributions is not None:
+            source_bars(many.contributions, figure.add_subplot(rows, 2, 8))
+    head(figure, title or "Noise")
+    return figure

@@ -4,7 +4,6 @@ import dataclasses
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ..design import rows_of
@@ -14,7 +13,7 @@ from ..optimise.measure import AbstractMeasure, AbstractSmooth, label_of
 from ..optimise.system import element_of, loads_of
 from ..shafts import ShaftDesign
 from .panel import ALONG, PRESSURE, Axis, Bars, Curve, Panel
-from .profiles import arc_gaps
+from .profiles import arc_gaps, drop_along
 from .style import (
     COLOURS,
     GREY,
@@ -63,7 +62,7 @@ def optimise_overview(found: OptimisedDesign, title: str = "") -> Figure:
     panels = {"h": _history(found)}
     panels["c"] = _each_bearing(found) if shafts else _cases(found)
     if rollers:
-        case, roller, raceway = worst_contact(found.before.solution)
+        case, roller, raceway = _worst_contact(found.before.solution)
         panels |= {"p": _profiles(found, roller, raceway), "a": _pressures(found, case)}
     for name, panel in panels.items():
         panel.draw(axes[name])
@@ -83,12 +82,8 @@ def _of_bearings(found):
     )
 
 
-def worst_contact(solution: Any) -> tuple[int, int, int]:
-    """Return case, rolling element and raceway of the highest pressure of rollers.
-
-    Args:
-        solution: With a leading case axis.
-    """
+def _worst_contact(solution):
+    """Return case, rolling element and raceway of the highest pressure of rollers."""
     pressure = np.asarray(solution.roller_pressure)
     place = np.unravel_index(np.argmax(pressure), pressure.shape)
     case, roller, raceway = (int(k) for k in place)
@@ -106,13 +101,9 @@ def _profiles(found, roller, raceway) -> Panel:
     limit, marks = 0.0, []
     for side, element in (("before", found.initial), ("after", found.element)):
         bearing: Any = rows_of(element.bearing)[row].bearing
-        length, diameter = bearing.roller_length, bearing.roller_diameter
-        # Points gather at the ends, where profiles are steep.
-        position = -0.5 * length * jnp.cos(jnp.linspace(0.0, jnp.pi, 801))
-        profiles = (bearing.roller_profile, getattr(bearing, f"{ring}_raceway_profile"))
-        drops = [p.drop(position, length, diameter) for p in profiles]
-        drop = np.sum(drops, axis=0) + arc_gaps(bearing, position)[raceway]
-        along = np.asarray(position)
+        along, own = drop_along(bearing, "roller_profile", 801)
+        _, drop = drop_along(bearing, f"{ring}_raceway_profile", 801)
+        drop = own + drop + arc_gaps(bearing, along)[raceway]
         marks.append(Curve(along, drop, side, *_SIDES[side], {"lw": 2}))
         near = np.abs(along) <= 0.97 * along[-1]
         limit = max(limit, min(float(drop.max()), 3.0 * float(drop[near].max())))

@@ -11,10 +11,9 @@ from ..numerics.result import Result
 from ..numerics.units import shown_count
 from ..statics.solution import BallSolution, RollerSolution, Solution
 from ..statics.warning import solution_warnings
-from .balls import contact_angles, ellipses
 from .drawings.section import cross_section
+from .element_contacts import contact_angles, ellipses, pressure_map, pressure_profiles
 from .load import load_zone
-from .pressure import pressure_map, pressure_profiles
 from .style import (
     RACEWAYS,
     Figure,

@@ -2,12 +2,27 @@
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array
 
 from ..design import AbstractRollerBearing
 from ..design.profile import between_arcs, drops
 from .panel import ALONG, finish
 from .style import COLOURS, ROLLER, SMALL, Ax, Axes, axes_or_new
+
+
+def drop_along(
+    bearing: AbstractRollerBearing, name: str, points: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions along a roller, and the drop of a profile there (point,) [m].
+
+    Args:
+        bearing: The design.
+        name: Field with the profile.
+        points: Their number; they gather at the ends, where profiles are steep.
+    """
+    length, turn = bearing.roller_length, np.linspace(0.0, np.pi, points)
+    along = -0.5 * float(length) * np.cos(turn)
+    there, diameter = jnp.asarray(along, length.dtype), bearing.roller_diameter
+    return along, np.asarray(drops(getattr(bearing, name), there, length, diameter))
 
 
 def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
@@ -18,21 +33,18 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     is measured from its arc, those of the raceways from the same arc.
     """
     ax = axes_or_new(ax)
-    length, diameter = bearing.roller_length, bearing.roller_diameter
-    # Points gather at the ends, where profiles are steep.
-    turn = np.linspace(0.0, np.pi, 801)
-    along = -0.5 * float(length) * np.cos(turn)
-    position, x = jnp.asarray(along, length.dtype), 1e3 * along
+    x = 1e3 * drop_along(bearing, "roller_profile", 801)[0]
     near_end = np.abs(x) <= 0.95 * x[-1]
     lines = {
-        "roller": (bearing.roller_profile, ROLLER, "-", 2.0),
-        "outer raceway": (bearing.outer_raceway_profile, COLOURS["outer"], "--", 1.8),
-        "inner raceway": (bearing.inner_raceway_profile, COLOURS["inner"], ":", 2.4),
+        "roller": (ROLLER, "-", 2.0),
+        "outer raceway": (COLOURS["outer"], "--", 1.8),
+        "inner raceway": (COLOURS["inner"], ":", 2.4),
     }
     limit, barrel = 0.0, bearing.arc_radii is not None
-    flatter = 1e6 * np.concatenate([[0.0 * x], arc_gaps(bearing, position)])
-    for k, (name, (shape, colour, style, width)) in enumerate(lines.items()):
-        drop = 1e6 * np.asarray(drops(shape, position, length, diameter)) + flatter[k]
+    flatter = 1e6 * np.concatenate([[0.0 * x], arc_gaps(bearing, 1e-3 * x)])
+    for k, (name, (colour, style, width)) in enumerate(lines.items()):
+        field = f"{name.replace(' ', '_')}_profile"
+        drop = 1e6 * drop_along(bearing, field, 801)[1] + flatter[k]
         ax.plot(x, drop, color=colour, linestyle=style, linewidth=width, label=name)
         full = float(np.max(drop, initial=0.0, where=np.isfinite(drop)))
         inside = float(np.max(drop[near_end], initial=0.0))
@@ -46,7 +58,7 @@ def profile(bearing: AbstractRollerBearing, ax: Ax = None) -> Axes:
     return ax
 
 
-def arc_gaps(bearing: AbstractRollerBearing, position: Array) -> np.ndarray:
+def arc_gaps(bearing: AbstractRollerBearing, position: np.ndarray) -> np.ndarray:
     """Return the gaps that the arcs of roller and raceways leave along the roller.
 
     Args:
@@ -59,4 +71,5 @@ def arc_gaps(bearing: AbstractRollerBearing, position: Array) -> np.ndarray:
     if bearing.arc_radii is None:
         return np.zeros((2, len(position)))
     own, *raceways = bearing.arc_radii
-    return np.stack([between_arcs(position, (own, radius)) for radius in raceways])
+    there = jnp.asarray(position, own.dtype)
+    return np.stack([between_arcs(there, (own, radius)) for radius in raceways])

@@ -79,11 +79,16 @@ from .bearing_support import BearingSupport
 from .damping import AbstractDamping, ModalDamping, ProportionalDamping
 from .linear.coefficients import stiffness_table, stiffness_warnings
 from .linear.critical import CriticalSpeeds, critical_speeds
-from .linear.harmonic import harmonic_response, reduction_error, reduction_warnings
+from .linear.harmonic import (
+    harmonic_response,
+    reduction_error,
+    reduction_warnings,
+    unbalance_response,
+)
 from .linear.modes import Modes, campbell, major_axis, modes
 from .linear.onset import Onset, instability_onsets
 from .linear.reduction import craig_bampton
-from .linear.response import Unbalance, UnbalanceResponse, unbalance_response
+from .linear.response import Unbalance, UnbalanceResponse
 from .loads import RotorLoads, StationForce
 from .parts import (
     AbstractPart,

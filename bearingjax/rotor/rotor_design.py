@@ -15,8 +15,8 @@ from ..optimise.system import AbstractSystem, Reading
 from ..statics.installed import Installed
 from .bearing_support import BearingSupport
 from .like_parts import map_parts
+from .linear.harmonic import unbalance_response
 from .linear.modes import modes
-from .linear.response import unbalance_response
 from .loads import RotorLoads
 from .preload_offset import preload_offset
 from .rotor import Rotor

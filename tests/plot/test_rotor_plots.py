@@ -10,7 +10,7 @@ from tolerances import ROUNDING
 
 import bearingjax as bj
 from bearingjax import plot
-from bearingjax.plot.rotors.rotor_parts import disc_size
+from bearingjax.plot.rotors.rotor import disc_size
 from bearingjax.rotor import CriticalSpeeds, Modes
 from bearingjax.rotor.nonlinear import (
     Branch,

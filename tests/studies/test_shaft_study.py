@@ -18,8 +18,7 @@ import bearingjax as bj
 from bearingjax.files import SceneError
 from bearingjax.life import Life, judge_life
 from bearingjax.numerics.result import Result
-from bearingjax.plot.rotors.shaft_views import system_views
-from bearingjax.plot.shafts import _draw_nodes, _draw_warm_up
+from bearingjax.plot.shafts import _draw_nodes, _draw_warm_up, system_views
 from bearingjax.report.report_model import Grid
 from bearingjax.shafts import DutyResult, ThermalState, power_flow
 from bearingjax.studies.shaft.output import shaft_columns

@@ -19,18 +19,19 @@ from ...design import (
 from ...design.abstract import nearest_entry
 from ...numerics.units import unit
 from ..style import Figure, head, pyplot, write
-from .ball_drawing import ball_clearance_view, dimensioned_balls
-from .boundary import draw_boundary
 from .dimension import label
 from .face_drawing import DEVIATIONS, deviation_view, face_view
 from .outline import section
 from .profile_drawing import profile_view
-from .roller_drawing import (
+from .row_drawing import (
     PROFILES,
+    ball_clearance_view,
+    dimensioned_balls,
     dimensioned_rollers,
     rib_view,
     roller_clearance_view,
 )
+from .section import draw_boundary
 from .set_drawing import arrangement_view
 
 MATERIALS = "material", "ring_material"

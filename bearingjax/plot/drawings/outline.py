@@ -2,16 +2,15 @@
 
 from typing import Annotated, NamedTuple
 
-import jax.numpy as jnp
 import numpy as np
 
 from ...contact import Palmgren
 from ...design.bearing import AbstractRollerBearing
-from ...design.profile import drops
 from ...element.constants import contact_constants
 from ...numerics import Midpoint
 from ...numerics.compiled.programs import program
 from ...numerics.units import unit
+from ..profiles import drop_along
 from ..style import RACEWAYS
 
 _BODY = 0.35  # thickness of the schematic rings, roller diameters
@@ -177,16 +176,7 @@ def _roller_outline(bearing, ribs, radius):
     """Return the outline of the roller (t, m), with profile and end spheres, in mm."""
     length, half = 1e3 * float(bearing.roller_length), float(bearing.half_angle)
     diameter = 1e3 * float(bearing.roller_diameter)
-    s = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 401))
-    position = jnp.asarray(1e-3 * s, bearing.roller_length.dtype)
-    drop = 1e3 * np.asarray(
-        drops(
-            bearing.roller_profile,
-            position,
-            bearing.roller_length,
-            bearing.roller_diameter,
-        )
-    )
+    s, drop = (1e3 * x for x in drop_along(bearing, "roller_profile", 401))
     back = _sagitta(s, radius)
     x = s * np.cos(half) - back * np.sin(half)
     y = 0.5 * diameter - s * np.sin(half) - back * np.cos(half) - drop

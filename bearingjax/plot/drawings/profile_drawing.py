@@ -3,11 +3,10 @@
 import dataclasses
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from ...design import AbstractRollerBearing, CrownedEnds, FujiwaraKawase, Tabulated
-from ...design.profile import drops
+from ..profiles import drop_along
 from ..style import BOX, COLOURS, GREY, ROLLER, Axes, axes_or_new, write
 from .dimension import arrow, label, write_aside
 
@@ -27,16 +26,8 @@ def profile_view(ax: Axes, bearing: AbstractRollerBearing, name: str) -> None:
     """
     ax = axes_or_new(ax)
     profile, length = getattr(bearing, name), float(bearing.roller_length)
-    turn = np.linspace(0.0, np.pi, 401)
-    s = -0.5 * length * np.cos(turn)
-    drop = 1e6 * np.asarray(
-        drops(
-            profile,
-            jnp.asarray(s, bearing.roller_length.dtype),
-            bearing.roller_length,
-            bearing.roller_diameter,
-        )
-    )
+    s, drop = drop_along(bearing, name, 401)
+    drop = 1e6 * drop
     inside = float(drop[np.abs(s) <= 0.5 * _NEAR * length].max())
     limit = min(float(drop.max()), 3.0 * inside) if inside > 0.0 else drop.max()
     limit = float(limit) or 1.0

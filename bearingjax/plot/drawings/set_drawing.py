@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from ...design import AbstractBallBearing, BearingSet
+from ...design import BearingSet
 from ...design.bearing_set import is_self_aligning
 from ..style import BOX, INNER, Axes, Size, write, write_beside
-from .ball_section import ball_row, row_position
 from .dimension import (
     AXIS,
     LINE,
@@ -16,8 +15,7 @@ from .dimension import (
     spread_labels,
     width,
 )
-from .outline import section
-from .roller_section import roller_row
+from .row_section import draw_rows, row_position
 
 _APART = 0.25
 """Gap between the labels of adjacent rows [inch]."""
@@ -34,7 +32,7 @@ def arrangement_view(
         turned: Rows whose first azimuth is to be told here.
         size: Width and height of the axes [inch].
     """
-    outlines = [_draw(ax, row, bearing) for row in bearing.rows]
+    outlines = draw_rows(ax, bearing.rows)
     points = np.concatenate(outlines)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     tall = high - low
@@ -123,30 +121,6 @@ def _row_labels(row, k, turned):
     if turned:
         lines.append(label(row.bearing, "first_azimuth", f"{name}bearing."))
     return "\n".join(lines)
-
-
-def _draw(ax, row, bearing):
-    """Draw a row; return its corners (point, 2)."""
-    sign = -1.0 if row.mirrored else 1.0
-    part = row.bearing
-    if isinstance(part, AbstractBallBearing):
-        radius = 0.5e3 * float(part.pitch_diameter)
-        centre = np.array([row_position(row), radius])
-        places = np.sort([row_position(one) for one in bearing.rows])
-        reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
-
-        def place(points):
-            return centre + np.asarray(points) * np.array([sign, 1.0])
-
-        return ball_row(ax, part, place, reach)
-
-    def mirror(points):
-        return np.asarray(points) * np.array([sign, 1.0]) + np.array(
-            [1e3 * float(row.position), 0.0]
-        )
-
-    behind = _is_crossed(bearing) and row is not bearing.rows[0]
-    return roller_row(ax, section(part), mirror, behind=behind)
 
 
 def _is_crossed(bearing):

@@ -1,4 +1,4 @@
-"""Pages on skidding balls and rollers, and cage speed over the load."""
+"""Pages on skidding balls and rollers, maps of a contact, cage speed over load."""
 
 from typing import Any
 
@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from ...skid import (
     Conditions,
+    Ellipse,
     SkidHistory,
     SkidModel,
     SkidRollerHistory,
@@ -22,27 +23,15 @@ from ..style import (
     RACEWAYS,
     ROLLER,
     SMALL,
+    Axes,
     Figure,
+    axes_or_new,
     degrees,
     head,
     new_page,
+    pyplot,
 )
-from .skid_contact import heat_map, sliding_map
-from .skid_curves import (
-    cage_force_over_orbit,
-    cage_force_over_time,
-    heat_over_orbit,
-    load_over_orbit,
-    load_over_time,
-    power_over_time,
-    sliding_over_orbit,
-    sliding_over_time,
-    sliding_spectrum,
-    slip_over_time,
-    speed_over_time,
-    spin_over_orbit,
-    spin_over_time,
-)
+from .skid_curves import OVER_ORBIT, OVER_TIME, cage_force_over_time, sliding_spectrum
 
 
 def skid_overview(
@@ -68,30 +57,13 @@ def skid_overview(
         The figure, 15 by 9 inches; of a motion in time 18 by 9.
     """
     if isinstance(found, SkidHistory | SkidRollerHistory):
-        figure = _page(found, (*_OVER_TIME, _spectrum, cage_force_over_time), 18.0)
+        figure = _page(found, (*OVER_TIME, _spectrum, cage_force_over_time), 18.0)
     elif isinstance(found, SteadyRollerSkid):
-        figure = _page(found, (*_ROLLERS, power_bars), 15.0)
+        figure = _page(found, (*OVER_ORBIT, power_bars), 15.0)
     else:
         figure = _end(model, found, state)
     head(figure, title or type(model.bearing).__name__)
     return figure
-
-
-_OVER_TIME = (
-    speed_over_time,
-    slip_over_time,
-    spin_over_time,
-    power_over_time,
-    load_over_time,
-    sliding_over_time,
-)
-_ROLLERS = (
-    load_over_orbit,
-    sliding_over_orbit,
-    spin_over_orbit,
-    heat_over_orbit,
-    cage_force_over_orbit,
-)
 
 
 def _page(found, drawn, width):
@@ -127,9 +99,8 @@ def _end(model, found, state):
         at = (0, int(inner))
         _text(axes["text"], found)
     else:
-        load_over_orbit(found, axes["load"])
-        sliding_over_orbit(found, axes["sliding"])
-        spin_over_orbit(found, axes["spin"])
+        for name, draw in zip(first, OVER_ORBIT, strict=False):
+            draw(found, axes[name])
         place, contact = np.unravel_index(np.argmax(heat), heat.shape)
         at = (int(place), int(contact))
     _contact(model, found, state, at, axes["slip"], axes["heat"])
@@ -245,3 +216,75 @@ def _text(ax, found):
 
 def _list_cases(values: Any, unit: str) -> str:
     return ", ".join(f"{v + 0.0:.3g}" for v in values) + f" {unit}"
+
+
+_MAP = "viridis"
+
+
+def sliding_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
+    """Map the sliding speed over a contact [mm/s], with its direction as arrows.
+
+    Args:
+        ellipse: From `skid.sliding_ellipse`.
+
+    Returns:
+        The axes; both directions have scales of their own.
+    """
+    speed = 1e3 * np.sqrt((ellipse.slip**2).sum(axis=-1))
+    ax = _mesh(ellipse, speed, "sliding speed [mm/s]", ax)
+    rings, around = slice(4, None, 6), slice(0, -1, 9)
+    # Of one length: their colours show the speed. As angles on the page, where the
+    # directions have scales of their own, they lean to the one that is drawn longer.
+    y, x = (1e3 * ellipse.y[rings, around], 1e6 * ellipse.x[rings, around])
+    across, along = ellipse.slip[rings, around, 1], ellipse.slip[rings, around, 0]
+    size = np.hypot(across, along)
+    size = np.where(size > 0, size, 1.0)
+    ax.quiver(
+        y,
+        x,
+        across / size,
+        along / size,
+        color="white",
+        edgecolor=GREY,
+        linewidth=0.4,
+        width=0.008,
+        scale=16.0,
+        pivot="middle",
+        zorder=3,
+    )
+    ax.set_title("Sliding of the ball on its raceway")
+    return ax
+
+
+def heat_map(ellipse: Ellipse, ax: Ax = None) -> Axes:
+    """Map the heat of the traction over a contact [W/mm²].
+
+    Args:
+        ellipse: From `skid.sliding_ellipse`.
+
+    Returns:
+        The axes; both directions have scales of their own.
+    """
+    ax = _mesh(ellipse, 1e-6 * ellipse.heat, "heat [W/mm²]", ax)
+    ax.set_title("Heat of the traction")
+    return ax
+
+
+def _mesh(ellipse, values, label, ax):
+    ax = axes_or_new(ax, (6.0, 4.0))
+    mesh = ax.pcolormesh(
+        1e3 * ellipse.y,
+        1e6 * ellipse.x,
+        values,
+        shading="gouraud",
+        cmap=pyplot().get_cmap(_MAP),
+        vmin=0.0,
+        rasterized=True,
+    )
+    ax.plot(1e3 * ellipse.y[-1], 1e6 * ellipse.x[-1], color=GREY, linewidth=0.8)
+    bar = ax.figure.colorbar(mesh, ax=ax)
+    bar.set_label(label)
+    bar.ax.tick_params(labelsize=SMALL)
+    ax.set_xlabel("across the rolling direction [mm]")
+    ax.set_ylabel("along it [µm]")
+    return ax

@@ -301,3 +301,20 @@ def _shade(ax, zone):
                 0.5 * (low + high), 1.01, zone.name, fontweight="bold", color=GREY,
                 transform=ax.get_xaxis_transform(), ha="center", va="bottom",
             )  # fmt: skip
+
+
+OVER_TIME = (
+    speed_over_time,
+    slip_over_time,
+    spin_over_time,
+    power_over_time,
+    load_over_time,
+    sliding_over_time,
+)
+OVER_ORBIT = (
+    load_over_orbit,
+    sliding_over_orbit,
+    spin_over_orbit,
+    heat_over_orbit,
+    cage_force_over_orbit,
+)

@@ -51,6 +51,24 @@ def harmonic_response(
     return _response(rotor, loads, frequencies, speeds)
 
 
+def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:
+    """Return the vibration under unbalance, speed by speed.
+
+    The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
+
+    Args:
+        rotor: The rotor.
+        unbalances: `Unbalance`, or several.
+        speeds: (speed,) [rad/s].
+
+    Returns:
+        UnbalanceResponse, differentiable with respect to every number.
+    """
+    speeds, loads = speed_list("unbalance_response", speeds), RotorLoads(unbalances)
+    loads.check(rotor)
+    return _response(rotor, loads, speeds, speeds)
+
+
 @program(quick=True)
 def _response(rotor, loads, frequencies, speeds) -> UnbalanceResponse:
     return steady(rotor, *_forces(rotor, loads), frequencies, speeds)

@@ -186,7 +186,7 @@ def _modes(rotor, speed, count):
     unsymmetric = to_complex(0.5 * (fixed.stiffness - fixed.stiffness.T))
     work = jnp.sum((known.left.conj() @ unsymmetric) * known.right, axis=1)
     driven = jnp.where(own == 0, 0.0, -work / jnp.where(own == 0, 1.0, own)).real
-    return modes_of(pairs, matrices, speed), driven
+    return _modes_of(pairs, matrices, speed), driven
 
 
 def _instability_warning(found) -> Iterator[Warning]:
@@ -330,7 +330,7 @@ def follow_modes(
             pairs.value, pairs.right, pairs.left
         )
         pairs = eqx.tree_at(lambda p: p.value, pairs, value)
-        return modes_of(pairs, matrices, speed)
+        return _modes_of(pairs, matrices, speed)
 
     return lax.map(lambda both: show(*both), (pairs, speeds)), overlap
 
@@ -499,14 +499,8 @@ def _refine(matrices, value, right, left):
     return jnp.where(value.imag > 0, refined, to_complex(refined.real))
 
 
-def modes_of(pairs: Pairs, matrices: RotorMatrices, speed: Any) -> Modes:
-    """Return `Modes` from eigenpairs.
-
-    Args:
-        pairs: Eigenvalues and vectors.
-        matrices: Matrices of the rotor; only what its freedoms move is read.
-        speed: Speed of the rotor, whose sense is called forward [rad/s].
-    """
+def _modes_of(pairs, matrices, speed):
+    """Return `Modes` from eigenpairs; the sense of the speed is called forward."""
     matrices = stop_gradient(matrices)
     moved = pairs.right @ to_complex(matrices.motions).T
     nodes, housing = matrices.split(moved)

@@ -1,6 +1,5 @@
 """Vibration of a linear rotor under unbalance."""
 
-from collections.abc import Iterable
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -8,7 +7,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Complex, Float
 
-from ...design.checks import all_of_class, check_fields, number
+from ...design.checks import check_fields, number
 from ...numerics.compiled.programs import program
 from ...numerics.labels import to_xarray
 from ...numerics.lapack import solve_any
@@ -16,9 +15,8 @@ from ...numerics.shown import Printable
 from ...numerics.types import Real, as_count
 from ...numerics.units import meaning, real, unit
 from ..parts import check_station
-from ..rotor import Rotor
 from ..shaft import STATION_UNITS
-from .modes import major_axis, speed_list, to_complex
+from .modes import major_axis, to_complex
 
 _HELD = 1e-6
 """Stiffness over mass added to everything at frequency zero [1/s²]."""
@@ -81,46 +79,6 @@ class UnbalanceResponse(Printable):
     def major_axis(self) -> Float[Array, "speed node"]:
         """Longer half axis of the orbit of every node in x and y [m]."""
         return major_axis(self.motion[..., 0], self.motion[..., 1])
-
-
-def unbalance_response(rotor: Rotor, unbalances: Any, speeds: Any) -> UnbalanceResponse:
-    """Return the vibration under unbalance, speed by speed.
-
-    The force of an unbalance U at azimuth φ is U Ω² (cos(Ωt + φ), sin(Ωt + φ)).
-
-    Args:
-        rotor: The rotor.
-        unbalances: `Unbalance`, or several.
-        speeds: (speed,) [rad/s].
-
-    Returns:
-        UnbalanceResponse, differentiable with respect to every number.
-    """
-    many = isinstance(unbalances, Iterable)
-    unbalances = tuple(unbalances) if many else (unbalances,)
-    held = "unbalance_response", "unbalances", unbalances
-    all_of_class(*held, Unbalance, "Unbalances")
-    for one in unbalances:
-        if one.station > rotor.shaft.n_segments:
-            raise ValueError(
-                f"unbalance_response: `unbalances` holds one on station {one.station};"
-                f" the last station of the shaft is {rotor.shaft.n_segments}."
-            )
-    speeds = speed_list("unbalance_response", speeds)
-    moments = _moments(rotor, unbalances)
-    return steady(rotor, moments, jnp.zeros_like(moments), speeds, speeds)
-
-
-@program(quick=True)
-def _moments(rotor, unbalances) -> Complex[Array, " motion"]:
-    """Return amplitudes of unbalance forces on all motions, over Ω² [kg m]."""
-    moments = to_complex(jnp.zeros_like(rotor.motions()[:, 0]))
-    for one in unbalances:
-        x, y = one.moment * jnp.cos(one.phase), one.moment * jnp.sin(one.phase)
-        at = rotor.slice_at(one.station).start
-        moments = moments.at[at].add(lax.complex(x, y))
-        moments = moments.at[at + 1].add(lax.complex(y, -x))
-    return moments
 
 
 @program(quick=True)

@@ -6,7 +6,6 @@ from functools import partial
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from ...element.inertia import Speed
 from ...numerics.compiled.programs import program
@@ -22,23 +21,14 @@ from ..contact_loads import (
     loaded_ball,
     loaded_rollers,
 )
-from ..load_table import LoadTable, load_table
+from ..load_table import load_table
 from ..model import SkidModel
 from ..motion import SkidState, Surroundings, equations_of_motion
 from ..ring_speed import SpeedTable
 
 
-def tabulate_loads(
-    model: SkidModel, solution: BallSolution | RollerSolution, speed: Speed, places: int
-) -> LoadTable:
-    """Tabulate the loads of balls or rollers around a solved bearing.
-
-    Args:
-        model: The bearing and its oil.
-        solution: Solution under its load.
-        speed: Ring speeds of that solution.
-        places: Number of places. Static.
-    """
+def _tabulate_loads(model, solution, speed, places):
+    """Tabulate the loads of balls or rollers around a bearing solved at a speed."""
     azimuth = solution.azimuth[:1]
     if places > 1:
         even = 2.0 * np.pi * np.arange(places) / places
@@ -71,7 +61,7 @@ def surroundings(
         gravity: Against y [m/s²].
         places: Places of the table. Static.
     """
-    table = tabulate_loads(model, solution, load_speed, places)
+    table = _tabulate_loads(model, solution, load_speed, places)
     centre = jnp.zeros((*solution.azimuth.shape, 0))
     return _begin(model, table, solution, speed, gravity, centre, jnp.zeros(0))
 
@@ -111,20 +101,11 @@ def balanced_surroundings(
 def _begin(model, loads, solution, speed, gravity, centre, ring):
     density = model.lubricant.density.at(model.temperature)
     environment = Surroundings(model, loads, speed, solution.azimuth, density, gravity)
-    return environment, rolling_start(environment, centre, ring)
+    return environment, _rolling_start(environment, centre, ring)
 
 
-def rolling_start(
-    environment: Surroundings,
-    centre: Float[Array, "ball z"],
-    ring: Float[Array, " unknown"],
-) -> SkidState:
-    """Return the state of pure rolling, with balls or rollers in mid pocket.
-
-    Args:
-        environment: Surroundings of the balls.
-        centre, ring: As in `SkidState` [m].
-    """
+def _rolling_start(environment, centre, ring):
+    """Return the state of pure rolling, with balls or rollers in mid pocket."""
     speed = environment.speed.at(environment.speed.time[0] * 0.0)
     ball, _, _ = jax.vmap(lambda at, c: environment.loads.ball_at(at, speed, c, ring))(
         environment.place, centre

@@ -1,22 +1,22 @@
-"""Axial section of a ball bearing or a set of them, to scale."""
+"""Rows of balls or rollers in their axial section, to scale."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from ...design import AbstractBallBearing, AbstractBearing, BearingSet, SetRow, rows_of
+from ...design import AbstractBallBearing, AbstractRollerBearing, SetRow
 from ..style import (
     COLOURS,
     ELEMENT,
     GREY,
-    Ax,
+    RACEWAYS,
+    ROLLER,
     Axes,
-    axes_or_new,
     faded,
-    write_beside,
+    towards_white,
 )
-from .dimension import AXIS, between, contact_angle, pitch_arrow, quantity
+from .outline import Section, section
 
 _BODY = 0.30  # thickness of the schematic rings under the groove, ball diameters
 _WIDTH = 0.75  # half width of the schematic rings, ball diameters
@@ -28,64 +28,45 @@ SHOULDER = 0.2
 """Schematic height of an unspecified shoulder, ball diameters."""
 
 
-def ball_section(bearing: AbstractBearing | BearingSet, ax: Ax = None) -> Axes:
-    """Draw the axial section through one ball of every row.
+def placer(
+    centre: np.ndarray, sense: float, side: float = 1.0
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the map of points (point, 2) of a row to where it stands, z and r in mm.
 
-    Balls and raceways are to scale, unloaded; the ring bodies are schematic.
+    Args:
+        centre: Where its origin stands (2,) [mm].
+        sense: -1 if z is reversed, else 1.
+        side: -1 for the side below the axis, else 1.
+    """
+
+    def place(points):
+        there = centre + np.asarray(points) * np.array([sense, 1.0])
+        return there * np.array([1.0, side])
+
+    return place
+
+
+def draw_rows(ax: Axes, rows: Sequence[SetRow]) -> list[np.ndarray]:
+    """Draw one ball or roller of every row, and its rings.
 
     Returns:
-        The axes: z to the right, radius upwards.
+        Corners of the rings of each row (point, 2) [mm].
     """
-    ax = axes_or_new(ax, (7.0, 6.0))
-    places = np.sort([row_position(row) for row in rows_of(bearing)])
-    # Rings of neighbouring rows meet halfway.
+    places = np.sort([row_position(row) for row in rows])
+    # Rings of neighbouring rows of balls meet halfway.
     reach = 0.49 * np.diff(places).min() if len(places) > 1 else np.inf
     outlines = []
-    for row in rows_of(bearing):
-        part = row.bearing
-        assert isinstance(part, AbstractBallBearing)
-        sign = -1.0 if row.mirrored else 1.0
-        centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
-
-        def place(points, sign=sign, centre=centre):
-            return centre + np.asarray(points) * np.array([sign, 1.0])
-
-        outlines.append(ball_row(ax, part, place, reach))
-    corners = np.concatenate(outlines)
-    first = min(rows_of(bearing), key=row_position)
-    _dimensions(ax, first, corners.min(axis=0), corners.max(axis=0), len(places) == 1)
-    ax.set_title("Axial section, to scale; ring bodies schematic")
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.05)
-    note = ""
-    assert isinstance(first.bearing, AbstractBallBearing)
-    if (angle := float(first.bearing.free_contact_angle)) >= STEEP:
-        note = f"    (free contact angle {quantity(angle, 'rad')})"
-    ax.set_xlabel(f"z [mm]{note}")
-    ax.set_ylabel("radius [mm]")
-    return ax
-
-
-def _dimensions(ax, row, low, high, alone):
-    """Draw ball, pitch circle and free contact angle of the left row."""
-    part = row.bearing
-    sign = -1.0 if row.mirrored else 1.0
-    angle = float(part.free_contact_angle)
-    diameter, tall = 1e3 * float(part.ball_diameter), high[1] - low[1]
-    centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
-    half = np.array([0.0, 0.5 * diameter])
-    aside = np.array([low[0] - 0.18 * diameter - centre[0], 0.0])
-    at = between(ax, centre - half, centre + half, aside)
-    text, upright = f"{D_W} = {quantity(part.ball_diameter, 'm')}", {"rotation": 90}
-    write_beside(ax, at, (-3, 0), text, ha="right", va="center", **upright)
-    beyond = np.array([high[0] + 0.2 * diameter, centre[1]])
-    ax.plot([low[0], beyond[0] + 0.1 * diameter], [centre[1]] * 2, **AXIS)
-    pitch_arrow(ax, beyond, part.pitch_diameter)
-    if 0.0 < angle < STEEP:
-        top = high[1] + 0.07 * tall, high[1] + 0.14 * tall
-        contact_angle(ax, centre, angle, top, sign, "free contact angle", alone)
-    left = low - np.array([0.35 * diameter, 0.0])
-    ax.update_datalim([left, high + np.array([0.5 * diameter, 0.18 * tall])])
+    for k, row in enumerate(rows):
+        part, sense = row.bearing, -1.0 if row.mirrored else 1.0
+        if isinstance(part, AbstractBallBearing):
+            centre = np.array([row_position(row), 0.5e3 * float(part.pitch_diameter)])
+            outlines.append(ball_row(ax, part, placer(centre, sense), reach))
+        else:
+            assert isinstance(part, AbstractRollerBearing)
+            place = placer(np.array([1e3 * float(row.position), 0.0]), sense)
+            behind = part.is_crossed and k > 0
+            outlines.append(roller_row(ax, section(part), place, behind=behind))
+    return outlines
 
 
 def ball_row(
@@ -228,3 +209,39 @@ def _raceway(bearing, name, outwards, reach):
     reach = min(_WIDTH * diameter, reach)
     low[0], high[0] = min(low[0], -reach), max(high[0], reach)
     return np.concatenate([[low], points, [high]])
+
+
+def roller_row(
+    ax: Axes,
+    parts: Section,
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray,
+    apart: float = 0.0,
+    behind: bool = False,
+) -> np.ndarray:
+    """Draw one roller and both rings.
+
+    Args:
+        ax: Axes.
+        parts: Parts of a row of rollers.
+        place: Map of points (point, 2), z and r in mm.
+        apart: Additional distance of each ring from the roller [mm].
+        behind: Whether the roller is one behind another in the same rings, of which
+            only the outline is drawn.
+
+    Returns:
+        Corners of both rings (point, 2) [mm].
+    """
+    corners = []
+    for k, name in enumerate(RACEWAYS):
+        away = (1.0, -1.0)[k] * np.array([-1.0, 1.0]) * parts.generators[k, ::-1]
+        ring = place(parts.rings[k] + apart * away)
+        corners.append(ring)
+        if behind:
+            continue
+        fill = towards_white(COLOURS[name], 0.88)
+        ax.fill(*ring.T, facecolor=fill, edgecolor=COLOURS[name], linewidth=1.2)
+    if behind:
+        ax.plot(*place(parts.roller).T, "--", color=ROLLER, linewidth=1.0)
+        return np.concatenate(corners)
+    ax.fill(*place(parts.roller).T, linewidth=1.4, **ELEMENT)
+    return np.concatenate(corners)

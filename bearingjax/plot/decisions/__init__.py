@@ -1,1 +1,0 @@
-"""Plots of identified numbers, tolerances and choices."""
