@@ -9,6 +9,7 @@ Names
 
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`.
+- A bearing on its noise rig: `NoiseDesign`, `NoiseNumbers`, `NoiseLevel`.
 - A choice of bearing: `select`, `Requirements`, `Selection`.
 - What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`,
   `class_scatters`.
@@ -16,6 +17,7 @@ Names
 """
 
 from .identify import Candidate, Identified, identify
+from .noise_design import NoiseDesign, NoiseLevel, NoiseNumbers
 from .predict import CaseModel
 from .scatter import Scatter, class_scatters, within
 from .select import Requirements, Selection, select
@@ -29,7 +31,8 @@ from .tolerance_effects import (
 )
 
 __all__ = [
-    "identify", "Identified", "Candidate", "CaseModel", "select",
-    "Requirements", "Selection", "tolerances", "tighten", "Scatter", "within",
-    "class_scatters",     "Tolerances", "Spread", "Misses", "Tightening",
+    "identify", "Identified", "Candidate", "CaseModel", "NoiseDesign", "NoiseNumbers",
+    "NoiseLevel", "select", "Requirements", "Selection", "tolerances", "tighten",
+    "Scatter", "within", "class_scatters", "Tolerances", "Spread", "Misses",
+    "Tightening",
 ]  # fmt: skip

@@ -26,7 +26,8 @@ from ..friction.friction import friction_torque
 from ..life.life import LIFE_OUTPUTS, Life, LifeConditions
 from ..numerics.labels import stated_axes
 from ..numerics.result import Result
-from ..numerics.types import with_fields
+from ..numerics.types import Real, with_fields
+from ..numerics.units import real
 from ..optimise.design_problem import CHUNK
 from ..optimise.system import (
     AbstractSystem,
@@ -45,6 +46,16 @@ _FRICTION = "friction_torque"
 _STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD, _FRICTION)
 _COUNTED = ("element", "row")
 """Axes whose length is that of the bearing."""
+
+
+class Oiled(Installed):
+    """A bearing in its place with an oil whose viscosity may be an unknown.
+
+    Attributes:
+        viscosity: Kinematic viscosity of the oil, in place of that of the life [m²/s].
+    """
+
+    viscosity: Real = eqx.field(**real("m²/s", above=0), kw_only=True)
 
 
 class CaseModel(eqx.Module):
@@ -164,6 +175,8 @@ class CaseModel(eqx.Module):
         wanted = dict.fromkeys(place.output for _, place in self.places)
         lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
         life = LifeConditions() if self.life is None else self.life
+        if isinstance(design, Oiled):
+            life = with_fields(life, viscosity=design.viscosity)
         keep = Keep(tuple(name for name in wanted if name not in (*lives, *_STATES)))
         task = Task(
             self.support, self.options, keep, False, lives, life if lives else None
@@ -175,8 +188,8 @@ class CaseModel(eqx.Module):
         if OPERATING_PRELOAD in wanted:
             given = solution.element, solution.speed
             kept[OPERATING_PRELOAD] = remaining_preload(*given, throw=False)
-        if _FRICTION in wanted and self.life is not None:
-            oil: Any = self.life.viscosity if case.viscosity is None else case.viscosity
+        if _FRICTION in wanted:
+            oil: Any = life.viscosity if case.viscosity is None else case.viscosity
             kept[_FRICTION] = friction_torque(solution, oil, self.supply).torque
         real = solution.displacement.dtype
         numbers = {name: kept[name].astype(real) for name in wanted}

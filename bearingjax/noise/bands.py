@@ -80,6 +80,10 @@ def third_octave_bands(lowest: float = 4.0, highest: float = 10000.0) -> Bands:
     return _bands("third_octave_bands", lowest, highest, 1)
 
 
+BANDS = {"octave": octave_bands, "third_octave": third_octave_bands}
+"""Bands of levels by name."""
+
+
 def band_root_mean_square(
     spectrum: Spectrum, bands: Bands, highest: Any = None
 ) -> Float[Array, "band ..."]:

@@ -282,12 +282,19 @@ def ring_inertia(bearing: Any, mass: Any, moving_ring: str) -> Scalar:
 _BRIDGING = {"ball": 1.0, "roller": 0.5}
 
 
-def _surfaces(model: NoiseModel, found: DynamicRow) -> tuple[Surfaces, ...]:
-    """Return the contact tracks of each row, with their averaging of waves."""
+def bridged_surfaces(
+    model: NoiseModel, surfaces: tuple[Surfaces, ...]
+) -> tuple[Surfaces, ...]:
+    """Return the contact tracks of each row, with their averaging of waves.
+
+    Args:
+        model: The bearing on its rig.
+        surfaces: The tracks without it.
+    """
     if (widths := model.half_width) is None:
-        return found.surfaces
+        return surfaces
     p = _BRIDGING[model.element.bearing.noun]
-    rows = zip(found.surfaces, widths, strict=True)
+    rows = zip(surfaces, widths, strict=True)
     return tuple(one.bridging(b, jnp.full_like(b, p)) for one, b in rows)
 
 
@@ -300,7 +307,8 @@ def _system(model, points) -> NoiseSystem:
         mass = jnp.concatenate([mass, jnp.repeat(inertia, 2)])
     errors = None
     if some:
-        both = zip(model.errors_of_rows, _surfaces(model, found), strict=True)
+        surfaces = bridged_surfaces(model, found.surfaces)
+        both = zip(model.errors_of_rows, surfaces, strict=True)
         errors = tuple(one.as_tables(surfaces, points) for one, surfaces in both)
     return NoiseSystem(
         row=found.row,

@@ -120,6 +120,9 @@ def read_identification(
             raise keys.unknowns.error(column.key, problem)
     design = setup.model.design
     check_numbers(keys.unknowns, top, setup.scene)
+    if "life.viscosity" in keys.unknowns and "lubricant" in top:
+        problem = "is that of the oil of [lubricant]; give [life] `viscosity` in its"
+        raise keys.unknowns.error("life.viscosity", f"{problem} place")
     unknowns, priors = _unknowns(keys.unknowns, design, setup.numbers)
     units |= {one.name: unit_of(design, one.path[0]) for one in unknowns}
     for name in wanted:

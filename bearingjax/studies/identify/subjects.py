@@ -9,6 +9,7 @@ import numpy as np
 
 from ...cases.sweep_table import case_columns
 from ...decide import CaseModel
+from ...decide.predict import Oiled
 from ...files.quantity import kind_of
 from ...files.scene_file import is_rotor, is_shafts
 from ...files.table import Table, not_among
@@ -22,6 +23,7 @@ from ..bearing.life_ratings import life_conditions
 from ..bearing.read_scene import scene_of
 from ..cases.case_keys import OPERATING, VariedKey
 from ..cases.read_cases import cases_of_columns, check_varied_key
+from ..optimise.noise_numbers import noise_design
 from ..optimise.read_optimise import installed_numbers
 from ..optimise.read_shaft_optimise import design_in_cases, shaft_numbers
 from ..rotor.read import RotorScene, rotor_of
@@ -119,6 +121,9 @@ class Setup(NamedTuple):
                 own = {path: values[case] for path, values in varied.items()}
                 with_numbers(self.model.design, own)
         cases = cases_of_columns(table, self.scene, columns, None, count)
+        if isinstance(self.model.design, AbstractSystem):
+            with table.building():
+                self.model.design.check(cases)
         kept = {
             column_header(c.key, unit_of(self.model.design, self.numbers[c.key][0])): (
                 np.asarray(c.values)
@@ -180,11 +185,18 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
         scene = rotor_of(alone, path)
         design = _rotor_design(scene)
         return Setup(scene, CaseModel(design), dict(_numbers(scene)), data, path)
+    if "vibration" in data:
+        scene, rig, numbers = noise_design(data, path)
+        own = scene.support, scene.solve_options
+        return Setup(scene, CaseModel(rig, *own), numbers, data, path)
     scene = scene_of(data, path)
     oil = {} if scene.oil is None else {"supply": scene.oil.supply}
     given = scene.support, scene.solve_options, life_conditions(scene)
-    model = CaseModel(scene.installed, *given, **oil)
-    return Setup(scene, model, installed_numbers(scene), data, path)
+    placed, numbers = scene.installed, installed_numbers(scene)
+    if scene.life is not None and scene.life.viscosity is not None and not oil:
+        placed = Oiled(**vars(placed), viscosity=scene.life.viscosity)
+        numbers["life.viscosity"] = ("viscosity",)
+    return Setup(scene, CaseModel(placed, *given, **oil), numbers, data, path)
 
 
 def _rotor_design(scene: RotorScene) -> RotorDesign:

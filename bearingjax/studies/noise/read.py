@@ -15,6 +15,7 @@ from ...element.frame import DIRECTIONS
 from ...files.scene_file import find_scene, parse_bearing
 from ...files.schema import Keys, direction_key, key_of, read_keys, scene_key
 from ...files.table import Table
+from ...noise.bands import BANDS
 from ...noise.level import NORM
 from ...numerics.warning import Warning
 from ..bearing.read_scene import Scene, scene_of, with_speed_warnings
@@ -22,7 +23,6 @@ from .read_deviations import read_deviations
 from .read_measured import MeasuredKeys, Measurement, read_measured
 from .read_tolerance import Tighter, ToleranceKeys, read_tolerance
 
-BANDS = {"octave": noise.octave_bands, "third_octave": noise.third_octave_bands}
 WINDOWS = {"hann": noise.Hann, "rectangular": noise.Rectangular}
 NORMS = {"85-176211": NORM}
 """Largest allowed levels, by bearing."""
@@ -215,7 +215,20 @@ def read_noise(
         SceneError: One line with file, line, key, fault and the allowed values.
     """
     path = find_scene(source)
-    data = parse_bearing(path, settings)
+    return noise_of(parse_bearing(path, settings), path, bearings)
+
+
+def noise_of(data: dict[str, Any], path: Path, bearings: int = 0) -> NoiseScene:
+    """Read a parsed scene of the noise of a bearing.
+
+    Args:
+        data: The scene as parsed.
+        path: Its path.
+        bearings: As in `read_noise`.
+
+    Raises:
+        SceneError: As `read_noise`.
+    """
     top = Table(data, path)
     scene = with_speed_warnings(scene_of(data, path))
     vibration = read_keys(VibrationKeys, top.table("vibration", required=True))

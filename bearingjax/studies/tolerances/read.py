@@ -9,7 +9,8 @@ import equinox as eqx
 import numpy as np
 from scipy import stats
 
-from ...decide import Scatter, class_scatters, within
+from ...decide import NoiseLevel, Scatter, class_scatters, within
+from ...decide.noise_design import TOTAL
 from ...decide.scatter import SIZES
 from ...files.quantity import SceneError
 from ...files.scene_file import find_scene, is_shafts, parse_scene
@@ -20,7 +21,9 @@ from ...optimise import Constraint
 from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...statics.support import Support
 from ..bearing.read_scene import Scene
+from ..optimise.noise_numbers import noise_design
 from ..optimise.read_optimise import (
+    MEASURES,
     ConstraintKeys,
     Measured,
     check_numbers,
@@ -40,12 +43,21 @@ from ..optimise.read_shaft_optimise import (
 )
 from ..shaft.read import ShaftScene, read_shafts
 
+NOISE = "noise_level"
 SHAPES = ("normal", "uniform")
 """Shapes of a distribution."""
 
 
 class MeasureKeys(ConstraintKeys):
     about = "[[tolerances.measures]]: what is asked, and what is required of it"
+
+    measure: str = scene_key("what is asked", choices=(*MEASURES, NOISE))
+    reading: str | None = scene_key(
+        "level of the noise on the rig of [vibration], to first order: `total_level`,"
+        " of a band as `band_1000`, of a line as `line_2_BPFO`",
+        only={"measure": (NOISE,)},
+        otherwise="`total_level`",
+    )
 
     def check(self) -> None:
         """A bound is no duty here."""
@@ -170,9 +182,20 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         table = top.table("tolerances")
         keys = read_keys(ToleranceKeys, table)
         measured = Measured(scene, cases, SMOOTHING_EXPONENT)
-        measures = [measured.measure(one, "measure") for one in keys.measures]
         design, numbers = scene.installed, installed_numbers(scene)
         places = {"": ""}
+        if any(one.measure == NOISE for one in keys.measures):
+            top.table("vibration", required=True)
+            rig, design, numbers = noise_design(data, path)
+            with table.building():
+                design.check(cases)
+            places, inputs = {"": "installed."}, {**rig.inputs, **inputs}
+        measures = [
+            _level(one, design)
+            if one.measure == NOISE
+            else measured.measure(one, "measure")
+            for one in keys.measures
+        ]
     sizes = {}
     for head, own in places.items():
         part, scatters = class_scatters(_part(design, own))
@@ -221,6 +244,13 @@ def _part(design: Any, path: str) -> Any:
     for name in path.split(".")[:-1]:
         design = design[int(name)] if name.isdecimal() else getattr(design, name)
     return design
+
+
+def _level(keys: MeasureKeys, design: Any) -> NoiseLevel:
+    known, asked = design.readings(), keys.reading or TOTAL
+    if asked not in known:
+        raise keys.table.error("reading", not_among(asked, known))
+    return NoiseLevel(asked)
 
 
 def _correlation(pairs: Iterable[CorrelationKeys], names: list[str]) -> np.ndarray:

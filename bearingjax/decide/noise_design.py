@@ -1,0 +1,269 @@
+"""A bearing on its noise rig whose numbers are varied: levels of lines and of bands."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Complex, Float, Int
+
+from ..cases.cases import Cases, case_speed, solve_case
+from ..design import BearingSet, Harmonics
+from ..design.checks import check, instance, must_be, of_class, one_of
+from ..element import RINGS, BearingElement
+from ..noise import (
+    REFERENCE_ACCELERATION,
+    NoiseModel,
+    level,
+    transfer,
+)
+from ..noise.bands import BANDS
+from ..noise.model import bridged_surfaces
+from ..numerics.types import Real, Scalar, as_real, with_fields
+from ..numerics.units import real, unit
+from ..optimise.measure import AbstractMeasure
+from ..optimise.smooth import largest
+from ..optimise.system import AbstractSystem, Design, Reading
+from ..statics import Solution
+from ..statics.installed import Installed
+
+TOTAL = "total_level"
+
+
+class NoiseNumbers(eqx.Module):
+    """Levels of a bearing on its rig in one case, of root mean squares.
+
+    Attributes:
+        line: Level of each line (line,) [dB].
+        band: Level of each band (band,) [dB].
+        total: Level of all lines together [dB].
+        frequency: Frequency of each line (line,) [Hz].
+        solution: Load solve of the bearing.
+        result: `Result` code of both equilibria.
+    """
+
+    line: Float[Array, " line"] = eqx.field(metadata=unit("dB"))
+    band: Float[Array, " band"] = eqx.field(metadata=unit("dB"))
+    total: Scalar = eqx.field(metadata=unit("dB"))
+    frequency: Float[Array, " line"] = eqx.field(metadata=unit("Hz"))
+    solution: Solution
+    result: Int[Array, ""]
+
+
+_Line = tuple[int, int, int]
+"""A line by the multiples of the speeds of the rolling elements' orbit, of the ring
+that turns, and of the rolling elements about their own axes, whose sum it is."""
+
+
+class NoiseDesign(AbstractSystem):
+    """A bearing on its noise rig, for `bearingjax.identify` and `decide.tolerances`.
+
+    Levels are those of first order: every wave acts alone, on contacts with the
+    stiffness of their mean load, through the receptance of the rig with its rolling
+    elements where they stand at time zero. That holds for waves that are small against
+    the contacts' deformation, and for rolling elements that carry alike, as under an
+    axial load. Differences of the rolling elements, their passing of a radial load, and
+    sums and differences of lines are in the vibration in time (`noise.vibration`)
+    alone.
+
+    Any number may be an unknown or scatter: "installed.drawing.bearing.contact_angle",
+    "rig.errors.outer.outwards.0.amplitude.1", "rig.retardation". Load and speeds are
+    those of each case.
+
+    Attributes:
+        installed: The bearing, on its seats or not.
+        rig: The rig and the form errors, waves alone; its bearing, load and speed are
+            replaced by those of `installed` and of the case.
+        bands: Bands of the levels, "octave" or "third_octave".
+        direction: Unit vector of the measured acceleration (3,) [1].
+        reference: Acceleration of 0 dB [m/s²].
+        turning: The ring that turns, "inner" or "outer"; the other one stands still.
+
+    Traced: all numbers. Static: bands, turning.
+
+    Raises:
+        TypeError: If a part is of another class.
+        ValueError: For a set, and form errors that are no waves, or without any.
+    """
+
+    installed: Installed
+    rig: NoiseModel
+    bands: str = eqx.field(static=True, default="octave")
+    direction: Float[Array | np.ndarray, "3"] = eqx.field(
+        converter=as_real, metadata=unit("1"), default=(0.0, 1.0, 0.0)
+    )
+    reference: Real = eqx.field(
+        **real("m/s²", "acceleration of 0 dB", above=0), default=REFERENCE_ACCELERATION
+    )
+    turning: str = eqx.field(static=True, default="inner")
+
+    def __check_init__(self):
+        instance(self, "installed", Installed)
+        instance(self, "rig", NoiseModel)
+        one_of(self, "bands", self.bands, BANDS)
+        one_of(self, "turning", self.turning, RINGS, "'outer' or 'inner'")
+        drawn, errors = self.installed.drawing.bearing, self.rig.errors_of_rows[0]
+        shapes = *errors.outer.shapes, *errors.inner.shapes, *errors.elements
+        kinds = ", ".join(dict.fromkeys(type(one).__name__ for one in shapes)) or "none"
+        waves, allowed = kinds == Harmonics.__name__, "waves (Harmonics) alone"
+        must_be("NoiseDesign", "rig.errors", kinds, waves, allowed)
+        alone, kind = not isinstance(drawn, BearingSet), type(drawn).__name__
+        must_be("NoiseDesign", "installed", kind, alone, "a bearing of one row")
+
+    @property
+    def element(self) -> BearingElement[Any]:
+        return self.installed.element_at()
+
+    def check(self, cases: Any) -> None:
+        of_class("NoiseDesign", "cases", cases, Cases, "Cases")
+        for ring in RINGS:
+            name, turns = f"{ring}_speed", ring == self.turning
+            given = getattr(cases, name)
+            speed = np.zeros(1) if given is None else np.asarray(given)
+            allowed = "other than 0 in every case" if turns else "0: one ring turns"
+            check("NoiseDesign", name, (speed != 0.0) == turns, allowed, speed, "rad/s")
+
+    def _waves(self) -> Iterator[tuple[str, int, Harmonics, int, list[_Line]]]:
+        """Yield part, direction and shape of all waves; for rolling elements each part
+        of their forces by its multiple of the orbit; and the line of each order."""
+        z, errors = self.installed.drawing.bearing.n_places, self.rig.errors_of_rows[0]
+        for ring in RINGS:
+            own, turns = getattr(errors, ring), ring == self.turning
+            directions: Any = own.axial, own.outwards, own.raised
+            for k, shapes in enumerate(directions):
+                for one in shapes:
+                    lines = [(z * round(n / z), -n * turns, 0) for n in one.order]
+                    yield ring, k, one, 0, lines
+        each: Any = errors.elements
+        for one in each:
+            for m in (-1, 0, 1):
+                yield "element", 2, one, m, [(m, 0, -n) for n in one.order]
+
+    @property
+    def _lines(self) -> tuple[_Line, ...]:
+        """Lines of the spectrum, but for what stands still: long waves of a ring at
+        rest."""
+        found = (one for *_, lines in self._waves() for one in lines if any(one))
+        return tuple(dict.fromkeys(found))
+
+    def _name(self, line: _Line) -> str:
+        """Name of a line, as in `noise.name_lines` with words for the signs."""
+        orbit, ring, own = line
+        passages = orbit // self.installed.drawing.bearing.n_places
+        turning, still = ("BPFI", "BPFO")[:: 1 if self.turning == "inner" else -1]
+        if own:
+            terms = (-own, "BSF"), (orbit if turning == "BPFI" else -orbit, "cage")
+        elif ring:
+            terms = (passages, turning), (-ring - orbit, "shaft")
+        else:
+            terms = ((passages, still),)
+        text = "line"
+        for count, name in terms:
+            if count:
+                word = "" if text == "line" else "_plus" if count > 0 else "_minus"
+                text += (
+                    f"{word}_{name}"
+                    if abs(count) == 1
+                    else f"{word}_{abs(count)}_{name}"
+                )
+        return text
+
+    def readings(self) -> dict[str, Reading]:
+        """Levels that can be measured: of lines by their names, as "line_2_BPFO" or
+        "line_BPFI_plus_shaft", of bands by their centres, as "band_1000", and the
+        "total_level"."""
+        found = {
+            self._name(one): Reading("line", k, "dB")
+            for k, one in enumerate(self._lines)
+        }
+        for k, centre in enumerate(BANDS[self.bands]().centre):
+            found[f"band_{centre:g}"] = Reading("band", k, "dB")
+        return found | {TOTAL: Reading("total", 0, "dB")}
+
+    def solve_case(self, case: Any, support: Any, options: Any) -> NoiseNumbers:
+        speed = case_speed(case)
+        element = self.installed.element_at(speed, throw=False)
+        solution = solve_case(element, case, support, options)
+        model = with_fields(self.rig, element=element, load=case.load, speed=speed)
+        frequency, pattern = self._patterns(model)
+        moved = transfer(model, frequency)
+        made = moved.acceleration_by_errors[:, :3] * pattern[:, None]
+        along = jnp.sum(made, axis=(2, 3, 4)) @ self.direction.astype(made.dtype)
+        square, place = 0.5 * (along.real**2 + along.imag**2), jnp.abs(frequency)
+        lower, upper = (jnp.asarray(e)[:, None] for e in BANDS[self.bands]()[2:])
+        inside = ((place[None] >= lower) & (place[None] < upper)).astype(square.dtype)
+        powers = square, inside @ square, jnp.sum(square)
+        # The level of a square counts twice.
+        found = (0.5 * level(p / self.reference**2, 1.0) for p in powers)
+        line, band, total = found
+        result = jnp.maximum(solution.result, moved.result)
+        return NoiseNumbers(line, band, total, place, solution, result)
+
+    def _patterns(
+        self, model: NoiseModel
+    ) -> tuple[Float[Array, " line"], Complex[Array, "line element 2 3"]]:
+        """Frequencies of the lines, signed, and the complex deviations behind them."""
+        system = model.still_system()
+        outer, inner, orbit, own = system.speeds
+        (surfaces,) = bridged_surfaces(model, system.surfaces)
+        azimuth, lines = system.row.azimuth, self._lines
+        ring = inner if self.turning == "inner" else outer
+        speeds = jnp.stack([orbit, ring, own]) / (2.0 * jnp.pi)
+        place = {one: k for k, one in enumerate(lines)}
+        shape = len(lines), azimuth.size, 2, 3
+        pattern = jnp.zeros(shape, lax.complex(azimuth, azimuth).dtype)
+        for part, k, one, m, of in self._waves():
+            at = np.array([place.get(line, len(lines)) for line in of])
+            order = jnp.asarray(one.order, azimuth.dtype)
+            share = getattr(surfaces, part).bridged_share(order)
+            if part == "element":
+                # What they have in common as they go round.
+                size = share[None] * one.amplitude
+                each = _phasor(size, one.phase + m * azimuth[:, None])
+                turned = _phasor(1.0, -m * azimuth)
+                wave = jnp.mean(each, axis=0)[:, None] * turned[None]
+                opposite = wave * _phasor(1.0, jnp.pi * order)[:, None]
+                both = jnp.stack([wave, opposite], axis=-1)
+                pattern = pattern.at[at, :, :, k].add(both)
+            else:
+                angle = jnp.outer(order, azimuth) + one.phase[:, None]
+                size, there = share * one.amplitude, RINGS.index(part)
+                wave = _phasor(size[:, None], angle)
+                pattern = pattern.at[at, :, there, k].add(wave, mode="drop")
+        return jnp.asarray(lines, azimuth.dtype) @ speeds, pattern
+
+    def failure_message(self, solved: Any) -> str:
+        return "the bearing finds no equilibrium on its noise rig"
+
+
+class NoiseLevel(AbstractMeasure):
+    """Level of the acceleration of a `NoiseDesign`, the largest of all cases [dB].
+
+    Attributes:
+        reading: One of its `readings`: "total_level", "band_1000", "line_2_BPFO".
+
+    Static: reading.
+    """
+
+    reading: str = eqx.field(static=True, default=TOTAL)
+
+    def __call__(self, element: Design, cases: Any, solution: Any) -> Scalar:
+        known = element.readings() if isinstance(element, NoiseDesign) else {}
+        one_of("NoiseLevel", "reading", self.reading, known)
+        place = known[self.reading]
+        values = getattr(solution, place.output)
+        return largest(values.reshape(values.shape[0], -1)[:, place.entry])
+
+    @property
+    def label(self) -> str:
+        return self.reading.replace("_", " ")
+
+    @property
+    def unit(self) -> str:
+        return "dB"
+
+
+def _phasor(size: Any, angle: Array) -> Array:
+    return lax.complex(size * jnp.cos(angle), size * jnp.sin(angle))
