@@ -86,7 +86,7 @@ def test_imports_of_modules_form_no_circle():
 
 
 STUDIES = (
-    *"bearing solve cases select contact noise skid rotor shaft".split(),
+    *"bearing solve cases contact noise skid rotor shaft select".split(),
     "optimise",
     "identify",
     "catalogue",

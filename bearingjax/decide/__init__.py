@@ -10,7 +10,8 @@ Names
 - Numbers from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`.
 - A bearing on its noise rig: `NoiseDesign`, `NoiseNumbers`, `NoiseLevel`.
-- A choice of bearing: `select`, `Requirements`, `Selection`.
+- A choice of bearing: `select`, `Requirements`, `Selection`; of several positions of a
+  system of shafts: `select_positions`, `PositionSelection`.
 - What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`,
   `class_scatters`.
 - Their results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
@@ -21,6 +22,7 @@ from .noise_design import NoiseDesign, NoiseLevel, NoiseNumbers
 from .predict import CaseModel
 from .scatter import Scatter, class_scatters, within
 from .select import Requirements, Selection, select
+from .select_positions import PositionSelection, select_positions
 from .tolerance_effects import (
     Misses,
     Spread,
@@ -32,7 +34,7 @@ from .tolerance_effects import (
 
 __all__ = [
     "identify", "Identified", "Candidate", "CaseModel", "NoiseDesign", "NoiseNumbers",
-    "NoiseLevel", "select", "Requirements", "Selection", "tolerances", "tighten",
-    "Scatter", "within", "class_scatters", "Tolerances", "Spread", "Misses",
-    "Tightening",
+    "NoiseLevel", "select", "Requirements", "Selection", "select_positions",
+    "PositionSelection", "tolerances", "tighten", "Scatter", "within",
+    "class_scatters", "Tolerances", "Spread", "Misses", "Tightening",
 ]  # fmt: skip

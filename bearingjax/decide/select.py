@@ -43,6 +43,7 @@ from ..numerics.labels import LabelledArray, make_dataset
 from ..numerics.result import Result
 from ..numerics.shown import Printable, Shown
 from ..numerics.types import with_fields
+from ..numerics.units import shown_number
 from ..optimise.system import solved_case
 from ..statics import Installed, SolveOptions, Support
 from ..statics.empty_places import points_of_kind
@@ -191,8 +192,11 @@ class Requirements(Printable):
 
 
 def unit_of_number(name: str) -> str:
-    """Return the SI unit of a column of a `Selection`; empty of a pure number."""
-    return NUMBERS.get(name, ("",))[0].replace("1", "")
+    """Return the SI unit of a column of a `Selection`, or of the forces of a
+    `PositionSelection`; empty of a pure number."""
+    return (
+        "N" if name.endswith("_force") else NUMBERS.get(name, ("",))[0].replace("1", "")
+    )
 
 
 class Miss(NamedTuple):
@@ -204,6 +208,14 @@ class Miss(NamedTuple):
     limit: float = np.nan
     why: str = ""
     share: float = 0.0
+
+    @property
+    def words(self) -> str:
+        """What is missed, as "life_hours 8200 h of 20000 h"; empty without a miss."""
+        unit = unit_of_number(self.requirement)
+        ends = [shown_number(end, unit, 5) for end in (self.value, self.limit)]
+        words = f"{self.requirement} {self.why or ' of '.join(ends)}"
+        return words if self.requirement else ""
 
 
 def _missed(name: str, value: Any, ends: tuple[Any, Any]) -> Iterator[Miss]:
@@ -279,6 +291,16 @@ class Selection(Shown):
         found = min(fits, key=lambda row: [row[k] for k in SIZES[1:]], default=None)
         return None if found is None else found["designation"]
 
+    def nearest_misses(self, most: int = 5) -> list[str]:
+        """Return the nearest misses in words: "6208: life_hours 8200 h of 20000 h".
+
+        Args:
+            most: How many.
+        """
+        rows = [row.values() for row in self.excluded[:most]]
+        found = [(name, Miss(*miss).words) for name, *miss in rows]
+        return [f"{name}: {words}" for name, words in found]
+
     def shown_facts(self) -> Iterator[Any]:
         """Yield how many fit, which is the smallest, and what excludes the others."""
         yield 1, "fits", str(len(self.fits)), "bearings that do what is required"
@@ -340,7 +362,7 @@ def select(
     def build(entry: CatalogueEntry) -> Installed:
         if install is None and id(entry) in known:
             return _drawn(known[id(entry)], jax.dtypes.canonicalize_dtype(float))
-        return _of_kind((install or _as_drawn)(entry), entry.type)
+        return _of_kind((install or as_drawn)(entry), entry.type)
 
     rows, made, refused = [_facts(asked, entry) for entry in every], {}, []
     misses = [*_sieve(asked, every, rows)]
@@ -356,7 +378,7 @@ def select(
     found = _solve(asked, [*made.values()], told)
     for number, k in enumerate(made):
         mine = {name: values[number] for name, values in found.items()}
-        misses[k] = _judge(asked, mine, rows[k])
+        misses[k] = judge(asked, mine, rows[k])
     for row, entry, miss in zip(rows, every, misses, strict=True):
         row |= {"designation": entry.designation, **(miss or Miss(share=2.0))._asdict()}
     names = "designation", "type", *NUMBERS, "mass_printed", *Miss._fields
@@ -466,10 +488,15 @@ def _most_elements() -> dict[str, int]:
 def _drawn(place: int, real: Any) -> Installed:
     """Return an entry of the catalogue as it is drawn, in numbers of this type."""
     entry = catalogue_entries()[place]
-    return _of_kind(_as_drawn(entry), entry.type)
+    return _of_kind(as_drawn(entry), entry.type)
 
 
-def _as_drawn(entry: CatalogueEntry) -> Installed:
+def as_drawn(entry: CatalogueEntry) -> Installed:
+    """Return the bearing of an entry as it is drawn, without seats.
+
+    Args:
+        entry: The entry.
+    """
     return Installed(BearingElement(bearing_of_entry(entry)))
 
 
@@ -524,9 +551,17 @@ def _solve_kind(designs, cases, task, supply):
     return jax.vmap(solve_one)(designs, cases)
 
 
-def _judge(asked: Requirements, found, row: dict[str, Any]) -> Miss | None:
+def judge(
+    asked: Requirements, found: dict[str, Any], row: dict[str, Any]
+) -> Miss | None:
     """Add the numbers of a bearing under all cases to its row, and return what it
-    misses the most."""
+    misses the most.
+
+    Args:
+        asked: What it must do.
+        found: Numbers by name (case, …).
+        row: Its row.
+    """
     failed = np.flatnonzero(found["result"] != Result.CONVERGED)
     if failed.size:
         label = Result(int(found["result"][failed[0]])).label

@@ -54,7 +54,7 @@ from .optimise.read_optimise import OptimiseKeys
 from .optimise.read_shaft_optimise import ShaftOptimiseKeys
 from .rotor.mounts import SpringKeys
 from .rotor.read import RotorKeys
-from .select.read import SelectKeys
+from .select.read import SelectKeys, ShaftSelectKeys
 from .shaft.read import (
     PART_CLASSES,
     DriveKeys,
@@ -221,6 +221,7 @@ def _shaft_scene() -> dict[str, Any]:
         "heat": table_schema(HeatKeys),
         "optimise": table_schema(ShaftOptimiseKeys),
         "tolerances": table_schema(ShaftToleranceKeys),
+        "select": table_schema(ShaftSelectKeys),
         **_refs("life lubricant output cases identify"),
     }
     return object_schema(tables, ["shaft", "bearings"], "a system of shafts")

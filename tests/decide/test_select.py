@@ -11,7 +11,7 @@ import bearingjax as bj
 from bearingjax.cases.sweep import SUMMARIES, structure_of
 from bearingjax.catalogue.entry import bearing_of_entry
 from bearingjax.decide import Requirements
-from bearingjax.decide.select import _as_bounds, _as_drawn, _judge, _of_kind
+from bearingjax.decide.select import _as_bounds, as_drawn, judge, _of_kind
 from bearingjax.life.life_warning import minimum_load
 from bearingjax.statics import Installed
 
@@ -99,7 +99,7 @@ def test_select_judges_by_what_is_missed_most():
         "stiffness": np.array([1e8, 8e8])[:, None, None] * np.eye(12),
     }
     row = {}
-    miss = _judge(asked, found, row)
+    miss = judge(asked, found, row)
     assert miss is not None and miss.requirement == "stiffness_uy"
     assert (miss.value, miss.limit, miss.share) == (8e8, 2e8, 0.25)
     turns = 150.0 * 3600.0 / (2.0 * np.pi)
@@ -108,7 +108,7 @@ def test_select_judges_by_what_is_missed_most():
     wanted |= {"peak_pressure": 2.5e9, "friction_torque": 1.75}
     for name, value in wanted.items():
         assert row[name] == pytest.approx(value, rel=ROUNDING)
-    miss = _judge(asked, found | {"result": np.array([0, 3])}, row)
+    miss = judge(asked, found | {"result": np.array([0, 3])}, row)
     assert miss is not None and miss.requirement == "solved" and "case 1" in miss.why
 
 
@@ -118,7 +118,7 @@ def test_select_judges_by_what_is_missed_most():
 )
 def test_bearings_of_a_type_share_a_program(one, other):
     entries = map(bj.catalogue_entry, (one, other))
-    structures = [structure_of(_of_kind(_as_drawn(e), e.type)) for e in entries]
+    structures = [structure_of(_of_kind(as_drawn(e), e.type)) for e in entries]
     assert structures[0] == structures[1]
 
 

@@ -1,13 +1,25 @@
 """`bearingjax select`: a scene that says what a bearing must do."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from runs import Runs, Study
 
 from bearingjax import SceneError
 from bearingjax.files import shipped_scenes
+from bearingjax.shafts.warning import axial_load
 from bearingjax.studies.select.read import read_select
-from bearingjax.studies.select.run import nearest_misses, run_select, select_report
+from bearingjax.studies.select.run import (
+    positions_as_dict,
+    positions_columns,
+    positions_report,
+    run_select,
+    select_report,
+)
+from bearingjax.studies.shaft.read import read_shafts
+from bearingjax.studies.shaft.run import run_shafts
 
 TEXT = shipped_scenes()["select_gearbox"].read_text(encoding="utf-8")
 FILES = {
@@ -81,6 +93,92 @@ def test_select_without_a_fit_tells_the_nearest():
     choice = read_select("select_gearbox", settings)
     found = run_select(choice)
     assert found.fits == [] and found.smallest is None
-    (first,) = nearest_misses(found, 1)
+    (first,) = found.nearest_misses(1)
     assert first.endswith("of 5 mm")
     assert "0 fit; the smallest: none" in str(select_report(choice, found))
+
+
+GEARS = Path(__file__).with_name("refused") / "gears.toml"
+POSITIONS = """
+[select]
+types = ["deep_groove_ball"]
+short_list = 2
+load_ratio = 1.0
+outside_diameter = { at_least = "65 mm" }
+
+[select.positions.C]
+life_hours = "20000 h"
+
+[select.positions.D]
+bore = "40 mm"
+"""
+
+
+@pytest.fixture
+def shafts(tmp_path):
+    path = tmp_path / "pair.toml"
+    path.write_text(GEARS.read_text("utf-8") + POSITIONS, "utf-8")
+    return path
+
+
+@pytest.mark.slow
+def test_select_positions_finds_the_lives_of_the_scene_with_these_bearings(shafts):
+    """Lives of the best pair are those of `shaft` with its designations, and those
+    under the present loads those of the present bearings, one of them turned."""
+    turned = ["bearings.D.turned=true", "select.short_list=1"]
+    choice = read_select(shafts, turned)
+    found = run_select(choice)
+    assert found.holds.tolist() == [True] and found.best is not None
+    settings = [f"bearings.{k}.designation={v}" for k, v in found.best.items()]
+    by_hand = run_shafts(read_shafts(shafts, [*turned, *settings]))
+    by_number = {
+        "life_hours": by_hand.hours[2:],
+        "static_safety": [one.life.static_safety for one in by_hand.bearings[2:]],
+        "axial_force": [
+            axial_load(by_hand.task.system, k, by_hand.solution.load[k]) for k in (2, 3)
+        ],
+    }
+    for name, values in by_number.items():
+        np.testing.assert_allclose(found.table[name][0], values, rtol=1e-7, atol=1e-6)
+    now = run_shafts(read_shafts(shafts, turned)).hours[2:]
+    for hours, one in zip(now, found.alone.values(), strict=True):
+        row = one.table["designation"].tolist().index("6308")
+        assert one.table["life_hours"][row] == pytest.approx(hours, rel=1e-6)
+    numbers = positions_as_dict(choice, found)
+    assert numbers["best"] == found.best and numbers["kinds"] == found.kinds
+    assert len(positions_columns(found)["position"]) == 2
+    assert "1 of 1 combinations hold" in str(positions_report(choice, found))
+    assert found.to_xarray()["radial_force"].attrs["units"] == "N"
+    for setting, told in (
+        ("bearings.C.floating=true", "no_load_path with the present bearings (case 0)"),
+        ("bearings.C.position='60 mm'", "the shaft has 0.04 and 0.05 m at C"),
+        (
+            "select.positions.C.mass='1 g'",
+            "no bearing fits C under the loads with the present ones",
+        ),
+    ):
+        with pytest.raises(SceneError, match=re.escape(told)):
+            run_select(read_select(shafts, [setting]))
+
+
+@pytest.mark.parametrize(
+    "setting, told",
+    [
+        ("select.positions.X={}", "`select.positions.X`: 'X' is not known"),
+        (
+            "bearings.C={shaft='out', position='30 mm', stiffness={radial='1 N/um'}}",
+            "`select.positions.C`: has springs",
+        ),
+        ("select.positions.C.short_list=2", "`select.positions.C.short_list`: unknown"),
+        ("select.positions.C.boer=2", "unknown key (did you mean `bore`?)"),
+        ("select.positions.C.types=['sleeve']", "'sleeve' is not known"),
+        ("select.positions={}", "`requirements` is"),
+        ("select.short_list=0", "short_list"),
+        ("select.short_list=11", "it combines 121"),
+        ("heat.ambient=20 °C", "`heat`: stands beside [select]"),
+        ("select=unset", "select"),
+    ],
+)
+def test_select_of_positions_refuses(shafts, setting, told):
+    with pytest.raises(SceneError, match=re.escape(told)):
+        run_select(read_select(shafts, [setting]))

@@ -18,7 +18,7 @@ _CONTROL = ("raceway_control", "friction_coefficient")
 """Keys of `EXTRA_KEYS` that stand in [operating] of a bearing alone."""
 _AT_REST = "constant_angle"
 """Kinematics that know no speed."""
-_COMMON = ("life", "lubricant")
+COMMON = ("life", "lubricant")
 """Tables of the machine that a bearing may have for itself."""
 
 
@@ -49,7 +49,7 @@ def read_machine_bearing(
     known = {} if known is None else known
     own = {k: v for k, v in table.keys_given().items() if k not in other_keys}
     table.skip(*own)
-    inside = (*EXTRA_KEYS, *_COMMON)
+    inside = (*EXTRA_KEYS, *COMMON)
     data: dict[str, Any] = {
         "bearing": {k: v for k, v in own.items() if k not in inside},
         **{k: v for k, v in own.items() if k in EXTRA_KEYS and k not in _CONTROL},
@@ -59,7 +59,7 @@ def read_machine_bearing(
     held = isinstance(numerics, Mapping) and numerics.get("kinematics") == _AT_REST
     if speed and not held:
         data["operating"]["inner_speed"] = f"{speed!r} rad/s"
-    for key in (*_COMMON, "output"):
+    for key in (*COMMON, "output"):
         both = []
         if key in top:
             both.append(top.raw(key))
@@ -78,14 +78,14 @@ def read_machine_bearing(
     if mark not in known:
         head = f"bearings.{name}"
         places = {"bearing": head, "operating": head}
-        places |= {key: f"{head}.{key}" for key in inside if key not in _COMMON}
-        places |= {key: f"{head}.{key}" for key in _COMMON if key in own}
+        places |= {key: f"{head}.{key}" for key in inside if key not in COMMON}
+        places |= {key: f"{head}.{key}" for key in COMMON if key in own}
         found = scene_of(data, path, (), (*inside, *other_keys), places)
         known[mark] = dataclasses.replace(found, name=name)
     scene = known[mark]
     for key, value in bearing_inputs(scene.inputs).items():
         table.fill(key, value)
-    for key in _COMMON:
+    for key in COMMON:
         if key in own:
             table.fill(key, own[key])
     return scene

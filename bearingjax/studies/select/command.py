@@ -7,21 +7,35 @@ from ..outcome import Outcome, Tools, outcome_of, picture
 
 def run(options: Namespace, tools: Tools) -> Outcome:
     """Compare the requirements of a scene file, its [select], loads and life, with all
-    bearings of the catalogue: what fits, the best first, and what excludes the others.
+    bearings of the catalogue: what fits, the best first, and what excludes the others;
+    of a system of shafts the bearings of several positions together.
     """
+    from ...decide import PositionSelection
     from . import run as selection
     from .read import read_select
 
     choice = read_select(options.scene, options.set)
     found = selection.run_select(choice, tools.stage)
-    nearest = "; ".join(selection.nearest_misses(found, 3))
+    if isinstance(found, PositionSelection):
+        alone, problem = found.alone, "no combination holds"
+        writers = selection.positions_as_dict, selection.positions_report
+        columns, holds = selection.positions_columns, found.best
+    else:
+        nearest = "; ".join(found.nearest_misses(3))
+        alone, problem = {"": found}, f"none fits; the nearest: {nearest}"
+        writers = selection.select_as_dict, selection.select_report
+        columns, holds = selection.select_columns, found.fits
     return outcome_of(
         choice.name,
         choice.inputs,
         (choice, found),
-        selection.select_as_dict,
-        selection.select_report,
-        lambda _, found: selection.select_columns(found),
-        {"Bearings": picture("selection_overview", found, title=choice.name)},
-        problems=[] if found.fits else [f"none fits; the nearest: {nearest}"],
+        *writers,
+        lambda _, found: columns(found),
+        {
+            f"Bearings {name}".strip(): picture(
+                "selection_overview", one, title=f"{choice.name} {name}".strip()
+            )
+            for name, one in alone.items()
+        },
+        problems=[] if holds else [problem],
     )

@@ -11,18 +11,22 @@ from ...catalogue.estimated_entry import estimated_entry
 from ...decide.select import NUMBERS, SIZES, Requirements, unit_of_number
 from ...files.column_list import read_list
 from ...files.quantity import SceneError, kind_of
-from ...files.scene_file import find_scene, parse_bearing
+from ...files.scene_file import find_scene, is_shafts, parse_bearing, parse_scene
 from ...files.schema import Keys, read_keys, scene_key
 from ...files.schema_text import number_schema
-from ...files.table import Table, text_of
+from ...files.table import Table, not_among, text_of
 from ...fits.fit_limits import CLEARANCE_CLASSES
 from ...life import LifeConditions
 from ...numerics.types import with_fields
+from ...shafts import ShaftDesign
 from ...statics import Installed, SolveOptions, Support
+from ..bearing.placed_bearing import COMMON, read_machine_bearing
+from ..bearing.read_bearing import EXTRA_KEYS
 from ..bearing.read_design import BALLS, ROLLERS
 from ..bearing.read_scene import scene_of
 from ..cases.case_keys import OPERATING
 from ..cases.read_cases import CaseTable, case_table
+from ..shaft.read import OF_SEAT, shafts_of
 
 _KINDS = {
     name: kind_of(unit_of_number(name))
@@ -65,7 +69,7 @@ _BOUNDS["__annotations__"] = dict.fromkeys(NUMBERS, Any)
 _BoundKeys: Any = type("BoundKeys", (Keys,), _BOUNDS)
 
 
-class SelectKeys(_BoundKeys):
+class PositionKeys(_BoundKeys):
     types: tuple[str, ...] | None = scene_key(
         "types that may be chosen", choices=(*BALLS, *ROLLERS), otherwise="all"
     )
@@ -78,6 +82,9 @@ class SelectKeys(_BoundKeys):
         "class of radial clearance, of types that have classes",
         choices=CLEARANCE_CLASSES,
     )
+
+
+class SelectKeys(PositionKeys):
     file: str | None = scene_key(
         "path of a CSV of one's own bearings: `designation`, `type`, `bore [mm]`,"
         " `outside_diameter [mm]`, `width [mm]`, `C [kN]`, `C0 [kN]`, and where they"
@@ -85,32 +92,60 @@ class SelectKeys(_BoundKeys):
     )
 
 
+class ShaftSelectKeys(SelectKeys):
+    about = "[select] of a system of shafts: what each of the positions must do"
+
+    positions: Any = scene_key(
+        "bearings that are chosen, by their name: keys of this table that differ there",
+        name="positions",
+        reader=lambda table, name: table.table(name, required=True),
+        json={"type": "object", "additionalProperties": {"type": "object"}},
+    )
+    short_list: int = scene_key(
+        "most bearings of a position that are combined with those of the others",
+        default=3,
+    )
+
+
+_OF_SHAFTS = "positions", "short_list", "file"
+"""Keys that no position has for itself."""
+
+
 class Choice(NamedTuple):
     """A scene with [select].
 
     Attributes:
         name: Name of the scene.
-        requirements: What a bearing must do.
+        requirements: What a bearing must do; of shafts by position, as of
+            `select_positions`.
         entries: Bearings to choose from.
-        install: Returns the bearing of an entry on the seats of the scene.
+        install: Returns the bearing of an entry on the seats of the scene; of shafts,
+            of a position and an entry.
         written: The scene as it stands in its file.
         inputs: The scene as it was read.
+        designs: Shafts in each case; empty for a bearing alone.
+        options: Other arguments of `select_positions`.
     """
 
     name: str
-    requirements: Requirements
+    requirements: Any
     entries: tuple[CatalogueEntry, ...]
-    install: Callable[[CatalogueEntry], Installed]
+    install: Callable[..., Installed]
     written: Mapping[str, Any]
     inputs: dict[str, Any]
+    designs: tuple[ShaftDesign, ...] = ()
+    options: Any = None
 
 
 def read_select(source: str | Path, settings: Iterable[str] = ()) -> Choice:
-    """Read a scene with [select].
+    """Read a scene with [select], of a bearing or of a system of shafts.
 
     Args, raises: as `read_scene`.
     """
     path = find_scene(source)
+    data = parse_scene(path, settings)
+    if is_shafts(data):
+        return _read_positions(data, path)
     data = parse_bearing(path, settings)
     top = Table(data, path)
     keys = read_keys(SelectKeys, top.table("select", required=True))
@@ -151,6 +186,54 @@ def read_select(source: str | Path, settings: Iterable[str] = ()) -> Choice:
         inputs[name] = {k: v for k, v in inputs.get(name, {}).items() if k in kept}
     inputs = {k: v for k, v in inputs.items() if v} | {"select": table.echo()}
     return Choice(path.stem, asked, entries, install, data, inputs)
+
+
+def _read_positions(data: dict[str, Any], path: Path) -> Choice:
+    """Read a scene of shafts with [select]."""
+    top, scene = Table(data, path), shafts_of(data, path)
+    keys = read_keys(ShaftSelectKeys, top.table("select", required=True))
+    if scene.heat is not None:
+        problem = "stands beside [select], which takes temperatures as they are given"
+        raise top.error("heat", f"{problem}; choose without it, then run `shaft`")
+    own, seats, shared = dict[str, Any](), data["bearings"], keys.table.keys_given()
+    entries = (*catalogue_entries(), *_own_entries(keys.table, keys.file, path))
+    alone = dict(zip(seats, scene.bearings, strict=True))
+    for name in keys.positions.keys():
+        bearing = alone.get(name)
+        if bearing is None:
+            problem = "has springs, which no catalogue lists"
+            problem = problem if name in seats else not_among(name, [*seats])
+            raise keys.positions.error(name, problem)
+        table = keys.positions.table(name)
+        both = {k: v for k, v in shared.items() if k not in _OF_SHAFTS}
+        both = table.with_values(both | table.keys_given())
+        given = read_keys(PositionKeys, both).given
+        table.finish()
+        life = bearing.life or LifeConditions()
+        lives = {"life_hours": life.required, "rating_life": life.required_revolutions}
+        bounds = {k: (v, None) for k, v in lives.items() if v is not None}
+        bounds |= {k: given.pop(k) for k in NUMBERS if k in given}
+        own[name] = given | {"bounds": bounds}
+    keys.table.finish()
+    each = scene.cases or (scene,)
+    hours = [one.hours for one in each]
+    common = {k: data[k] for k in (*COMMON, "output") if k in data}
+    of_seat = (*OF_SEAT, *EXTRA_KEYS, *COMMON)
+    kept = {
+        n: {k: v for k, v in one.items() if k in of_seat} for n, one in seats.items()
+    }
+
+    def install(name: str, entry: CatalogueEntry) -> Installed:
+        changed = {**common, "bearings": {name: {**kept[name], "designation": entry}}}
+        whole = Table(changed, path)
+        place = whole.table("bearings").table(name)
+        return read_machine_bearing(whole, place, name, path, OF_SEAT).installed
+
+    options = {"hours": None if None in hours else hours, "short_list": keys.short_list}
+    options |= {"rank_by": keys.rank_by} if keys.rank_by else {}
+    designs = tuple(ShaftDesign(one.system, one.lives) for one in each)
+    inputs = {**scene.inputs, "select": keys.table.echo()}
+    return Choice(path.stem, own, entries, install, data, inputs, designs, options)
 
 
 def _read_common(scenes: Iterable[dict[str, Any]], path: Path) -> CaseTable:

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from ...decide.select import NUMBERS, SIZES, Selection, select, unit_of_number
+from ...decide import PositionSelection, select_positions
+from ...decide.select import NUMBERS, SIZES, Miss, Selection, select, unit_of_number
 from ...files.scene_errors import scene_errors
 from ...numerics.labels import column_header
-from ...numerics.units import shown_number
 from ...report.html_report import flat
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Part, Report, labelled_facts
@@ -24,21 +24,26 @@ _UNITS = {"m": (1e3, "mm"), "N m": (1e3, "N mm")}
 """Factor from SI, and unit, of lengths and torques in a report."""
 
 
-def run_select(
-    choice: Choice, told: Callable[[str, float], Any] | None = None
-) -> Selection:
-    """Choose a bearing as a scene says.
+def run_select(choice: Choice, told: Callable[[str, float], Any] | None = None) -> Any:
+    """Choose a bearing, or those of several positions, as a scene says.
 
     Args:
         choice: From `read_select`.
         told: As `progress` of `select`.
 
+    Returns:
+        `Selection`; of a system of shafts `PositionSelection`.
+
     Raises:
-        SceneError: If the scene suits no bearing that is left.
+        SceneError: If the scene suits no bearing that is left, or as `select_positions`
+            raises ValueError.
     """
-    more: Any = {"entries": choice.entries, "install": choice.install}
+    more: Any = {"entries": choice.entries, "install": choice.install, "progress": told}
     with scene_errors(choice.name):
-        return select(choice.requirements, **more, progress=told)
+        if choice.designs:
+            given = choice.designs, choice.requirements
+            return select_positions(*given, **choice.options, **more)
+        return select(choice.requirements, **more)
 
 
 def select_as_dict(choice: Choice, found: Selection) -> dict[str, Any]:
@@ -50,21 +55,6 @@ def select_as_dict(choice: Choice, found: Selection) -> dict[str, Any]:
 def select_columns(found: Selection) -> dict[str, np.ndarray]:
     """Return all candidates as columns by header, in SI."""
     return {column_header(k, unit_of_number(k)): v for k, v in found.table.items()}
-
-
-def nearest_misses(found: Selection, most: int = 5) -> list[str]:
-    """Return the nearest misses in words: "6208: life_hours 8200 h of 20000 h".
-
-    Args:
-        found: The choice.
-        most: How many.
-    """
-    lines = []
-    for row in found.excluded[:most]:
-        name, unit = row["requirement"], unit_of_number(row["requirement"])
-        ends = [shown_number(row[k], unit, 5) for k in ("value", "limit")]
-        lines.append(f"{row['designation']}: {name} {row['why'] or ' of '.join(ends)}")
-    return lines
 
 
 def select_report(choice: Choice, found: Selection) -> Report:
@@ -97,6 +87,64 @@ def select_report(choice: Choice, found: Selection) -> Report:
     counts = [(name, str(count)) for name, count in found.counts.items()]
     out: list[Part] = [labelled_facts(counts)] if counts else []
     if counts:
-        out += ["nearest:", *(f"  {line}" for line in nearest_misses(found))]
+        out += ["nearest:", *(f"  {line}" for line in found.nearest_misses())]
     sections = {"Asked": [labelled_facts(facts)], "Fits": fits, "Excluded by": out}
     return Report(sections)
+
+
+def positions_as_dict(choice: Choice, found: PositionSelection) -> dict[str, Any]:
+    """Return `best`, the columns of `combinations` (combination, position), and of each
+    position what `select` gives, in SI."""
+    alone = {
+        name: {"fits": len(one.fits), "counts": one.counts, "smallest": one.smallest}
+        for name, one in found.alone.items()
+    }
+    numbers = {"best": found.best, "holds": found.holds, "positions": alone}
+    numbers |= {"kinds": found.kinds, "combinations": found.table}
+    return run_json(numbers, [], choice.inputs)
+
+
+def positions_columns(found: PositionSelection) -> dict[str, np.ndarray]:
+    """Return a row for each combination and position as columns by header, in SI."""
+    count, names = found.holds.size, [*found.alone]
+    columns = {"combination": np.repeat(np.arange(count), len(names))}
+    columns["position"] = np.array(names * count)
+    flat = {column_header(k, unit_of_number(k)): v for k, v in found.table.items()}
+    return columns | {header: values.ravel() for header, values in flat.items()}
+
+
+def positions_report(choice: Choice, found: PositionSelection) -> Report:
+    """Return the readable report: what fits each position under the loads with the
+    present bearings, and the combinations in the whole system."""
+    alone = [
+        f"{name}: of {one.table['type'].size} bearings {len(one.fits)} fit; the"
+        f" smallest: {one.smallest}"
+        for name, one in found.alone.items()
+    ]
+    best = ", ".join(f"{k} {v}" for k, v in (found.best or {}).items())
+    count, names = min(found.holds.size, _SHOWN), [*found.alone]
+    rows = {k: v[:count].ravel().tolist() for k, v in found.table.items()}
+    columns = [
+        Column("combination", np.repeat(np.arange(count), len(names))),
+        Column("position", names * count),
+        Column("bearing", rows["designation"]),
+    ]
+    forces = [name for name in rows if name.endswith("_force")]
+    for name in ("mass", *forces, "life_hours", "static_safety", "load_ratio"):
+        given = np.array(rows[name]), unit_of_number(name), ".4g"
+        columns.append(Column(name.replace("_", " "), *given))
+    misses = zip(*(rows[name] for name in Miss._fields[:4]), strict=True)
+    columns.append(Column("lacks", [Miss(*one).words or "nothing" for one in misses]))
+    whole: list[Part] = [
+        f"{found.holds.sum()} of {found.holds.size} combinations hold; the best:"
+        f" {best or 'none'}",
+        Grid(columns),
+        f"structures of bearings compiled: {found.kinds}; friction and stiffness, where"
+        " they are asked for, are those of the loads with the present bearings",
+    ]
+    return Report(
+        {
+            f"{choice.name}: loads with the present bearings": alone,
+            "Whole system, with the new bearings": whole,
+        }
+    )

@@ -287,7 +287,7 @@ def shafts_of(data: dict[str, Any], path: Path) -> ShaftScene:
     if "cases" in data:
         keys = read_keys(CasesKeys, Table(data, path).table("cases"))
         columns, _ = keys.columns(path, may_record=False)
-    elsewhere = ("cases", "optimise", "tolerances", "identify")
+    elsewhere = ("cases", "optimise", "tolerances", "identify", "select")
     alone = {key: value for key, value in data.items() if key not in elsewhere}
     if not columns:
         return _with_lives(_read(alone, path, known), path)
@@ -471,7 +471,7 @@ def _housing(
         return HousingStiffness(keys.seats, matrix)
 
 
-_OF_SEAT = ("shaft", "position", "station", "heat") + tuple(
+OF_SEAT = ("shaft", "position", "station", "heat") + tuple(
     one.name for kind in (Seat, SeatKeys) for one in fields_of(kind)
 )
 
@@ -486,8 +486,8 @@ def _bearing(
 ) -> Scene | None:
     """Read a bearing as a scene of its own; `None` of springs."""
     if keys.stiffness is None:
-        return read_machine_bearing(top, table, name, path, _OF_SEAT, known=known)
-    own = [key for key in table.keys_given() if key not in _OF_SEAT]
+        return read_machine_bearing(top, table, name, path, OF_SEAT, known=known)
+    own = [key for key in table.keys_given() if key not in OF_SEAT]
     if own:
         problem = "goes with a bearing, not with springs (`stiffness`)"
         raise table.error(own[0], problem)
