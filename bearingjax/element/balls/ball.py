@@ -241,7 +241,7 @@ class BallSearchHints(SearchHints):
 
     @property
     def slots(self) -> tuple[int, int]:
-        return 128, 64
+        return 64, 32
 
     @property
     def corrects_steps(self) -> bool:
