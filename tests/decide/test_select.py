@@ -11,7 +11,7 @@ import bearingjax as bj
 from bearingjax.cases.sweep import SUMMARIES, structure_of
 from bearingjax.catalogue.entry import bearing_of_entry
 from bearingjax.decide import Requirements
-from bearingjax.decide.select import _as_bounds, as_drawn, judge, _of_kind
+from bearingjax.decide.select import _as_bounds, _of_kind, as_drawn, judge
 from bearingjax.life.life_warning import minimum_load
 from bearingjax.statics import Installed
 

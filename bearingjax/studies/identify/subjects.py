@@ -1,7 +1,6 @@
 """Whose numbers are identified: a bearing, shafts on bearings, or a rotor."""
 
 import dataclasses
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,8 +16,7 @@ from ...numerics.labels import column_header
 from ...numerics.units import unit_of
 from ...optimise.system import AbstractSystem
 from ...optimise.variable import with_numbers
-from ...rotor import Rotor
-from ...rotor.rotor_design import RotorCases, RotorDesign, RotorSeat
+from ...rotor.rotor_design import RotorCases
 from ..bearing.life_ratings import life_conditions
 from ..bearing.read_scene import scene_of
 from ..cases.case_keys import OPERATING, VariedKey
@@ -26,8 +24,8 @@ from ..cases.read_cases import cases_of_columns, check_varied_key
 from ..optimise.noise_numbers import noise_design
 from ..optimise.read_optimise import installed_numbers
 from ..optimise.read_shaft_optimise import design_in_cases, shaft_numbers
+from ..optimise.rotor_numbers import rotor_design, rotor_numbers
 from ..rotor.read import RotorScene, rotor_of
-from ..rotor.supports import support_of
 from ..shaft.read import ShaftScene, shafts_of
 
 
@@ -183,8 +181,8 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
     if is_rotor(data):
         alone = {key: value for key, value in data.items() if key != "identify"}
         scene = rotor_of(alone, path)
-        design = _rotor_design(scene)
-        return Setup(scene, CaseModel(design), dict(_numbers(scene)), data, path)
+        model = CaseModel(rotor_design(scene))
+        return Setup(scene, model, rotor_numbers(scene), data, path)
     if "vibration" in data:
         scene, rig, numbers = noise_design(data, path)
         own = scene.support, scene.solve_options
@@ -197,63 +195,3 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
         placed = Oiled(**vars(placed), viscosity=scene.life.viscosity)
         numbers["life.viscosity"] = ("viscosity",)
     return Setup(scene, CaseModel(placed, *given, **oil), numbers, data, path)
-
-
-def _rotor_design(scene: RotorScene) -> RotorDesign:
-    keys, seats = scene.keys, []
-    supports = [support_of(mount) for mount in scene.mounts]
-    for mount in scene.mounts:
-        placed, preload = mount.installed, mount.keys.preload
-        if placed is None or mount.keys.law is not None:
-            seats.append(None)
-        else:
-            seats.append(RotorSeat(placed, preload))
-    rotor = Rotor(scene.shaft, scene.discs, supports, keys.own_damping, keys.rigid)
-    return RotorDesign(rotor, seats, scene.loads, keys.modes)
-
-
-def _numbers(scene: RotorScene) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield the numbers of a rotor by scene key, with their paths in `RotorDesign`."""
-    found: dict[str, tuple[str, ...]] = {}
-    held = {mount.name for mount in scene.mounts if mount.keys.law is not None}
-    for k, mount in enumerate(scene.mounts):
-        head, own = f"rotor.bearings.{k}", f"rotor.supports.{k}"
-        keys = mount.keys
-        springs = {"damping": keys.damping.diagonal}
-        if mount.scene is not None and keys.law is None:
-            own_numbers = installed_numbers(mount.scene).items()
-            for key, paths in () if mount.name in held else own_numbers:
-                name = f"bearings.{mount.name}.{key.removeprefix('bearing.')}"
-                within = tuple(f"seats.{k}.installed.{path}" for path in paths)
-                found[name] = (*found.get(name, ()), *within)
-            if keys.preload is not None:
-                yield f"{head}.preload", (f"seats.{k}.preload",)
-        elif keys.stiffness is not None:
-            springs["stiffness"] = keys.stiffness.diagonal
-        for name, (x, y, *_) in springs.items():
-            across = {"radial": "01"} if x == y else {"x": "0", "y": "1"}
-            for side, axes in (across | {"axial": "2", "tilt": "34"}).items():
-                paths = tuple(f"{own}.{name}.{axis}.{axis}" for axis in axes)
-                yield f"{head}.{name}.{side}", paths
-        if keys.housing is not None:
-            yield f"{head}.housing.mass", (f"{own}.housing.mass",)
-            for name in ("stiffness", "damping"):
-                place = f"{own}.housing.{name}"
-                each = [f"{place}.{axis}.{axis}" for axis in range(3)]
-                if len(set(getattr(keys.housing, name))) == 1:
-                    yield f"{head}.housing.{name}", tuple(each)
-                    continue
-                for axis, path in zip("xyz", each, strict=True):
-                    yield f"{head}.housing.{name}.{axis}", (path,)
-    yield from found.items()
-    for k in range(len(scene.keys.shaft)):
-        for name in ("outer_diameter", "bore"):
-            yield f"rotor.shaft.{k}.{name}", (f"rotor.shaft.{name}.{k}",)
-    for k, disc in enumerate(scene.discs):
-        for name in ("mass", "polar_inertia", "diametral_inertia"):
-            if hasattr(disc, name):
-                yield f"rotor.discs.{k}.{name}", (f"rotor.discs.{k}.{name}",)
-    for k in range(len(scene.loads.unbalances)):
-        for name in ("moment", "phase"):
-            key = f"rotor.excitation.unbalance.{k}.{name}"
-            yield key, (f"loads.unbalances.{k}.{name}",)
