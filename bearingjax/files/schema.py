@@ -160,6 +160,28 @@ def scene_key(
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def names_key(
+    about: str, *, tables: bool = True, required: bool = False, **rest: Any
+) -> Any:
+    """Return a field of a `Keys` class for a table whose keys are names, read as a
+    `Table`.
+
+    Args:
+        about: As in `Key`.
+        tables: Whether its values are tables, not single values.
+        required: Whether it must be there.
+        **rest: Further arguments of `scene_key`.
+    """
+    json: dict[str, Any] = {"type": "object"}
+    if tables:
+        json["additionalProperties"] = {"type": "object"}
+
+    def read(table, name):
+        return table.table(name, required=required)
+
+    return scene_key(about, reader=read, json=json, **rest)
+
+
 def key_of(kind: type, name: str, /, **changes: Any) -> Any:
     """Return a field of a `Keys` class for a number that another class declares.
 

@@ -10,7 +10,7 @@ from ...decide import CaseModel
 from ...files.column_list import read_list
 from ...files.quantity import SceneError, kind_of
 from ...files.scene_file import find_scene, parse_scene
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, names_key, read_keys, scene_key
 from ...files.table import Table
 from ...files.text_file import read_columns
 from ...numerics.units import unit_of
@@ -28,12 +28,6 @@ ERROR = ".error"
 """Ends the header of a column of standard deviations."""
 
 
-def _tables(about: str, **rest: Any) -> Any:
-    """Return a key for a table of keys that are names."""
-    json = {"type": "object"}
-    return scene_key(about, reader=lambda t, name: t.table(name), json=json, **rest)
-
-
 class IdentifyKeys(Keys):
     about = "[identify]: numbers of bearing, shafts or rotor from measurements"
 
@@ -43,13 +37,14 @@ class IdentifyKeys(Keys):
         " its unit",
         otherwise="that of `--data`",
     )
-    unknowns: Any = _tables(
+    unknowns: Any = names_key(
         "numbers that are not known, by their key in the scene, in quotes:"
         " `{ from, to, start, prior, prior_error }`"
     )
-    errors: Any = _tables(
+    errors: Any = names_key(
         "standard deviation of the readings of each column, unless the table has it",
         default=None,
+        tables=False,
     )
     errors_known: bool = scene_key(
         "whether the standard deviations hold; if not, up to a factor", default=True
@@ -59,8 +54,10 @@ class IdentifyKeys(Keys):
         " readings should tell better",
         otherwise="all unknowns",
     )
-    candidates: Any = _tables(
-        "readings that could be taken, each with its standard deviation", default=None
+    candidates: Any = names_key(
+        "readings that could be taken, each with its standard deviation",
+        default=None,
+        tables=False,
     )
 
 

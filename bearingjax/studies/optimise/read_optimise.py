@@ -11,7 +11,7 @@ from ...design import BearingSet, rows_of
 from ...element import FREEDOMS, BearingElement
 from ...files.quantity import SceneError, kind_of, scene_number
 from ...files.scene_file import assign, find_scene, parse_bearing
-from ...files.schema import Keys, key_of, read_keys, scene_key
+from ...files.schema import Keys, key_of, names_key, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...fits.fits import WARM_PARTS
 from ...numerics.units import unit_of
@@ -166,10 +166,8 @@ class SearchKeys(Keys):
         "of the norm that stands for a maximum over rolling elements and cases",
         default=SMOOTHING_EXPONENT,
     )
-    variables: Any = scene_key(
-        "free numbers by their key in the scene, in quotes: `{ from, to, start }`",
-        reader=lambda table, name: table.table(name),
-        json={"type": "object", "additionalProperties": {"type": "object"}},
+    variables: Any = names_key(
+        "free numbers by their key in the scene, in quotes: `{ from, to, start }`"
     )
     constraints: tuple[Any, ...]
     method: str | None = scene_key(

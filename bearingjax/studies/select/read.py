@@ -12,7 +12,7 @@ from ...decide.select import NUMBERS, SIZES, Requirements, unit_of_number
 from ...files.column_list import read_list
 from ...files.quantity import SceneError, kind_of
 from ...files.scene_file import find_scene, is_shafts, parse_bearing, parse_scene
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, names_key, read_keys, scene_key
 from ...files.schema_text import number_schema
 from ...files.table import Table, not_among, text_of
 from ...fits.fit_limits import CLEARANCE_CLASSES
@@ -95,11 +95,10 @@ class SelectKeys(PositionKeys):
 class ShaftSelectKeys(SelectKeys):
     about = "[select] of a system of shafts: what each of the positions must do"
 
-    positions: Any = scene_key(
+    positions: Any = names_key(
         "bearings that are chosen, by their name: keys of this table that differ there",
         name="positions",
-        reader=lambda table, name: table.table(name, required=True),
-        json={"type": "object", "additionalProperties": {"type": "object"}},
+        required=True,
     )
     short_list: int = scene_key(
         "most bearings of a position that are combined with those of the others",

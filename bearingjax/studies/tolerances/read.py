@@ -14,7 +14,7 @@ from ...decide.noise_design import TOTAL
 from ...decide.scatter import SIZES
 from ...files.quantity import SceneError
 from ...files.scene_file import find_scene, is_shafts, parse_scene
-from ...files.schema import Keys, read_keys, scene_key
+from ...files.schema import Keys, names_key, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...numerics.units import unit_of
 from ...optimise import Constraint
@@ -88,25 +88,19 @@ class TightenKeys(Keys):
     )
 
 
-def _numbers_key() -> Any:
-    return scene_key(
+class SharedKeys(Keys):
+    about = "[tolerances]: numbers that scatter, and what becomes of the results"
+
+    samples: int = scene_key("least number of samples", default=10_000, most=10**6)
+    seed: int = scene_key("seed of the samples", default=0, least=0)
+    scattered: Any = names_key(
         "numbers that scatter, by their key in the scene, in quotes: `{ from, to }`,"
         " `{ mean, deviation }` or both, `shape` (normal or uniform), `narrowing ="
         " { by, costs }`; sizes of classes of fit and clearance scatter by themselves:"
         f" {', '.join(f'`fit.{name}`' for name in SIZES)}",
         default=None,
         name="numbers",
-        reader=lambda table, name: table.table(name),
-        json={"type": "object", "additionalProperties": {"type": "object"}},
     )
-
-
-class SharedKeys(Keys):
-    about = "[tolerances]: numbers that scatter, and what becomes of the results"
-
-    samples: int = scene_key("least number of samples", default=10_000, most=10**6)
-    seed: int = scene_key("seed of the samples", default=0, least=0)
-    scattered: Any = _numbers_key()
     correlations: tuple[CorrelationKeys, ...] = scene_key(
         "numbers that scatter together", default=()
     )
