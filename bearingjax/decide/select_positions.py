@@ -137,7 +137,7 @@ def select_positions(
         short_list: Most bearings of a position that are combined, of two types at most.
         entries: Bearings to choose from; `None`: `catalogue_entries()`.
         install: Bearing of an entry on the seats of a position; `None`: as drawn.
-        progress: As of `select`.
+        progress: Function that is called with words and the share that is done.
 
     Returns:
         PositionSelection; a combination without equilibrium misses "solved".

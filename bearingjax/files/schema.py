@@ -167,7 +167,7 @@ def names_key(
     `Table`.
 
     Args:
-        about: As in `Key`.
+        about: What the table holds, in one line without a full stop.
         tables: Whether its values are tables, not single values.
         required: Whether it must be there.
         **rest: Further arguments of `scene_key`.

@@ -147,3 +147,22 @@ def test_identify_waviness_of_twin():
     off = np.abs(found.estimate - true[1:])[2:] / found.standard_error[2:]
     assert np.all(off < 3.0)
     assert np.all(found.standard_error[2:] < 0.05 * true[3:])
+
+
+def test_patterns_are_the_waves_at_the_rolling_elements():
+    """Deviations of raceway and balls at their azimuths, by hand."""
+    one = design(elements=())
+    frequency, pattern = one._patterns(one.rig)
+    azimuth, names = np.asarray(one.rig.still_system().row.azimuth), [*one.readings()]
+    for name, ring, order, size, phase in (
+        ("line_2_BPFO", 0, 17, 10e-9, 2.0),
+        ("line_BPFI_plus_shaft", 1, 10, 22e-9, 0.0),
+    ):
+        expected = np.zeros((9, 2, 3), complex)
+        expected[:, ring, 1] = size * np.exp(1j * (order * azimuth + phase))
+        found = np.asarray(pattern[names.index(name)])
+        np.testing.assert_allclose(found, expected, atol=1e-3 * size, err_msg=name)
+    kinematic = noise.kinematic_frequencies(one.rig.element.bearing, one.rig.speed)
+    assert frequency[names.index("line_2_BPFO")] == pytest.approx(
+        2 * float(kinematic.outer_passage), rel=1e-2
+    )

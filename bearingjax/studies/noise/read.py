@@ -224,7 +224,7 @@ def noise_of(data: dict[str, Any], path: Path, bearings: int = 0) -> NoiseScene:
     Args:
         data: The scene as parsed.
         path: Its path.
-        bearings: As in `read_noise`.
+        bearings: Number of random bearings; 0: that of the scene.
 
     Raises:
         SceneError: As `read_noise`.
