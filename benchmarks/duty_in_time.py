@@ -11,23 +11,22 @@ lives or warnings: the baseline of the ratio, 1 of it in 20 from first contact.
 The error is that of the damage of some rows against `solve_load` and `rating_life` one
 by one. Memory is the most that the process had.
 
-README: 20 years of ten minutes, 1.05 million rows, all different: 162 s of one core
-before the last change, which took the solves of 40 000 rows from 161 to 149 µs a row;
-10 s to read; damage within 3e-11 of single solves; 1.9 GiB | 2 minutes | **missed**
+README: 20 years of ten minutes, 1.05 million rows, all different: 157 s of one core,
+and 12 s to read; damage within 3e-11 of single solves; 1.9 GiB | 2 minutes | **missed**
 1.3-fold
 
-Last run, before balls were solved 64 at a time in place of 128:
+Last run, others working on the second core:
 
                 CPU s  clock s  CPU µs a row     ratio
-read and merge   10.1     10.1          9.57    0.0529
-solve and rate    162      162           154     0.853
-sum             0.115    0.115         0.109  0.000605
-plain solves      190        -           181         1
+read and merge   11.9       12          11.3    0.0688
+solve and rate    157      218           149     0.907
+sum            0.0955   0.0957        0.0908  0.000551
+plain solves      173        -           165         1
 
 1051920 rows, 1051917 of them different, 1051917 solved; damage 12.2846, within 2.8e-11
-of single solves; 1.88 GiB
+of single solves; 1.87 GiB
 
-AMD EPYC, 2 cores, load average 1.0; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 4.4; devices: 1 cpu; jax 0.10.1
 """
 
 import os

@@ -49,3 +49,12 @@ class Constraint(eqx.Module):
     def label(self) -> str:
         """Name in reports."""
         return label_of(self.measure)
+
+    def bounds_text(self, show: Callable[[float], str]) -> str:
+        """Return the bounds in words, such as "at least 1 mm and at most 2 mm".
+
+        Args:
+            show: Formats a bound.
+        """
+        ends = ("at least", self.lower), ("at most", self.upper)
+        return " and ".join(f"{w} {show(float(x))}" for w, x in ends if x is not None)

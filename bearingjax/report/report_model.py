@@ -99,6 +99,19 @@ class Grid:
     columns: Sequence[Column]
     title: str = ""
 
+    @classmethod
+    def of_rows(
+        cls, names: Sequence[str], rows: Iterable[Sequence[Any]], title: str = ""
+    ) -> "Grid":
+        """Return a table by rows.
+
+        Args:
+            names: Headings of its columns.
+            rows: Words, or pure numbers, of each row.
+            title: Line above the table.
+        """
+        return cls([*map(Column, names, zip(*rows, strict=True))], title)
+
     def heading(self) -> list[list[str]]:
         """Return the row of names and the row of units, each if there are any."""
         rows = zip(*(column.heading for column in self.columns), strict=True)

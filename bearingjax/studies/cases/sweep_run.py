@@ -24,7 +24,7 @@ from ...numerics.types import with_fields
 from ...numerics.units import display_unit, shown_count
 from ...numerics.warning import Warning
 from ...report.json_output import run_json
-from ...report.report_model import Column, Grid, Part, Report
+from ...report.report_model import Grid, Part, Report
 from ...statics.preload import is_opposed, remaining_preload
 from ...statics.service_warning import preload_range_warnings, preload_warnings
 from ...statics.solution import solution_kind
@@ -228,9 +228,7 @@ def sweep_report(table: CaseTable, solved: Sweep, seconds: float) -> Report:
         factor, shown = display_unit(unit.rstrip("]"))
         rows.append((name, *(factor * x for x in pair), shown))
     if rows:
-        names = "result", "least", "largest", "unit"
-        given = zip(names, zip(*rows, strict=True), strict=True)
-        parts += ["", Grid([Column(name, found) for name, found in given])]
+        parts += ["", Grid.of_rows(("result", "least", "largest", "unit"), rows)]
     bearing = "", table.scene.element, table.cases.load
     sections = {"Cases": parts, "Credibility": credibility_section("solve", [bearing])}
     return Report(sections, all_warnings(table, solved))

@@ -122,12 +122,11 @@ def read_identification(
         raise keys.unknowns.error("life.viscosity", f"{problem} place")
     unknowns, priors = _unknowns(keys.unknowns, design, setup.numbers)
     units |= {one.name: unit_of(design, one.path[0]) for one in unknowns}
-    for name in wanted:
+    asked = [(table, "wanted", name) for name in wanted]
+    asked += [(keys.candidates, name, name) for name in keys.candidates.keys()]
+    for place, key, name in asked:
         if name not in units:
-            units[name] = _unit(table, "wanted", setup.model, name)
-    for name in () if keys.candidates is None else keys.candidates.keys():
-        if name not in units:
-            units[name] = _unit(keys.candidates, name, setup.model, name)
+            units[name] = _unit(place, key, setup.model, name)
     subject = setup.subject(held, columns, len(next(iter(readings.values()))))
     errors = _errors(table, keys.errors, readings, units)
     if errors is None and priors:
@@ -166,12 +165,11 @@ def _measured(held: Table, setup: Setup) -> Any:
     read = {key: values for key, values in found.items() if key in blank}
     alone = [key for key in read if key.removesuffix(ERROR) not in read]
     if alone or not read:
-        problem = (
-            f"{alone[0]} has no column of readings" if alone else "measures nothing"
-        )
+        lacks = "has no column of readings"
+        problem = f"{alone[0]} {lacks}" if alone else "measures nothing"
         raise held.error("file", f"{name}: {problem}")
-    rest = [(key, values) for key, values in found.items() if key not in read]
-    columns = [VariedKey(key, v, np.arange(len(v))) for key, v in rest]
+    count = np.arange(len(next(iter(read.values()))))
+    columns = [VariedKey(key, v, count) for key, v in found.items() if key not in read]
     return columns, read, units
 
 
@@ -204,20 +202,18 @@ def _unknowns(table: Table, design: Any, numbers) -> Any:
     return unknowns, priors
 
 
-def _errors(table: Table, given: Table | None, read: dict, units: dict) -> Any:
+def _errors(table: Table, given: Table, read: dict, units: dict) -> Any:
     """Take the columns of errors out of those that were read; return all errors."""
     found = {k.removesuffix(ERROR): read.pop(k) for k in [*read] if k.endswith(ERROR)}
-    for name in () if given is None else given.keys():
+    for name in given.keys():
         if name not in read or name in found:
             twice = "has a column of its own" if name in found else "is not measured"
-            raise given.error(name, twice)  # pyright: ignore
+            raise given.error(name, twice)
     found |= _positive_numbers(given, units)
     if found and (lacking := [name for name in read if name not in found]):
         raise table.error("errors", f"has no standard deviation of {lacking[0]}")
     return found or None
 
 
-def _positive_numbers(table: Table | None, units: dict[str, str]) -> dict[str, float]:
-    if table is None:
-        return {}
+def _positive_numbers(table: Table, units: dict[str, str]) -> dict[str, float]:
     return {name: read_spread(table, name, units[name]) for name in table.keys()}

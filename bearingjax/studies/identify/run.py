@@ -7,7 +7,7 @@ import numpy as np
 from ...decide.identify import Identified, identify
 from ...files.scene_errors import scene_errors
 from ...numerics.labels import column_header
-from ...numerics.units import CELSIUS, display_unit, shown_count
+from ...numerics.units import shown_change, shown_count, shown_number
 from ...report.json_output import run_json
 from ...report.report_model import Column, Grid, Report
 from ..bearing.credibility import credibility_section
@@ -42,14 +42,6 @@ def run_identification(task: Identification) -> Identified:
         )
 
 
-def _rows(heads: str, rows: list[tuple], units: Any = None, last: int = 0) -> Grid:
-    """Return a table by rows; its last columns have units, one for each row."""
-    names, columns = heads.split(", "), list(zip(*rows, strict=True))
-    pairs = enumerate(zip(names, columns, strict=True))
-    first = len(names) - last
-    return Grid([Column(n, v, units if k >= first else "") for k, (n, v) in pairs])
-
-
 def identification_report(task: Identification, found: Identified) -> Report:
     """Return the readable report.
 
@@ -66,38 +58,35 @@ def identification_report(task: Identification, found: Identified) -> Report:
     )
     told = list(found.untold) or ["the readings tell every unknown"]
     missed, error, value = found.residual, found.error, found.prediction
-    rows = sorted(rows, key=lambda at: -abs(missed[at[0]] / error[at[0]])[at[1]])[
-        :_MOST
+    rows.sort(key=lambda at: -abs(missed[at[0]] / error[at[0]])[at[1]])
+    pairs = [(n, k, task.units[n]) for n, k in rows[:_MOST]]
+    largest = [
+        (n, k, shown_change(missed[n][k], unit), shown_change(error[n][k], unit))
+        for n, k, unit in pairs
     ]
-    largest = [(n, k, missed[n][k], error[n][k]) for n, k in rows]
+    heads = "largest residuals", "case", "measured less predicted", "error"
     names = [Column("", found.names), *map(Column, found.names, found.correlation.T)]
     sections: dict[str, Any] = {
         "Estimates": [head, "", _estimates(task, found)],
         "Correlations": [Grid(names)],
         "What the readings tell": told,
-        "Fit": [
-            _fit_words(found),
-            "",
-            _rows(
-                "largest residuals, case, measured less predicted, error",
-                largest,
-                [task.units[name] for name, *_ in largest],
-                2,
-            ),
-        ],
+        "Fit": [_fit_words(found), "", Grid.of_rows(heads, largest)],
     }
     wanted = [name for name in task.wanted if name not in found.names]
     if wanted:
-        at = [(n, k) for n in wanted for k in range(value[n].size)][:_LONGEST]
-        rows = [(n, k, value[n][k], found.prediction_error[n][k]) for n, k in at]
-        units = [task.units[name] for name, _ in at]
-        grid = _rows("prediction, case, value, standard error", rows, units, 2)
-        sections["Predictions"] = [grid]
+        off = found.prediction_error
+        rows = [
+            (n, k, shown_number(x, task.units[n]), shown_change(d, task.units[n]))
+            for n in wanted
+            for k, (x, d) in enumerate(zip(value[n], off[n], strict=True))
+        ]
+        heads = "prediction", "case", "value", "standard error"
+        sections["Predictions"] = [Grid.of_rows(heads, rows[:_LONGEST])]
     of = ", ".join(task.wanted) or "all unknowns, on average"
     best = [(n, k, f"{100 * drop:.3g} %") for n, k, drop in found.candidates[:_MOST]]
     sections["Further readings"] = [
         f"share of the variance of {of} that one more reading would take away",
-        _rows("reading, case, share", best),
+        Grid.of_rows(("reading", "case", "share"), best),
     ]
     alone = isinstance(subject.scene, Scene)
     bearings = [("", subject.scene.element, subject.cases.load)] if alone else []
@@ -110,11 +99,10 @@ def _estimates(task: Identification, found: Identified) -> Grid:
     given = found.names, found.estimate, found.standard_error, found.interval
     for name, value, error, ends in zip(*given, strict=True):
         unit = task.units[name]
-        factor, shown = display_unit(unit, float(abs(value)))
-        zero, shown = (CELSIUS, "°C") if unit == "K" else (0.0, shown)
-        value, *ends = (factor * (x - zero) for x in (value, *ends))
-        rows.append((name, value, factor * error, *ends, shown))
-    return _rows("unknown, estimate, standard error, 95 % from, to, unit", rows)
+        shown, low, high = (shown_number(x, unit, 5) for x in (value, *ends))
+        rows.append((name, shown, shown_change(error, unit), low, high))
+    heads = "unknown", "estimate", "standard error", "95 % from", "to"
+    return Grid.of_rows(heads, rows)
 
 
 def _fit_words(found: Identified) -> str:

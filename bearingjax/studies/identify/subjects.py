@@ -76,10 +76,10 @@ class Setup(NamedTuple):
             return {"rotor.speed": "speed"}
         if is_shafts(self.data):
             return {}
-        design, first = self.model.design, {k: p[0] for k, p in self.numbers.items()}
-        units = {key: unit_of(design, path) for key, path in first.items()}
+        design = self.model.design
+        units = {key: unit_of(design, p[0]) for key, p in self.numbers.items()}
         own = {key: kind_of(unit) if unit else "" for key, unit in units.items()}
-        return dict(OPERATING) | own
+        return OPERATING | own
 
     def measures(self, key: str) -> bool:
         """Whether a column is one of readings, not a condition."""
@@ -99,21 +99,23 @@ class Setup(NamedTuple):
         Raises:
             SceneError: For conditions that cannot vary.
         """
-        if isinstance(self.scene, RotorScene):
-            return self._rotor(table, columns, count)
         own = self._shafts if is_shafts(self.data) else self._bearing
+        own = self._rotor if isinstance(self.scene, RotorScene) else own
         return own(table, columns, count)
 
     def _bearing(self, table, columns, count) -> Subject:
         varied: dict[str, Any] = {}
+        kept: dict[str, Any] = {}
         for column in columns:
             if column.key in OPERATING:
                 check_varied_key(table, column.key, self.scene)
             elif column.key not in self.numbers:
                 raise table.error("file", not_among(column.key, [*self.numbers]))
             else:
-                values = np.asarray(column.values, float)
-                varied |= dict.fromkeys(self.numbers[column.key], values)
+                values, paths = np.asarray(column.values), self.numbers[column.key]
+                unit = unit_of(self.model.design, paths[0])
+                varied |= dict.fromkeys(paths, values.astype(float))
+                kept[column_header(column.key, unit)] = values
         for case in range(count if varied else 0):
             with table.building():
                 own = {path: values[case] for path, values in varied.items()}
@@ -122,13 +124,6 @@ class Setup(NamedTuple):
         if isinstance(self.model.design, AbstractSystem):
             with table.building():
                 self.model.design.check(cases)
-        kept = {
-            column_header(c.key, unit_of(self.model.design, self.numbers[c.key][0])): (
-                np.asarray(c.values)
-            )
-            for c in columns
-            if c.key in self.numbers
-        }
         model = dataclasses.replace(self.model, varied=varied)
         return Subject(self.scene, model, cases, dict(case_columns(cases)) | kept)
 
@@ -170,13 +165,10 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
     """
     if is_shafts(data):
         scene: Any = shafts_of(data, path)
-        top = Table(data, path)
-        if scene.heat is not None:
-            problem = "does not go with [identify]; give the temperatures that it finds"
-            raise top.error("heat", problem)
+        table = Table(data, path).table("identify")
         alone = [one for one in scene.bearings if one is not None]
         oily = all(one.oil is not None for one in alone)
-        design = design_in_cases(scene, oily, top)[0]
+        design = design_in_cases(scene, oily, table)[0]
         return Setup(scene, CaseModel(design), shaft_numbers(scene), data, path)
     if is_rotor(data):
         alone = {key: value for key, value in data.items() if key != "identify"}

@@ -105,9 +105,6 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     check_present(data, path)
     scene = read_shafts(source, settings)
     top = Table({"optimise": data["optimise"]}, path)
-    if scene.heat is not None:
-        problem = "does not go with [heat]; give the temperatures that it finds"
-        raise top.error("optimise", problem)
     table = top.table("optimise")
     keys = read_keys(ShaftOptimiseKeys, table)
     free = table.table("variables", required=True)
@@ -161,7 +158,13 @@ def design_in_cases(
         scene: The scene.
         oily: Whether the friction of bearings is wanted, which needs their oils.
         table: Table that asks, for errors.
+
+    Raises:
+        SceneError: For a system with [heat], and without the oils that are needed.
     """
+    if scene.heat is not None:
+        problem = "does not go with [heat]; give the temperatures that it finds"
+        raise table.own_error(problem)
     each = scene.cases or (scene,)
     hours = [one.hours for one in each]
     with table.building():

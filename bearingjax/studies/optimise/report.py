@@ -240,7 +240,7 @@ def _variables(found):
         )
         rows.append((name, before, after, unit, bounds))
     names = "variable", "before", "after", "", "bounds"
-    return _grid(names, rows)
+    return Grid.of_rows(names, rows)
 
 
 def _measures(found):
@@ -252,17 +252,12 @@ def _measures(found):
         scale, unit = _unit(shown)
         largest = isinstance(measure, AbstractMeasure) and measure.maximised
         made = "maximised" if largest else "minimised"
-        kept = made if k == 0 else _keep(found, k - 1, scale)
+        kept = made if k == 0 else _bounds(found.constraints[k - 1], scale)
         exact, smooth = ([scale * side[i] for side in (first, last)] for i in (1, 0))
         rows.append((label_of(shown), *exact, unit, kept))
         if first[0] != first[1]:
             rows.append(("  smooth", *smooth, "", ""))
-    return _grid(("measure", "before", "after", "", "asked"), rows)
-
-
-def _grid(names, rows):
-    values = zip(*rows, strict=True)
-    return Grid([Column(n, v) for n, v in zip(names, values, strict=True)])
+    return Grid.of_rows(("measure", "before", "after", "", "asked"), rows)
 
 
 def _as_reported(measure, values):
@@ -273,13 +268,8 @@ def _as_reported(measure, values):
     return measure.reported_as, shown
 
 
-def _keep(found, k, scale):
-    constraint = found.constraints[k]
-    words = []
-    for word, bound in (("at least", constraint.lower), ("at most", constraint.upper)):
-        if bound is not None:
-            words.append(f"{word} {scale * float(bound):.5g}")
-    return ", ".join(words)
+def _bounds(constraint, scale):
+    return constraint.bounds_text(lambda bound: f"{scale * bound:.5g}")
 
 
 def _unit(measure):

@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import equinox as eqx
 import numpy as np
 from scipy import stats
 
@@ -19,6 +18,7 @@ from ...files.table import Table, not_among
 from ...numerics.units import unit_of
 from ...optimise import Constraint
 from ...optimise.smooth import SMOOTHING_EXPONENT
+from ...optimise.variable import with_numbers
 from ...statics.support import Support
 from ..bearing.read_scene import Scene
 from ..optimise.noise_numbers import noise_design
@@ -48,9 +48,16 @@ SHAPES = ("normal", "uniform")
 """Shapes of a distribution."""
 
 
-class MeasureKeys(ConstraintKeys):
+class Unbound:
+    """Keys of a measure of which a bound is no duty."""
+
     about = "[[tolerances.measures]]: what is asked, and what is required of it"
 
+    def check(self) -> None:
+        """Accept a measure without a bound."""
+
+
+class MeasureKeys(Unbound, ConstraintKeys):
     measure: str = scene_key("what is asked", choices=(*MEASURES, NOISE))
     reading: str | None = scene_key(
         "level of the noise on the rig of [vibration], to first order: `total_level`,"
@@ -59,15 +66,9 @@ class MeasureKeys(ConstraintKeys):
         otherwise="`total_level`",
     )
 
-    def check(self) -> None:
-        """A bound is no duty here."""
 
-
-class ShaftMeasureKeys(ShaftConstraintKeys):
-    about = "[[tolerances.measures]]: what is asked, and what is required of it"
-
-    def check(self) -> None:
-        """A bound is no duty here."""
+class ShaftMeasureKeys(Unbound, ShaftConstraintKeys):
+    """Keys of a measure of a system of shafts."""
 
 
 class CorrelationKeys(Keys):
@@ -108,14 +109,10 @@ class SharedKeys(Keys):
 
 
 class ToleranceKeys(SharedKeys):
-    about = "[tolerances]: numbers that scatter, and what becomes of the results"
-
     measures: tuple[MeasureKeys, ...] = scene_key("what is asked")
 
 
 class ShaftToleranceKeys(SharedKeys):
-    about = "[tolerances]: numbers that scatter, and what becomes of the results"
-
     measures: tuple[ShaftMeasureKeys, ...] = scene_key("what is asked")
 
 
@@ -154,9 +151,6 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
     if is_shafts(data):
         scene: Any = read_shafts(source, settings)
         top, inputs = Table({"tolerances": data["tolerances"]}, path), scene.inputs
-        if scene.heat is not None:
-            problem = "does not go with [heat]; give the temperatures that it finds"
-            raise top.error("tolerances", problem)
         table = top.table("tolerances")
         keys = read_keys(ShaftToleranceKeys, table)
         measures = [
@@ -164,12 +158,12 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             for one in keys.measures
         ]
         design, cases = design_in_cases(scene, has_power(measures), table)
-        numbers, seats = shaft_numbers(scene), scene.system.seats
-        places = {
-            f"bearings.{seat.name}.": f"system.seats.{k}.installed."
-            for k, seat in enumerate(seats)
+        numbers = shaft_numbers(scene)
+        places = [
+            (f"bearings.{seat.name}.", f"system.seats.{k}.installed.", seat.installed)
+            for k, seat in enumerate(scene.system.seats)
             if seat.installed is not None
-        }
+        ]
     else:
         problem = "[tolerances] are those of one"
         top, scene, cases, inputs = read_operated(data, path, problem)
@@ -177,13 +171,14 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         keys = read_keys(ToleranceKeys, table)
         measured = Measured(scene, cases, SMOOTHING_EXPONENT)
         design, numbers = scene.installed, installed_numbers(scene)
-        places = {"": ""}
+        places = [("", "", scene.installed)]
         if any(one.measure == NOISE for one in keys.measures):
             top.table("vibration", required=True)
             rig, design, numbers = noise_design(data, path)
             with table.building():
                 design.check(cases)
-            places, inputs = {"": "installed."}, {**rig.inputs, **inputs}
+            places = [("", "installed.", scene.installed)]
+            inputs = {**rig.inputs, **inputs}
         measures = [
             _level(one, design)
             if one.measure == NOISE
@@ -191,9 +186,9 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             for one in keys.measures
         ]
     sizes = {}
-    for head, own in places.items():
-        part, scatters = class_scatters(_part(design, own))
-        design = eqx.tree_at(lambda d, own=own: _part(d, own), design, part)
+    for head, own, bearing in places:
+        bearing, scatters = class_scatters(bearing)
+        design = with_numbers(design, {own.removesuffix("."): bearing})
         sizes |= {
             f"{head}fit.{s.name}": ({f"{own}{p}": f for p, f in s.path.items()}, s.ends)
             for s in scatters
@@ -231,13 +226,6 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         keys.tighten,
         {**inputs, "tolerances": table.echo()},
     )
-
-
-def _part(design: Any, path: str) -> Any:
-    """What stands at a dotted path that ends in a dot; all of it at none."""
-    for name in path.split(".")[:-1]:
-        design = design[int(name)] if name.isdecimal() else getattr(design, name)
-    return design
 
 
 def _level(keys: MeasureKeys, design: Any) -> NoiseLevel:

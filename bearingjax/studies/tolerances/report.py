@@ -33,20 +33,11 @@ def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
         f" {shown_count(len(scatters), 'number')} that scatter, each under"
         f" {shown_count(task.given[1].count, 'operating case')}"
     )
-    ends = zip(*(one.ends for one in scatters), strict=True)
-    numbers = Grid(
-        [
-            Column("number", [one.name for one in scatters]),
-            *(
-                Column(w, _in_units(task, x))
-                for w, x in zip(("from", "to"), ends, strict=True)
-            ),
-            Column("mean", _in_units(task, [one.centre for one in scatters])),
-            Column(
-                "deviation", _in_units(task, [x.spread for x in scatters], shown_change)
-            ),
-        ]
-    )
+    rows = []
+    for one, unit in zip(scatters, task.units, strict=True):
+        values = (shown_number(x, unit) for x in (*one.ends, one.centre))
+        rows.append((one.name, *values, shown_change(one.spread, unit)))
+    numbers = Grid.of_rows(("number", "from", "to", "mean", "deviation"), rows)
     causes = [Column("number", [one.name for one in scatters])]
     for one in found.spreads:
         pairs = (one.name, one.shares), ("by gradient", one.first_order_shares)
@@ -139,10 +130,6 @@ def _key(spread: Spread) -> str:
     return spread.name.replace(" ", "_")
 
 
-def _in_units(task, values, show=shown_number) -> list[str]:
-    return [show(x, unit) for x, unit in zip(values, task.units, strict=True)]
-
-
 def _results(spreads) -> Grid:
     """Tabulate quantiles and moments, below each those by the gradient."""
     rows = []
@@ -156,21 +143,15 @@ def _results(spreads) -> Grid:
             last = shown_number(mean, one.unit), shown_change(deviation, one.unit)
             rows.append([name, *first, *last])
     heads = "", *(f"{100.0 * share:g} %" for share in QUANTILES), "mean", "deviation"
-    columns = zip(heads, zip(*rows, strict=True), strict=True)
     title = "what that share of the samples does not exceed"
-    return Grid([Column(*column) for column in columns], title)
+    return Grid.of_rows(heads, rows, title)
 
 
 def _requirements(task, found) -> list[Part]:
     misses, parts = found.misses, []
     for asked, one in zip(task.given[3], found.spreads, strict=True):
         if isinstance(asked, Constraint):
-            ends = (("at least", asked.lower), ("at most", asked.upper))
-            words = " and ".join(
-                f"{word} {shown_number(float(bound), one.unit)}"
-                for word, bound in ends
-                if bound is not None
-            )
+            words = asked.bounds_text(lambda x, unit=one.unit: shown_number(x, unit))
             parts.append(f"{one.name} {words}: {100.0 * one.misses:.3g} % miss it")
     parts.append(
         f"all requirements: {100.0 * misses.share:.3g} % miss one or several"
@@ -196,17 +177,17 @@ def _requirements(task, found) -> list[Part]:
 
 
 def _tightening(task, narrower) -> list[Part]:
-    old = np.array([one.width for one in task.given[2]])
-    columns = [
-        Column("number", [one.name for one in task.given[2]]),
-        Column("width", _in_units(task, old, shown_change)),
-        Column("narrower", _in_units(task, old * narrower.widths, shown_change)),
-        Column("of that given", narrower.widths, "", ".3g", _PERCENT),
-    ]
+    rows = []
+    for one, unit, share in zip(
+        task.given[2], task.units, narrower.widths, strict=True
+    ):
+        widths = (shown_change(x * one.width, unit) for x in (1.0, share))
+        rows.append((one.name, *widths, f"{100.0 * share:.3g} %"))
+    grid = Grid.of_rows(("number", "width", "narrower", "of that given"), rows)
     before, after, error = (
         f"{100.0 * x:.3g} %" for x in (narrower.before, narrower.after, narrower.error)
     )
     words = f"{before} before, {after} after (standard error {error})"
     asked = f"asked {100.0 * task.tighten.most_misses:g} %"
     missed = f"share that misses, in new samples: {words}, {asked}"
-    return [Grid(columns), missed, f"cost {narrower.cost:.4g}"]
+    return [grid, missed, f"cost {narrower.cost:.4g}"]

@@ -25,9 +25,7 @@ def case_list(cases: Iterable[Case]) -> Report:
     for subject, group in groupby(cases, key=lambda case: case.subject):
         rows = [(case.name, case.trust, case.title) for case in group]
         names = "case", "trust", "title"
-        sections[SUBJECTS[subject]] = [
-            Grid([*map(Column, names, zip(*rows, strict=True))])
-        ]
+        sections[SUBJECTS[subject]] = [Grid.of_rows(names, rows)]
     return Report(sections)
 
 
