@@ -18,6 +18,7 @@ from ..cases.sweep import SUMMARIES, Keep
 from ..cases.sweep_program import Task
 from ..design import rows_of
 from ..design.bearing_set import bearings_of
+from ..design.checks import check_fields
 from ..design.places import element_places, with_places
 from ..element.bearing_element import BearingElement
 from ..files.table import not_among
@@ -56,6 +57,9 @@ class Oiled(Installed):
     """
 
     viscosity: Real = eqx.field(**real("m²/s", above=0), kw_only=True)
+
+    def __check_init__(self):
+        check_fields(self)
 
 
 class CaseModel(eqx.Module):

@@ -206,6 +206,60 @@ def test_conditions_of_temperature(tmp_path):
         read_identification(scene)
 
 
+def viscosity_of_friction(tmp_path):
+    text = f"{HEAD},operating.inner_speed [rpm],friction_torque [N mm]\n"
+    text += "-500,1500,9\n-500,6000,20\n"
+    unknown = '{"life.viscosity"={from="5 mm^2/s",to="90 mm^2/s"}}'
+    settings = (
+        'life={viscosity="20 mm^2/s", contamination="grease, normal"}',
+        f"identify.unknowns={unknown}",
+    )
+    more = (
+        'identify.errors={friction_torque="0.1 N mm"}',
+        'identify.wanted=["life_hours"]',
+    )
+    return measured(tmp_path, text, *settings, *more)
+
+
+def test_viscosity_is_an_unknown(tmp_path):
+    task = viscosity_of_friction(tmp_path)
+    (one,) = task.unknowns
+    assert one.path == ("viscosity",) and task.units["life.viscosity"] == "m²/s"
+    assert one.start_in(task.subject.model.design) == pytest.approx(20e-6)
+    with pytest.raises(ValueError, match="above 0"):
+        with_values(task.subject.model.design, [one.path], [-1e-6])
+
+
+@pytest.mark.slow
+def test_friction_and_life_follow_the_viscosity(tmp_path):
+    """As with the life's own viscosity, and as by differences."""
+    task = viscosity_of_friction(tmp_path)
+    given, cases = task.subject.model, task.subject.cases
+    names = "friction_torque", "life_hours"
+    model = given.for_numbers([["viscosity"]], names)
+
+    def twice(x):
+        found = model(x, cases)
+        both = jax.numpy.stack([found[name] for name in names])
+        return both, both
+
+    solve = jax.jit(jax.jacfwd(twice, has_aux=True))
+    slope, there = solve(jax.numpy.array([40e-6]))
+    step = 40e-9
+    high, low = (solve(jax.numpy.array([40e-6 + d]))[1] for d in (step, -step))
+    np.testing.assert_allclose(slope[..., 0], (high - low) / (2 * step), rtol=1e-5)
+    design = given.design
+    plain = bj.statics.Installed(
+        **{k: v for k, v in vars(design).items() if k != "viscosity"}
+    )
+    life = dataclasses.replace(given.life, viscosity=40e-6)
+    own = dataclasses.replace(given, design=plain, life=life).for_numbers([], names)
+    direct = own(jax.numpy.zeros(0), cases)
+    for name, values in zip(names, there, strict=True):
+        np.testing.assert_allclose(values, direct[name], rtol=SOLVER, err_msg=name)
+    assert np.all(slope[0] > 0.0) and slope[1, 0] > 0.0  # the other life is capped
+
+
 SHAFTS = """
 [drive]
 speed = "1500 rpm"

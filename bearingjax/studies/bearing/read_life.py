@@ -28,7 +28,9 @@ def read_life(
     """
     if "life" not in top:
         return None
-    table, turning = top.table("life"), relative_speed(speed) != 0.0
+    table = top.table("life")
+    listed = "cases" in top or "identify" in top  # cases that may have speeds
+    turning = listed or relative_speed(speed) != 0.0
     given = read_values(LifeConditions, table)
     if given["viscosity"] is not None and given["contamination"] is None:
         problem = "is missing; the modified life needs it beside `viscosity`"
@@ -39,10 +41,10 @@ def read_life(
         table.fill("edge_stress", None)
     if given["contamination"] is not None:
         given["viscosity"] = _viscosity(top, table, given["viscosity"])
-    if given["viscosity"] is not None and not turning and "cases" not in top:
+    if given["viscosity"] is not None and not turning:
         problem = "needs a speed of one ring against the other, for its film"
         raise table.error("contamination", problem)
-    if given["required"] is not None and not turning and "cases" not in top:
+    if given["required"] is not None and not turning:
         problem = "is in hours, and the rings do not turn; write required_revolutions"
         raise table.error("required", problem)
     _check_points(top, bearing, points)

@@ -231,7 +231,7 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
 def _level(keys: MeasureKeys, design: Any) -> NoiseLevel:
     known, asked = design.readings(), keys.reading or TOTAL
     if asked not in known:
-        raise keys.table.error("reading", not_among(asked, known))
+        raise keys.table.error("reading", not_among(asked, [*known]))
     return NoiseLevel(asked)
 
 
