@@ -144,10 +144,12 @@ def _hold_rows(time, columns, row_name):
         bad[lost] = True
         found += [(k, f"{name} is no finite number") for k in lost]
     rows = np.flatnonzero(np.isfinite(time))
+    allowed = "numbers, or instants such as 2024-05-01T12:10, in two rows at least"
+    must_be("series_cases", "time", time, rows.size > 1, allowed)
     steps = np.diff(time[rows])
     back = np.flatnonzero(steps <= 0)
-    if back.size or not steps.size:
-        pair = rows[back[0] : back[0] + 2] if back.size else rows
+    if back.size:
+        pair = rows[back[0] : back[0] + 2]
         which = " and ".join(f"{time[k]:.10g} s in {row_name(int(k))}" for k in pair)
         raise ValueError(f"series_cases: `time` is {which}; it must ascend.")
     usual = np.median(steps)

@@ -11,11 +11,11 @@ import numpy as np
 from scipy import stats
 
 from ..cases.cases import Cases
-from ..design.checks import all_of_class, of_class, of_shape, positive
+from ..design.checks import all_of_class, check, must_be, of_class, of_shape, positive
 from ..numerics.compiled.programs import program
 from ..numerics.result import SolveError
 from ..numerics.shown import Shown, facts_of
-from ..numerics.units import shown_change, shown_number, unit_of
+from ..numerics.units import shown_change, shown_count, shown_number, unit_of
 from ..numerics.warning import Warning
 from ..optimise.system import Design, check_design
 from ..optimise.variable import Variable, check_same_in_cases, check_variables
@@ -189,11 +189,13 @@ def identify(
         positive("identify", f"candidates of {name}", off, "")
     given = _read_call(model, cases, unknowns, readings, errors, more)
     known = known_errors and errors is not None
-    left = int(given.used.sum()) - len(given.unknowns)
-    if not known and left < 1:
+    count, least = int(given.used.sum()), len(given.unknowns) + (not known)
+    left = count - len(given.unknowns)
+    if count < max(1, least):
+        words = f"{count} readings for {shown_count(len(given.unknowns), 'unknown')}"
+        why = "" if known else ", to tell the size of the errors too"
         raise ValueError(
-            f"identify: {given.used.sum()} readings for {len(given.unknowns)} unknowns;"
-            " to tell the size of unknown errors too there must be more."
+            f"identify: {words}; it must be {least} at least, priors among them{why}."
         )
     fit, scale = given.fit(), 1.0
     _check(given, fit)
@@ -322,16 +324,14 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
         dict(readings) if isinstance(readings, Mapping) else {"reading": readings}
     )
     if not isinstance(errors, Mapping):
-        if errors is None and len(readings) > 1:
-            raise ValueError(
-                f"identify: `errors` is None for readings of {', '.join(readings)};"
-                " their weights must be known: give a standard deviation for each."
-            )
+        several = errors is None and len(readings) > 1
+        words = f"given for {', '.join(readings)}: their weights must be known"
+        must_be("identify", "errors", errors, not several, words)
         errors = dict.fromkeys(readings, errors)
-    if not readings:
-        raise ValueError(
-            "identify: `readings` are empty; give those of one name at least."
-        )
+    if alone := readings.keys() ^ errors.keys():
+        problem = f"{', '.join(sorted(alone))} is in `readings` or `errors` alone"
+        raise ValueError(f"identify: {problem}; each reading has its error.")
+    must_be("identify", "readings", readings, bool(readings), "of one name at least")
     unknowns, names = tuple(unknowns), tuple(dict.fromkeys([*readings, *more]))
     own = [one.name for one in unknowns]
     results = [name for name in names if name not in own]
@@ -383,16 +383,7 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
         given = given._replace(error=np.full_like(given.error, usual))
     for name, off in given.split(given.error, True).items():
         off = off[given.split(given.used)[name]]
-        if not (off > 0).all():
-            wrong = off[~(off > 0)][0]
-            raise ValueError(
-                f"identify: an error of {name} is {wrong:g}; it must be above 0."
-            )
-    if given.used.sum() < max(1, len(own)):
-        raise ValueError(
-            f"identify: {given.used.sum()} readings for {len(own)} unknowns; there must"
-            " be as many at least, those of unknowns (priors) among them."
-        )
+        check("identify", f"errors of {name}", off > 0.0, "above 0", off, "")
     return given
 
 

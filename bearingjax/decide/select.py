@@ -157,7 +157,9 @@ class Requirements(Printable):
             known = [end for end in ends if end is not None]
             ordered = bool(known) and 0 < known[0] <= known[-1] < np.inf
             words = "finite and above 0, the least before the greatest"
-            check(self, name, ordered, words, ends, "")
+            check(self, name, ordered, words, ends, unit_of_number(name))
+            once = ends == self.all_bounds[name]
+            must_be(self, name, "given", once, "left out beside that which `life` has")
         cases, life, turning = self.load, self.life, bool(self.turns.any())
         held = bool(cases.prescribed) or cases.fixed_displacement is not None
         loads = np.isfinite(cases.load).all() and (held or np.any(cases.load))

@@ -144,9 +144,10 @@ def select_positions(
 
     Raises:
         TypeError, ValueError: As `select`; for a position that does not exist, has
-            springs, or another bearing from case to case; unknown keys; present
-            bearings without equilibrium; a position that no bearing fits, with the
-            nearest misses; two bearings of one designation; too many combinations.
+            springs, or another bearing from case to case; unknown keys; two bearings
+            of one designation; too many combinations.
+        SolveError: If the present bearings have no equilibrium, or no bearing fits a
+            position, with the nearest misses.
     """
     own, told = "select_positions", progress or (lambda words, share: None)
     must_be(own, "designs", designs, bool(designs), "one at least")
@@ -164,7 +165,8 @@ def select_positions(
     present = _solve_cases(systems, lives)
     for case, code in enumerate(present.result):
         why = f"{Result(int(code)).label} with the present bearings (case {case})"
-        must_be(own, "designs", why, int(code) == Result.CONVERGED, "solved")
+        if int(code) != Result.CONVERGED:
+            raise SolveError(f"{own}: {why}")
     ranks = (rank_by,) if isinstance(rank_by, str) else tuple(rank_by)
     alone, listed, rows = {}, [], []
     for name, k in seats.items():
@@ -187,7 +189,7 @@ def select_positions(
         if not found.fits:
             near = "; ".join(found.nearest_misses(3))
             problem = f"no bearing fits {name} under the loads with the present ones"
-            raise ValueError(f"{own}: {problem}; the nearest: {near}.")
+            raise SolveError(f"{own}: {problem}; the nearest: {near}")
         types = [*dict.fromkeys(row["type"] for row in found.fits)][:_TYPES]
         best = [row for row in found.fits if row["type"] in types][:short_list]
         loads = _loads(systems, present, k, "present_")

@@ -59,7 +59,7 @@ def read_list(
                 raise ValueError(f"names a column twice, {key}")
             kind = "time" if timed and key == "time" else kinds.get(key)
             if timed and key == "time" and unit is None:
-                found[key] = _seconds(values)
+                found[key] = _seconds(values, lines)
             elif kind is None:
                 found[key] = _settings(key, unit, values, lines)
             else:
@@ -99,14 +99,18 @@ def _columns(path, what, record) -> tuple[Any, Any, Any]:
     return header, list(columns), np.array([line for line, _ in cells])
 
 
-def _seconds(values) -> np.ndarray:
+def _seconds(values, lines) -> np.ndarray:
     """Seconds of instants since the first, NaN of cells that are none."""
     found = np.full(len(values), "nat", "datetime64[us]")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of offsets, which count
         for k, value in enumerate(values):
+            text = str(value).strip()
+            if math.isfinite(_number(text)):  # NumPy would take it for a year
+                cure = 'without a unit; head the column "time [s]", or write instants'
+                raise ValueError(f"line {lines[k]}: time is {text!r}, {cure}")
             with contextlib.suppress(ValueError):
-                found[k] = np.datetime64(str(value).strip(), "us")
+                found[k] = np.datetime64(text, "us")
     known = found[~np.isnat(found)]
     return (found - (known[0] if known.size else found)) / np.timedelta64(1, "s")
 

@@ -53,7 +53,7 @@ def scene_number(value: float, kind: str, largest: float | None = None) -> str:
 
     Args:
         value: In SI.
-        kind: Key of `QUANTITIES`.
+        kind: Key of `QUANTITIES`; empty for a pure number.
         largest: Number whose unit it takes [SI]; by default its own.
     """
     size = abs(value if largest is None else largest)
@@ -64,12 +64,12 @@ def scene_number(value: float, kind: str, largest: float | None = None) -> str:
         "frequency": (0.5 / math.pi, "Hz"),
         "pressure": (1e-9, "GPa") if size >= 1e9 else (1e-6, "MPa"),
         "force": (1e-3, "kN") if size >= 1e3 else (1.0, "N"),
-    }.get(kind, (1.0, QUANTITIES[kind][0]))
-    return f"{factor * value:.6g} {unit}"
+    }.get(kind, (1.0, QUANTITIES[kind][0] if kind else ""))
+    return f"{factor * value:.6g} {unit}".rstrip()
 
 
 def kind_of(unit: str) -> str:
-    """Return the kind of quantity of a unit.
+    """Return the kind of quantity of a unit; empty if it is.
 
     Args:
         unit: Unit of a field, from `unit_of`.
@@ -78,7 +78,7 @@ def kind_of(unit: str) -> str:
         KeyError: If there is no such kind.
     """
     kinds = {known: kind for kind, (known, _) in reversed(QUANTITIES.items())}
-    return kinds[unit]
+    return kinds[unit] if unit else ""
 
 
 class SceneError(ValueError):

@@ -431,7 +431,7 @@ def _fields_of_thing(kind: type) -> Iterator[Field]:
         kinds = tuple(k for k in _union_types(field.type) if k is not types.NoneType)
         if "unit" in field.metadata:
             unit = unit_of(kind, field.name)
-            stated["kind"] = kind_of(unit) if unit else ""
+            stated["kind"] = kind_of(unit)
             kinds = (tuple[float, ...] if stated_axes(field.type) else float,)
             kinds += (str,) if "choices" in stated else ()
         yield Field(field.name, field.name, Key(**stated), kinds, field.default)
@@ -495,9 +495,7 @@ def _value(table: Table, field: Field) -> Any:
         if absent:
             return field.default
         return _in_range(table, name, tuple(table.quantities(name, one.kind)), one)
-    if one.kind:
-        return _in_range(table, name, table.quantity(name, one.kind, *default), one)
-    return _in_range(table, name, table.number(name, *default), one)
+    return _in_range(table, name, table.quantity(name, one.kind, *default), one)
 
 
 def _read(kind: Any, table: Table) -> Any:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..numerics.units import unit_of
-from .quantity import QUANTITIES, SceneError, article_of, kind_of, to_si
+from .quantity import QUANTITIES, SceneError, article_of, to_si
 from .scene_errors import ABSENT, error_at, join_key, place_of, problem_of
 
 _MISSING: Any = object()
@@ -127,9 +127,11 @@ class Table:
 
         Args:
             key: Key in this table.
-            kind: Kind of quantity, see `quantity.QUANTITIES`.
+            kind: Kind of quantity, see `quantity.QUANTITIES`; empty: a bare number.
             default: Value if absent; without a default the key is required.
         """
+        if not kind:
+            return self.number(key, default)
         value: Any = self._get(
             key, default, f"{article_of(kind)} {kind}, a text with its unit"
         )
@@ -169,18 +171,6 @@ class Table:
             )
         self.fill(key, float(value))
         return float(value)
-
-    def real(self, key: str, unit: str, default: Any = _MISSING) -> Any:
-        """Read a number in SI: bare, or with a unit.
-
-        Args:
-            key: Key in this table.
-            unit: SI unit, empty for a bare number.
-            default: Value if absent; without a default the key is required.
-        """
-        if not unit:
-            return self.number(key, default)
-        return self.quantity(key, kind_of(unit), default)
 
     def integer(self, key: str, default: Any = _MISSING, least: int = 1) -> Any:
         """Read a whole number of at least `least`."""

@@ -228,13 +228,22 @@ WRONG = {
         "2 readings for 2 unknowns",
     ),
     "unknown name": (dict(readings={"aproach": LOADS}), ValueError, "no 'aproach'"),
-    "error of zero": (dict(errors=0.0), ValueError, "an error of approach is 0"),
+    "error of no reading": (
+        dict(errors={"approach": 1e-7, "other": 1e-7}),
+        ValueError,
+        "other is in `readings` or `errors` alone",
+    ),
+    "error of zero": (dict(errors=0.0), ValueError, r"`errors of approach` is \[0\. "),
     "negative error": (
         dict(errors=-1e-7),
         ValueError,
-        "an error of approach is -1e-07",
+        r"`errors of approach` is \[-1.e-07",
     ),
-    "error of NaN": (dict(errors=np.nan), ValueError, "an error of approach is nan"),
+    "error of NaN": (
+        dict(errors=np.nan),
+        ValueError,
+        r"`errors of approach` is \[nan ",
+    ),
     "infinite reading": (
         dict(readings={"approach": [np.inf, *LOADS[1:]]}),
         ValueError,
@@ -247,7 +256,7 @@ WRONG = {
     ),
     "no unknowns": (dict(unknowns=[]), ValueError, "they must be one each"),
     "twice": (dict(unknowns=[CONTACT[0]] * 2), ValueError, "they must be one each"),
-    "no readings": (dict(readings={}), ValueError, "`readings` are empty"),
+    "no readings": (dict(readings={}), ValueError, "`readings` is {}"),
     "error of a candidate": (
         dict(candidates={"approach": 0.0}),
         ValueError,

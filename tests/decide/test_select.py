@@ -133,7 +133,11 @@ def test_bounds_by_one_number_have_the_sense_of_their_name():
     [
         ({"load": np.zeros(6)}, "not zero in all cases"),
         ({"load": [0, np.nan, 0, 0, 0, 0]}, "finite"),
-        ({"bounds": {"bore": (0.05, 0.04)}}, "the least before the greatest"),
+        ({"bounds": {"bore": (0.05, 0.04)}}, r"0.04\] m; .* the least before"),
+        (
+            {"bounds": {"life_hours": 2e4}, "life": bj.LifeConditions(required=1e4)},
+            "`life_hours` is 'given'; it must be left out beside that which `life` has",
+        ),
         ({"bounds": {"bore": -0.04}}, "above 0"),
         ({"bounds": {"bore": (None, None)}}, "above 0"),
         ({"bounds": {"boer": 0.04}}, "one of bore"),

@@ -152,6 +152,14 @@ WRONG = {
     + "".join(f"{k},{'x' if k % 2 else 1},9\n" for k in range(20)),
     "line 7: 277.8 h until the next row, 0.0002778 h are usual": HEAD
     + "".join(f"{k + 1e6 * (k > 5)},1,9\n" for k in range(20)),
+    "line 2: time is '0', without a unit; head the column \"time [s]\"": HEAD.replace(
+        " [s]", ""
+    )
+    + "0,1,9\n600,2,9",
+    "is array([nan, nan]); it must be numbers, or instants such as": HEAD.replace(
+        " [s]", ""
+    )
+    + "1.5.2024 12:10,1,9\n1.5.2024 12:20,2,9",
     "unknown unit 'foo'": HEAD.replace("[s]", "[foo]") + "0,1,9\n1,1,9",
     "'1 rpm' is not a force": HEAD.replace("[kN]", "[rpm]") + "0,1,9\n1,1,9",
     "operating.load.Fx has no unit": HEAD.replace(" [kN]", "") + "0,1,9\n1,1,9",

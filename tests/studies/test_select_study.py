@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from runs import Runs, Study
 
-from bearingjax import SceneError
+from bearingjax import SceneError, SolveError
 from bearingjax.files import shipped_scenes
 from bearingjax.shafts.warning import axial_load
 from bearingjax.studies.select.read import read_select
@@ -75,9 +75,9 @@ def test_select_joins_own_bearings(tmp_path):
     [
         ("C0 [kN]", "C1 [kN]", "has no column C0"),
         ("mass [kg]", "price", "column price is not known"),
-        (",50,", ",x,", "bearing 1, X 1: --capacity: 'x kN' does not begin"),
+        (",50,", ",x,", "bearing 1, X 1: C: 'x kN' does not begin"),
         (",50,", ",50000,", "bearing 1, X 1"),
-        ("deep_groove_ball", "sleeve", "bearing 1, X 1: --type: 'sleeve' is not known"),
+        ("deep_groove_ball", "sleeve", "bearing 1, X 1: type: 'sleeve' is not known"),
     ],
 )
 def test_select_names_bad_rows_of_own_bearings(tmp_path, old, new, told):
@@ -122,7 +122,7 @@ def shafts(tmp_path):
 
 
 @pytest.mark.slow
-def test_select_positions_finds_the_lives_of_the_scene_with_these_bearings(shafts):
+def test_select_positions_finds_the_lives_of_the_scene_with_these_bearings(shafts, run):
     """Lives of the best pair are those of `shaft` with its designations, and those
     under the present loads those of the present bearings, one of them turned."""
     turned = ["bearings.D.turned=true", "select.short_list=1"]
@@ -157,8 +157,10 @@ def test_select_positions_finds_the_lives_of_the_scene_with_these_bearings(shaft
             "no bearing fits C under the loads with the present ones",
         ),
     ):
-        with pytest.raises(SceneError, match=re.escape(told)):
+        with pytest.raises((SceneError, SolveError), match=re.escape(told)):
             run_select(read_select(shafts, [setting]))
+    done = run("select", shafts, "--set", "select.positions.C.mass=1 g")
+    assert done.status == 3 and "no bearing fits C under" in done.err
 
 
 @pytest.mark.parametrize(
@@ -173,6 +175,15 @@ def test_select_positions_finds_the_lives_of_the_scene_with_these_bearings(shaft
         ("select.positions.C.boer=2", "unknown key (did you mean `bore`?)"),
         ("select.positions.C.types=['sleeve']", "'sleeve' is not known"),
         ("select.positions={}", "`requirements` is"),
+        (
+            "life.required='9000 h'",
+            "`select.positions.C.life_hours`: is 'given'; it must",
+        ),
+        ("select.position={B={mass='1 kg'}}", "`select.position`: unknown key"),
+        (
+            "select.positions.C.width={at_least='9 mm',at_most='8 mm'}",
+            "`select.positions.C.width`: is [0.009 0.008] m; it must be finite",
+        ),
         ("select.short_list=0", "short_list"),
         ("select.short_list=11", "it combines 121"),
         ("heat.ambient=20 °C", "`heat`: stands beside [select]"),

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from ... import lubrication
+from ...files.quantity import kind_of
 from ...files.schema import Keys, scene_key
 from ...friction.friction import SUPPLIES
 from ...numerics.units import CELSIUS, unit_of
@@ -184,7 +185,8 @@ class LubricantKeys(Keys):
         values = dict(reference_temperature=self.temperature, first=0.0, second=0.0)
         for name in ("reference_viscosity", *values):
             if name in table:
-                values[name] = table.real(name, unit_of(lubrication.Exponential, name))
+                kind = kind_of(unit_of(lubrication.Exponential, name))
+                values[name] = table.quantity(name, kind)
         with table.building():
             return lubrication.Exponential(**values)
 

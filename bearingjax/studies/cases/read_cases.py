@@ -264,7 +264,7 @@ def _oscillation(table, given, speeds, named, count) -> dict[str, Any]:
     """Return amplitudes and mean speeds of cases that oscillate; others have 0 deg."""
     for key in SWING:
         if key not in given:
-            raise table.error(key, f"is missing beside the other of {SWING}")
+            raise table.error(key, f"is missing beside {' and '.join(SWING)}")
     swing, frequency = (given[key] for key in SWING)
     rings = (speeds[f"{ring}_speed"] for ring in RINGS[::-1])
     inner, outer = (np.zeros(count) if x is None else x for x in rings)

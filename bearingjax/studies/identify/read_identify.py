@@ -104,7 +104,7 @@ def read_identification(
         problem = "stands beside [identify], whose cases are the rows of its data"
         raise top.error("cases", problem)
     keys = read_keys(IdentifyKeys, top.table("identify"))
-    table, wanted = keys.table, keys.wanted or ()
+    table, wanted = keys.table, tuple(dict.fromkeys(keys.wanted or ()))
     if keys.data is None:
         raise table.error("data", "is missing; name the measured table, or give --data")
     held = Table({"file": keys.data}, path, "identify", {"file": "identify.data"})
@@ -159,7 +159,7 @@ def _measured(held: Table, setup: Setup) -> Any:
         own = key.removesuffix(ERROR)
         if setup.measures(own):
             units[own] = _unit(held, "file", setup.model, own, f"{name}: ")
-            kinds[key] = kind_of(units[own]) if units[own] else ""
+            kinds[key] = kind_of(units[own])
             blank.append(key)
     found = read_list(held, folder, kinds, "readings", blank=blank)
     read = {key: values for key, values in found.items() if key in blank}
@@ -176,8 +176,7 @@ def _measured(held: Table, setup: Setup) -> Any:
 def _unit(table: Any, key: str, model: CaseModel, name: str, head: str = "") -> str:
     try:
         unit = model.place(name).unit
-        if unit:
-            kind_of(unit)
+        kind_of(unit)
         return unit
     except ValueError as error:
         raise table.error(key, f"{head}{error}") from error

@@ -76,17 +76,15 @@ class Setup(NamedTuple):
             return {"rotor.speed": "speed"}
         if is_shafts(self.data):
             return {}
-        design = self.model.design
-        units = {key: unit_of(design, p[0]) for key, p in self.numbers.items()}
-        own = {key: kind_of(unit) if unit else "" for key, unit in units.items()}
-        return OPERATING | own
+        design, numbers = self.model.design, self.numbers.items()
+        return OPERATING | {k: kind_of(unit_of(design, p[0])) for k, p in numbers}
 
     def measures(self, key: str) -> bool:
-        """Whether a column is one of readings, not a condition."""
-        known = isinstance(self.model.design, AbstractSystem)
-        return key not in OPERATING and (
-            "." not in key or (known and key in self.model.design.readings())
-        )
+        """Whether a column is of readings: of no condition in a table of the scene."""
+        design, head = self.model.design, key.partition(".")[0]
+        known = design.readings() if isinstance(design, AbstractSystem) else None
+        named = known is not None and (key in known or head not in self.data)
+        return key not in OPERATING and ("." not in key or named)
 
     def subject(self, table: Table, columns: list[VariedKey], count: int) -> Subject:
         """Return the design in the cases of a measured table.
@@ -110,7 +108,7 @@ class Setup(NamedTuple):
             if column.key in OPERATING:
                 check_varied_key(table, column.key, self.scene)
             elif column.key not in self.numbers:
-                raise table.error("file", not_among(column.key, [*self.numbers]))
+                raise table.error("file", not_among(column.key, [*self.kinds]))
             else:
                 values, paths = np.asarray(column.values), self.numbers[column.key]
                 unit = unit_of(self.model.design, paths[0])

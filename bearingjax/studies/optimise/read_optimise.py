@@ -142,12 +142,9 @@ class BoundKeys(Keys):
             kind: Kind of its quantity; empty for a pure number.
         """
         table = self.table
-        ends = [
-            table.quantity(key, kind, None) if kind else table.number(key, None)
-            for key in ("at_least", "at_most")
-        ]
+        ends = [table.quantity(key, kind, None) for key in ("at_least", "at_most")]
         if None not in ends and not ends[0] < ends[1]:
-            low, high = (scene_number(x, kind) if kind else f"{x:g}" for x in ends)
+            low, high = (scene_number(x, kind) for x in ends)
             raise table.error("at_least", f"{low} must lie below `at_most`, {high}")
         with table.building():
             return Constraint(measure, *ends)
@@ -401,7 +398,7 @@ def read_number(table: Table, key: str, unit: str, *default: float | None) -> An
     """
     if unit == "K":
         return read_temperature(table, key, *default)
-    return table.real(key, unit, *default)
+    return table.quantity(key, kind_of(unit), *default)
 
 
 def read_spread(table: Table, key: str, unit: str, *default: float | None) -> Any:
@@ -409,12 +406,27 @@ def read_spread(table: Table, key: str, unit: str, *default: float | None) -> An
 
     Args: as `read_number`.
     """
-    value = table.real(key, unit, *default)
+    value = table.quantity(key, kind_of(unit), *default)
     if value is not None and not value > 0.0:
         raise table.error(key, f"{table.raw(key)} is not above 0")
     if unit == "K" and value is not None and value > _WARMER:
         raise table.error(key, "is a difference; write it in K")
     return value
+
+
+def check_inside(
+    table: Table, unit: str, key: str, value: float | None, low: float, high: float
+) -> None:
+    """Raise SceneError unless `from` lies below `to`, and a number between them.
+
+    Args: as `read_number`; values of the key, `None` if absent, `from` and `to` [SI].
+    """
+    first, last = (scene_number(x, kind_of(unit)) for x in (low, high))
+    if not low < high:
+        raise table.error("from", f"{first} must lie below `to`, {last}")
+    if value is not None and not low <= value <= high:
+        ends = f"must lie between `from`, {first}, and `to`, {last}"
+        raise table.error(key, f"{scene_number(value, kind_of(unit))} {ends}")
 
 
 def check_shared(table: Table, key: str, design: Any, paths: Iterable[str]) -> None:
@@ -430,7 +442,7 @@ def check_shared(table: Table, key: str, design: Any, paths: Iterable[str]) -> N
     values = sorted({float(there[path]) for path in paths})
     if len(values) > 1:
         unit = unit_of(design, next(iter(paths)))
-        words = [scene_number(x, kind_of(unit)) if unit else f"{x:g}" for x in values]
+        words = [scene_number(x, kind_of(unit)) for x in values]
         problem = f"has several values in this scene, {', '.join(words)}; one number"
         raise table.error(key, f"{problem} would make them alike")
 
@@ -463,16 +475,7 @@ def read_variables(
         start = read_number(part, "start", unit, None)
         if start is None and key in begun and unit != "K":
             start = 0.5 * (low + high)
-        first = low if start is None else start
-        words = [
-            scene_number(x, kind_of(unit)) if unit else f"{x:g}"
-            for x in (first, low, high)
-        ]
-        if not low < high:
-            raise part.error("from", "{1} must lie below `to`, {2}".format(*words))
-        if not low <= first <= high:
-            problem = "{} must lie between `from`, {}, and `to`, {}".format(*words)
-            raise part.error("start", problem)
+        check_inside(part, unit, "start", start, low, high)
         with part.building(**ends):
             variables.append(Variable(numbers[key], low, high, start, key))
     with table.building(**ends):

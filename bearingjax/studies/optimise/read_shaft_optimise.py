@@ -126,8 +126,7 @@ def read_optimisation(source: str | Path, settings: Iterable[str] = ()) -> Any:
     variables = read_variables(free, design, numbers)
     bounds = zip(keys.constraints, measures[1:], strict=True)
     constraints = tuple(
-        one.constraint(measure, kind_of(measure.unit) if measure.unit else "")
-        for one, measure in bounds
+        one.constraint(measure, kind_of(measure.unit)) for one, measure in bounds
     )
     top.finish()
     return ShaftOptimisation(

@@ -2,7 +2,7 @@
 
 from argparse import Namespace
 
-from ..outcome import Outcome, Tools, outcome_of, picture
+from ..outcome import Outcome, Tools, outcome_of, picture, unsolved_start
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
@@ -11,11 +11,15 @@ def run(options: Namespace, tools: Tools) -> Outcome:
     of a system of shafts the bearings of several positions together.
     """
     from ...decide import PositionSelection
+    from ...numerics import SolveError
     from . import run as selection
     from .read import read_select
 
     choice = read_select(options.scene, options.set)
-    found = selection.run_select(choice, tools.stage)
+    try:
+        found = selection.run_select(choice, tools.stage)
+    except SolveError as error:
+        return unsolved_start(choice, choice.inputs, error, "none_fits")
     if isinstance(found, PositionSelection):
         alone, problem = found.alone, "no combination holds"
         writers = selection.positions_as_dict, selection.positions_report

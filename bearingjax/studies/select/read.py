@@ -5,6 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from ...cases.cases import Cases
 from ...catalogue.entry import CatalogueEntry, catalogue_entries
 from ...catalogue.estimated_entry import SIZES as ESTIMATED
 from ...catalogue.estimated_entry import estimated_entry
@@ -18,6 +21,7 @@ from ...files.table import Table, not_among, text_of
 from ...fits.fit_limits import CLEARANCE_CLASSES
 from ...life import LifeConditions
 from ...numerics.types import with_fields
+from ...numerics.warning import Warning
 from ...shafts import ShaftDesign
 from ...statics import Installed, SolveOptions, Support
 from ..bearing.placed_bearing import COMMON, read_machine_bearing
@@ -27,13 +31,6 @@ from ..bearing.read_scene import scene_of
 from ..cases.case_keys import OPERATING
 from ..cases.read_cases import CaseTable, case_table
 from ..shaft.read import OF_SEAT, shafts_of
-
-_KINDS = {
-    name: kind_of(unit_of_number(name))
-    for name in NUMBERS
-    if unit_of_number(name) not in ("", "rev")  # bare numbers
-}
-"""Kinds of the numbers that are quantities."""
 
 _COLUMNS = "designation", "type", *SIZES, "C", "C0"
 """Columns that one's own bearings must have."""
@@ -49,16 +46,16 @@ _SENSES = {"exact": "exact", "least": "the least", "most": "the greatest"}
 
 def _bound_key(name: str) -> Any:
     """Return a key for one bound of a number, or a table of both."""
-    (_, sense, about), kind = NUMBERS[name], _KINDS.get(name)
+    (_, sense, about), unit = NUMBERS[name], unit_of_number(name)
+    kind = kind_of(unit.replace("rev", ""))  # revolutions are bare numbers
 
     def read(table: Table, key: str) -> Any:
         if isinstance(table.raw(key, None), Mapping):
             held = table.table(key)
             return tuple(read(held, end) for end in ("at_least", "at_most"))
-        return table.quantity(key, kind, None) if kind else table.number(key, None)
+        return table.quantity(key, kind, None)
 
-    one = number_schema(kind) if kind else {"type": "number"}
-    json = {"anyOf": [one, {"type": "object"}]}
+    json = {"anyOf": [number_schema(kind), {"type": "object"}]}
     text = f"{about}; {_SENSES[sense]}, or `{{ at_least, at_most }}`"
     return scene_key(text, default=None, reader=read, json=json)
 
@@ -106,8 +103,8 @@ class ShaftSelectKeys(SelectKeys):
     )
 
 
-_OF_SHAFTS = "positions", "short_list", "file"
-"""Keys that no position has for itself."""
+_CHOICES = "types", "rank_by", "clearance_class"
+"""Keys of what is chosen, beside its numbers."""
 
 
 class Choice(NamedTuple):
@@ -124,6 +121,7 @@ class Choice(NamedTuple):
         inputs: The scene as it was read.
         designs: Shafts in each case; empty for a bearing alone.
         options: Other arguments of `select_positions`.
+        warnings: Warnings of the scene: none.
     """
 
     name: str
@@ -134,6 +132,7 @@ class Choice(NamedTuple):
     inputs: dict[str, Any]
     designs: tuple[ShaftDesign, ...] = ()
     options: Any = None
+    warnings: tuple[Warning, ...] = ()
 
 
 def read_select(source: str | Path, settings: Iterable[str] = ()) -> Choice:
@@ -169,7 +168,7 @@ def read_select(source: str | Path, settings: Iterable[str] = ()) -> Choice:
     common = _read_common(map(scene_for, some), path)
     scene = common.scene
     more = {} if scene.oil is None else {"supply": scene.oil.supply}
-    more |= {k: given[k] for k in ("types", "rank_by", "clearance_class") if k in given}
+    more |= {k: given[k] for k in _CHOICES if k in given}
     with table.building(top):
         asked = Requirements(
             with_fields(common.cases, design=None),
@@ -195,6 +194,7 @@ def _read_positions(data: dict[str, Any], path: Path) -> Choice:
         problem = "stands beside [select], which takes temperatures as they are given"
         raise top.error("heat", f"{problem}; choose without it, then run `shaft`")
     own, seats, shared = dict[str, Any](), data["bearings"], keys.table.keys_given()
+    each = scene.cases or (scene,)
     entries = (*catalogue_entries(), *_own_entries(keys.table, keys.file, path))
     alone = dict(zip(seats, scene.bearings, strict=True))
     for name in keys.positions.keys():
@@ -204,17 +204,19 @@ def _read_positions(data: dict[str, Any], path: Path) -> Choice:
             problem = problem if name in seats else not_among(name, [*seats])
             raise keys.positions.error(name, problem)
         table = keys.positions.table(name)
-        both = {k: v for k, v in shared.items() if k not in _OF_SHAFTS}
+        both = {k: v for k, v in shared.items() if k in (*NUMBERS, *_CHOICES)}
         both = table.with_values(both | table.keys_given())
         given = read_keys(PositionKeys, both).given
         table.finish()
-        life = bearing.life or LifeConditions()
-        lives = {"life_hours": life.required, "rating_life": life.required_revolutions}
-        bounds = {k: (v, None) for k, v in lives.items() if v is not None}
-        bounds |= {k: given.pop(k) for k in NUMBERS if k in given}
-        own[name] = given | {"bounds": bounds}
+        given["bounds"] = {k: given.pop(k) for k in NUMBERS if k in given}
+        life, speed = bearing.life, None if scene.system.inertia is None else 1.0
+        wanted = (life.required, life.required_revolutions) if life else (None, None)
+        life = each[0].lives[[*seats].index(name)] or LifeConditions()
+        life = with_fields(life, required=wanted[0], required_revolutions=wanted[1])
+        with table.building(top):  # of any load: its own is not known yet
+            asked = Requirements(Cases(np.eye(1, 6), inner_speed=speed), life, **given)
+        own[name] = given | {"bounds": asked.all_bounds}
     keys.table.finish()
-    each = scene.cases or (scene,)
     hours = [one.hours for one in each]
     common = {k: data[k] for k in (*COMMON, "output") if k in data}
     of_seat = (*OF_SEAT, *EXTRA_KEYS, *COMMON)
@@ -272,6 +274,8 @@ def _own_entries(table: Table, name: str | None, path: Path) -> list[CatalogueEn
             entry = estimated_entry(kind, dict(zip(ESTIMATED, sizes, strict=True)))
         except SceneError as error:
             problem = f"{name}: bearing {k + 1}, {called}: {error}"
+            for option, column in zip(("type", *ESTIMATED), _COLUMNS[1:], strict=True):
+                problem = problem.replace(f"--{option.replace('_', '-')}", column)
             raise table.error("file", problem) from error
         own["sources"] = entry.sources | {"capacity": str(row.get("maker", name))}
         entries.append(dataclasses.replace(entry, designation=called, **own))

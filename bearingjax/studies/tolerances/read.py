@@ -17,6 +17,7 @@ from ...files.schema import Keys, names_key, read_keys, scene_key
 from ...files.table import Table, not_among
 from ...numerics.units import unit_of
 from ...optimise import Constraint
+from ...optimise.measure import label_of
 from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...optimise.variable import with_numbers
 from ...statics.support import Support
@@ -26,6 +27,7 @@ from ..optimise.read_optimise import (
     MEASURES,
     ConstraintKeys,
     Measured,
+    check_inside,
     check_numbers,
     check_shared,
     installed_numbers,
@@ -185,8 +187,19 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             else measured.measure(one, "measure")
             for one in keys.measures
         ]
+    labels = [label_of(one) for one in measures]
+    for k, one in enumerate(keys.measures):
+        if labels[k] in labels[:k]:
+            problem = "is asked twice; give `at_least` and `at_most` of it together"
+            raise one.table.error("measure", f"{labels[k]} {problem}")
     sizes = {}
     for head, own, bearing in places:
+        fit = Table(data, path)
+        for name in (*head.split(".")[:-1], "fit"):
+            fit = fit.table(name)
+        if fit.raw("at", "middle") != "middle":
+            problem = "stands beside [tolerances], in which these sizes scatter"
+            raise fit.error("at", f"{problem}; leave it out")
         bearing, scatters = class_scatters(bearing)
         design = with_numbers(design, {own.removesuffix("."): bearing})
         sizes |= {
@@ -236,13 +249,14 @@ def _level(keys: MeasureKeys, design: Any) -> NoiseLevel:
 
 
 def _correlation(pairs: Iterable[CorrelationKeys], names: list[str]) -> np.ndarray:
-    found = np.eye(len(names))
+    found, told = np.eye(len(names)), list[set[str]]()
     for one in pairs:
         for name in one.between:
             if name not in names:
                 raise one.table.error("between", not_among(name, names))
-        if len(set(one.between)) != 2:
-            raise one.table.error("between", "must name two numbers")
+        told.append(set(one.between))
+        if len(told[-1]) != 2 or told[-1] in told[:-1]:
+            raise one.table.error("between", "must name two numbers, a pair once")
         i, j = map(names.index, one.between)
         found[i, j] = found[j, i] = one.value
         if np.linalg.eigvalsh(found)[0] <= 0.0:
@@ -287,19 +301,14 @@ def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
         read_number(part, word, unit, None) for word in ("from", "to", "mean")
     )
     deviation = read_spread(part, "deviation", unit, None)
-    if limits is not None:
-        low, high = (
-            own if x is None else x for x, own in zip((low, high), limits, strict=True)
-        )
+    own: Any = (None, None) if limits is None else limits
+    low, high = (o if x is None else x for x, o in zip((low, high), own, strict=True))
     if (low is None) != (high is None):
         raise part.error("from" if low is None else "to", "is missing beside the other")
     if low is None and None in (mean, deviation):
-        problem = "give `from` and `to`, or `mean` and `deviation`"
-        raise part.own_error(problem)
-    if low is not None and not low < high:
-        raise part.error("from", "must lie below `to`")
-    if None not in (low, mean) and not low < mean < high:
-        raise part.error("mean", "must lie between `from` and `to`")
+        raise part.own_error("give `from` and `to`, or `mean` and `deviation`")
+    if low is not None:
+        check_inside(part, unit, "mean", mean, low, high)
     cost, narrowing = None, part.table("narrowing")
     if narrowing.keys():
         by, costs = read_spread(narrowing, "by", unit), narrowing.number("costs")

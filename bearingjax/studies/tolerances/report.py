@@ -178,9 +178,8 @@ def _requirements(task, found) -> list[Part]:
 
 def _tightening(task, narrower) -> list[Part]:
     rows = []
-    for one, unit, share in zip(
-        task.given[2], task.units, narrower.widths, strict=True
-    ):
+    given = zip(task.given[2], task.units, narrower.widths, strict=True)
+    for one, unit, share in given:
         widths = (shown_change(x * one.width, unit) for x in (1.0, share))
         rows.append((one.name, *widths, f"{100.0 * share:.3g} %"))
     grid = Grid.of_rows(("number", "width", "narrower", "of that given"), rows)
