@@ -46,8 +46,9 @@ _SMOOTHING = 0.9
 fifth root of the number of samples (Silverman's rule) [1]."""
 _FAR = 4.0
 """Distance from a requirement beyond which a sample does not feel it [widths]."""
-_CLASSES = 32
-"""Classes of the values of a number, for its part in a variance."""
+_DEGREE, _SAMPLES_OF_DEGREE = 8, 32
+"""Degree of the polynomials of a number, for its part in a variance, and samples that
+each degree asks for."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -502,17 +503,18 @@ def _error(each: Sequence[Any]) -> Any:
 def _variance_shares(samples: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Part of the variance that each number causes alone (number,).
 
-    That of the means over classes of equal numbers of samples, less what chance adds.
+    That of the values' regression on polynomials of the number, less what chance adds.
     """
     variance, n, found = values.var(), len(values), []
     if variance == 0.0:
         return np.zeros(samples.shape[1])
+    degree = min(_DEGREE, max(1, n // _SAMPLES_OF_DEGREE))
     for column in samples.T:
-        classes = np.array_split(values[np.argsort(column)], min(_CLASSES, n // 4 + 1))
-        size = np.array([len(one) for one in classes])
-        within = size @ [one.var() for one in classes] / n
-        chance = (len(classes) - 1) * within / max(1, n - len(classes))
-        found.append(1.0 - (within + chance) / variance)
+        inside = (column - column.min()) / (np.ptp(column) or 1.0)
+        powers = np.polynomial.legendre.legvander(2.0 * inside - 1.0, degree)
+        rest = values - powers @ np.linalg.lstsq(powers, values, rcond=None)[0]
+        left = np.mean(rest**2) * (n - 1) / max(1, n - 1 - degree)
+        found.append(1.0 - left / variance)
     return np.clip(found, 0.0, 1.0)
 
 
