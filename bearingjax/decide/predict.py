@@ -146,11 +146,11 @@ class CaseModel(eqx.Module):
         self, values: Float[Array, " number"], cases: Any
     ) -> dict[str, Float[Array, " case"]]:
         """The numbers by name (case,) [SI], at numbers of the design [SI]."""
-        shared = None if self.varied else self._design_at(values, {})
+        shared = None if self.varied else self.design_at(values, {})
 
         def numbers(given):
             case, varied = given
-            design = self._design_at(values, varied) if shared is None else shared
+            design = self.design_at(values, varied) if shared is None else shared
             solved = solved_case(design, case, self.support, self.options)
             return self._numbers(design, solved, case)
 
@@ -162,12 +162,13 @@ class CaseModel(eqx.Module):
     def why_failed(self, values: Any, cases: Cases, case: int) -> str:
         """Reason why a case fails at concrete numbers, in words."""
         one, varied = jax.tree.map(lambda leaf: leaf[case], (cases, self.varied))
-        design = self._design_at(np.asarray(values), varied)
+        design = self.design_at(np.asarray(values), varied)
         solved = solved_case(design, one, self.support, self.options)
         label = Result(int(solved.result)).label
         return f"case {case}: {label}: {describe_failure(design, solved)}"
 
-    def _design_at(self, values, varied) -> Design:
+    def design_at(self, values: Any, varied: dict[str, Any]) -> Design:
+        """The design at numbers of its paths, and others of one case by path [SI]."""
         pairs = zip(self.paths, values, strict=True)
         numbers = {path: x for several, x in pairs for path in several}
         return prepare(with_numbers(self.design, numbers | varied), None)

@@ -22,6 +22,7 @@ from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..numerics.shown import Shown
 from ..numerics.units import unit
+from ..numerics.warning import Warning
 from ..optimise import Constraint
 from ..optimise.design_problem import judge
 from ..optimise.measure import AbstractMeasure, label_of
@@ -31,6 +32,7 @@ from ..optimise.trials import Trial, Trials
 from ..optimise.variable import Variable, check_same_in_cases, with_numbers
 from ..statics import SolveOptions, Support
 from ..statics.support import RESTRAINED, check_held
+from .noise_design import NoiseDesign
 from .scatter import REPLICATES, Scatter, draw
 
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
@@ -118,6 +120,7 @@ class Tolerances(Shown):
         samples: Values of the numbers (sample, number) [SI].
         values: Values of the measures (sample, measure) [SI]; NaN of failed samples.
         result: `Result` code of each sample (sample,).
+        warnings: What to doubt of the design as it is given.
     """
 
     scatters: tuple[Scatter, ...] = dataclasses.field(repr=False)
@@ -126,6 +129,7 @@ class Tolerances(Shown):
     samples: Annotated[Float[np.ndarray, "sample number"], unit("SI")]
     values: Annotated[Float[np.ndarray, "sample measure"], unit("SI")]
     result: Int[np.ndarray, " sample"]
+    warnings: list[Warning] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -405,7 +409,9 @@ class Sampled:
             for k in range(len(self.measures))
         )
         misses = self.misses(samples, values, result) if self.bounds else None
-        return Tolerances(self.scatters, spreads, misses, samples, values, result)
+        design, cases = self._given[:2]
+        told = design.warnings(cases) if isinstance(design, NoiseDesign) else []
+        return Tolerances(self.scatters, spreads, misses, samples, values, result, told)
 
     def _spread(self, k, samples, values, middle, slope) -> Spread:
         measure, column = self.measures[k], values[:, k]

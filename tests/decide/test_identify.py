@@ -52,6 +52,8 @@ def test_identify_estimates_and_errors_of_linear_algebra(exact, noise):
     assert found.converged and found.identifiable and not found.warnings
     # No step of Gauss and Newton is left, to a thousandth of an error.
     missed = found.residual["approach"] / ERROR
+    off = read - found.prediction["approach"]
+    np.testing.assert_allclose(ERROR * missed, off, rtol=1e-9, atol=1e-15)
     assert np.all(abs(covariance @ slopes.T @ missed) < 1e-3 * own)
     np.testing.assert_allclose(found.standard_error, own, rtol=1e-4)
     between = covariance[0, 1] / own.prod()
@@ -95,6 +97,17 @@ def test_unknown_errors_are_told_by_residuals(exact, noise):
         known_errors=False,
     )
     np.testing.assert_allclose(given.standard_error, found.standard_error, rtol=1e-3)
+    missed = given.residual["approach"]
+    told = np.sqrt(missed @ missed / 4.0)  # four degrees of freedom
+    np.testing.assert_allclose(given.error["approach"], told, rtol=1e-6)
+    np.testing.assert_allclose(given.error_scale, told / 1e-6, rtol=1e-6)
+    np.testing.assert_allclose(given.chi_square, 4.0 * (told / 1e-6) ** 2, rtol=1e-6)
+    # The best of those that are there, once more, for both numbers on average.
+    again = found.candidates[0]
+    rows = jacobian(found.estimate) / found.error["approach"][0]
+    more = np.concatenate([rows, rows[[again.case]]])
+    of = [np.diagonal(np.linalg.inv(part.T @ part)) for part in (more, rows)]
+    np.testing.assert_allclose(again.drop, np.mean(1.0 - of[0] / of[1]), rtol=1e-2)
     # A further reading has twice the error that the residuals tell.
     best = given.candidates[0]
     rows = jacobian(given.estimate) / given.error["approach"][0]
@@ -115,6 +128,7 @@ def test_combination_that_readings_do_not_tell_is_named():
     assert np.isinf(found.standard_error).all()
     (words,) = found.untold
     assert "a and b trade 1:1" in words and "parts of their ranges" in words
+    assert "changes of 0.02 and -0.04 together" in words, words
     a, b = found.estimate
     np.testing.assert_allclose(a * b, 3.0, rtol=1e-4)
     # 1.2247 and 2.4495: both moved by the same share of their ranges, 2 and 4.
@@ -148,6 +162,7 @@ def test_bounds_are_kept_and_told():
     assert found.converged and found.estimate[0] == 1.5e-7
     kinds = [one.kind for one in found.warnings]
     assert "at_bound" in kinds and "misfit" in kinds
+    assert found.warnings[0].startswith("c ends at its upper bound")
     # The other number is the best there: no step along it is left.
     slope = jacobian(found.estimate)[:, 1] / ERROR
     step = slope @ found.residual["approach"] / ERROR / (slope @ slope)
@@ -167,6 +182,14 @@ def test_best_further_reading_of_brute_force(exact):
         candidates={"approach": 2 * ERROR},
     )
     used = jacobian(found.estimate) / ERROR
+    bands = bj.identify(
+        hertz, LOADS, CONTACT, {"approach": read}, ERROR, wanted=["approach"]
+    )
+    more = np.concatenate([used[:4], used[[5]]])
+    of = [np.linalg.inv(rows.T @ rows) for rows in (more, used[:4])]
+    of = [np.einsum("ij,jk,ik->i", used, one, used) for one in of]
+    (drop,) = (one.drop for one in bands.candidates if one.case == 5)
+    np.testing.assert_allclose(drop, np.mean(1.0 - of[0] / of[1]), rtol=1e-2)
     base = np.linalg.inv(used[:4].T @ used[:4])[1, 1]
     drops = {}
     for case, row in enumerate(used):
@@ -185,11 +208,16 @@ def test_strongly_bent_readings_are_told():
     times = np.array([1.0, 2.0])
     unknown = [Variable("rate", 0.0, 10.0, start=1.0)]
     found = bj.identify(bent, times, unknown, np.exp(-times), 0.3)
-    assert found.nonlinearity > 0.2
+    # By hand: the worse of both sides, along the one axis.
+    slope = -times * np.exp(-times)
+    step = 0.3 / np.linalg.norm(slope) * np.array([[1.0], [-1.0]])
+    off = np.exp(-times * (1.0 + step)) - np.exp(-times) - slope * step
+    worst = np.linalg.norm(off, axis=1).max() / 0.3
+    np.testing.assert_allclose(found.nonlinearity, worst, rtol=1e-2)
     assert "nonlinear" in [one.kind for one in found.warnings]
     sharp = bj.identify(bent, times, unknown, np.exp(-times), 1e-4)
     assert sharp.nonlinearity < 1e-3
-    assert "nonlinear" not in [one.kind for one in sharp.warnings]
+    assert [one.kind for one in sharp.warnings] == ["close_fit"]
 
 
 def test_a_step_to_where_a_model_fails_is_rejected():
@@ -199,6 +227,11 @@ def test_a_step_to_where_a_model_fails_is_rejected():
     unknown = [Variable("a", 0.0, 1.0, start=0.1)]
     found = bj.identify(fails, LOADS, unknown, 0.6**4 * LOADS, 1.0)
     assert found.converged and abs(found.estimate[0] - 0.6) < 1e-4
+    lost = np.where(np.arange(LOADS.size) == 5, np.nan, 1.0)
+    given = lambda values, loads: values[0] ** 4 * loads * lost  # noqa: E731
+    part = bj.identify(given, LOADS, unknown, 0.6**4 * LOADS * lost, 1.0)
+    assert "unsolved" in [one.kind for one in part.warnings]
+    assert abs(part.estimate[0] - 0.6) < 1e-4 and part.degrees_of_freedom == 4
     with pytest.raises(bj.SolveError, match="the start fails: reading 0 is not finite"):
         bj.identify(
             fails, LOADS, [Variable("a", 0.0, 1.0, start=0.9)], 0.6**4 * LOADS, 1.0
@@ -208,7 +241,9 @@ def test_a_step_to_where_a_model_fails_is_rejected():
 def test_unmeasured_numbers_are_blank(exact):
     read = np.where(LOADS < 500.0, exact, np.nan)
     found = bj.identify(hertz, LOADS, CONTACT, {"approach": read}, ERROR)
-    assert np.isnan(found.residual["approach"][3:]).all()
+    for given in (found.residual, found.error):
+        blank = np.isnan(given["approach"])
+        assert blank.tolist() == [False] * 3 + [True] * 3
     np.testing.assert_allclose(found.prediction["approach"], exact, rtol=1e-3)
     assert found.degrees_of_freedom == 1
     text = str(found)

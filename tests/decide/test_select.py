@@ -12,7 +12,9 @@ from bearingjax.cases.sweep import SUMMARIES, structure_of
 from bearingjax.catalogue.entry import bearing_of_entry
 from bearingjax.decide import Requirements
 from bearingjax.decide.select import _as_bounds, _of_kind, as_drawn, judge
+from bearingjax.decide.select_positions import _loads, _requirements
 from bearingjax.life.life_warning import minimum_load
+from bearingjax.shafts import Drive, DutyResult, Seat, ShaftLine, ShaftSystem
 from bearingjax.statics import Installed
 
 TURNING = bj.Cases([[0.0, -2000.0, 0.0, 0.0, 0.0, 0.0]], inner_speed=150.0)
@@ -247,3 +249,28 @@ def test_select_solves_bearings_on_their_seats_at_each_speed(untyped):
         damages.append(float(bj.rating_life(element, solution, LASTING).damage))
     whole = bj.spectrum_life(SPECTRUM, np.array(damages))
     assert row["life_hours"] == pytest.approx(float(whole.life_hours), rel=SOLVER)
+
+
+@pytest.mark.parametrize("turned, y, z", [(False, 1.0, 1.0), (True, -1.0, -1.0)])
+def test_loads_of_a_position_are_in_the_axes_of_its_bearing(turned, y, z):
+    """A shaft along global x, whose local x, y, z are global y, z, x; a bearing that is
+    turned by 180 degrees about local x."""
+    place = Installed(bj.BearingElement(bj.load_bearing("6208")))
+    seats = [Seat(n, "s", p, place, turned=turned) for n, p in (("A", 0.1), ("B", 0.3))]
+    line = ShaftLine("s", [0.4], [0.04], axis=(1.0, 0.0, 0.0))
+    system = ShaftSystem(line, seats, Drive("s", 150.0, torque=0.0))
+    load, moved = np.zeros((2, 2, 2, 6))
+    load[:, 1] = [[700.0, 200.0, 500.0, 0, 0, 0], [-900.0, 200.0, 0, 0, 0, 0]]
+    moved[0, 1] = [0, 0, 0, 0, 1e-3, 3e-3]
+    none = np.zeros((2, 0)), np.full((2, 1), 150.0), np.zeros(2), np.zeros(2, int)
+    found = DutyResult(load, moved, *none, np.zeros((2, 2)), {}, ({}, {}))
+    asked = _requirements([system], bj.LifeConditions(), found, 1, None, {})
+    own = [[200.0, y * 500.0, z * 700.0, 0, 0, 0], [200.0, 0, -z * 900.0, 0, 0, 0]]
+    np.testing.assert_allclose(asked.load.load, own, rtol=ROUNDING)
+    tilts = [float(asked.load.prescribed[name][0]) for name in ("gx", "gy")]
+    np.testing.assert_allclose(tilts, [1e-3, y * 3e-3], rtol=ROUNDING)
+    assert np.asarray(asked.load.inner_speed).tolist() == [z * 150.0] * 2
+    assert _loads([system], found, 1) == {
+        "radial_force": pytest.approx(np.hypot(200.0, 500.0)),
+        "axial_force": pytest.approx(-z * 900.0),
+    }

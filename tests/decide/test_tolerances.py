@@ -1,5 +1,8 @@
 """Tolerances: samples, causes, misses and tightening, against closed forms."""
 
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy import stats
@@ -10,11 +13,17 @@ from bearingjax.decide import (
     Scatter,
     class_scatters,
     tighten,
+    tolerance_effects,
     tolerances,
     within,
 )
 from bearingjax.decide.scatter import draw
-from bearingjax.decide.tolerance_effects import QUANTILES, Sampled, _variance_shares
+from bearingjax.decide.tolerance_effects import (
+    QUANTILES,
+    Sampled,
+    _error,
+    _variance_shares,
+)
 from bearingjax.fits import Limits, SizeLimits
 from bearingjax.optimise import Constraint, OperatingClearance, PeakPressure, RatingLife
 from bearingjax.statics import Installed
@@ -140,6 +149,7 @@ def test_spread_of_linear_measure(element, closed_form):
     assert found.first_order_shares == pytest.approx([9 / 13, 4 / 13], rel=ROUNDING)
     assert found.shares == pytest.approx([9 / 13, 4 / 13], abs=0.02)
     assert found.slopes == pytest.approx(SLOPE)
+    assert _error([1.0, 3.0]) == pytest.approx(1.0)  # 2**0.5 of each, of two sets
 
 
 def test_spread_of_correlated_numbers(element, closed_form):
@@ -175,19 +185,91 @@ def test_misses_of_two_requirements(element, closed_form):
     assert tolerances(*given, [linear]).misses is None
 
 
+def test_requirements_of_several_measures(element, closed_form, monkeypatch):
+    """Of a, at most 2.5 about 1, and b, at least -0.4 about 0: each alone is kept by Φ
+    of 1.5 and 0.8. A measure that a sample does not have leaves the others theirs."""
+
+    def solve(self, samples, slopes):
+        a, b = samples.T
+        values = np.stack([np.where(a > 3.0, np.nan, b), a, b], axis=1)
+        gradient = np.broadcast_to([[0, 1], [1, 0], [0, 1]], (len(samples), 3, 2))
+        return values, np.zeros(len(samples), int), gradient if slopes else None
+
+    monkeypatch.setattr(Sampled, "solve", solve)
+    asked = linear, Constraint(linear, upper=2.5), Constraint(linear, lower=-0.4)
+    scatters, cases = numbers(stats.norm(1.0, 1.0)), bj.Cases([np.zeros(6)])
+    found = tolerances(element, cases, scatters, asked, samples=60_000)
+    limit = np.array([1.5, 0.8])
+    kept = stats.norm.cdf(limit)
+    none, *alone = (one.misses for one in found.spreads)
+    assert none is None and alone == pytest.approx(1.0 - kept, abs=2e-3)
+    assert [one.mean for one in found.spreads[1:]] == pytest.approx([1, 0], abs=2e-3)
+    misses = found.misses
+    assert misses.share == pytest.approx(1.0 - kept.prod(), abs=2e-3)
+    assert misses.smoothed == pytest.approx(misses.share, rel=0.03)
+    exact = limit * stats.norm.pdf(limit) * kept[::-1]
+    assert misses.by_width == pytest.approx(exact, rel=0.04)
+
+
 def test_failed_samples_are_misses(element, closed_form, monkeypatch):
     plain = Sampled.solve
 
     def solve(self, samples, slopes):
         values, result, gradient = plain(self, samples, slopes)
         result = (samples[:, 0] > 1.0).astype(int)
-        return np.where(result[:, None] == 0, values, np.nan), result, gradient
+        lost = np.where(result == 0, 1.0, np.nan)[:, None]
+        gradient = gradient * lost[..., None] if slopes else None
+        return values * lost, result, gradient
 
     monkeypatch.setattr(Sampled, "solve", solve)
     found = solved(element, limit=1e3)
     assert found.misses.share == pytest.approx(stats.norm.sf(1.0), abs=2e-3)
-    assert np.isfinite(found.spreads[0].mean)
-    assert found.spreads[0].misses == pytest.approx(found.misses.share)
+    one = found.spreads[0]
+    assert np.isfinite(one.mean) and one.misses == pytest.approx(found.misses.share)
+    # What is not solved has neither a place near the requirement nor a gradient.
+    assert found.misses.smoothed == pytest.approx(found.misses.share, rel=ROUNDING)
+    assert np.all(found.misses.by_width == 0.0)
+    cut = 9.0 * stats.truncnorm(-np.inf, 1.0).var()
+    assert one.shares == pytest.approx(np.array([cut, 4.0]) / (cut + 4.0), abs=0.02)
+
+
+class Solved(NamedTuple):
+    """A case in place of one of a bearing."""
+
+    play: Any
+    result: Any
+
+
+def test_samples_are_designs_that_all_their_cases_solve(element, monkeypatch):
+    """Both numbers add to one, with their factors; a case that fails is one of two."""
+
+    def solved_case(design, case, *_):
+        play = design.bearing.radial_internal_clearance
+        return Solved(play, jnp.where(play > case.load[0], 2, 0))
+
+    def judge(measures, cases, design, solution):
+        return None, jnp.sum(solution.play)[None]
+
+    module = "bearingjax.decide.tolerance_effects"
+    monkeypatch.setattr(f"{module}.solved_case", solved_case)
+    monkeypatch.setattr(f"{module}.judge", judge)
+    for name in ("_solve_few", "_solve_many"):
+        monkeypatch.setattr(f"{module}.{name}", tolerance_effects._solve)
+    path = f"bearing.{PLAY}"
+    scatters = [
+        Scatter({path: 1.0}, within(1e-5, 3e-5), "large"),
+        Scatter({path: -1.0}, within(-4e-6, 4e-6), "small"),
+    ]
+    cases = bj.Cases([[2.5e-5, 0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0, 0]])
+    sampled = Sampled(element, cases, scatters, [linear], samples=8)
+    given = np.array([[3e-5, 1e-6], [1.5e-5, 1e-6], [2e-5, -2e-6]])
+    for slopes in (False, True):
+        values, result, gradient = sampled.solve(given, slopes)
+        assert result.tolist() == [2, 0, 0]
+        exact = [[np.nan], [2.8e-5], [4.4e-5]]
+        np.testing.assert_allclose(values, exact, rtol=ROUNDING)
+        if slopes:
+            np.testing.assert_allclose(gradient, [[[2.0, -2.0]]] * 3, rtol=ROUNDING)
 
 
 def test_tighten_takes_the_one_that_pays(element, closed_form):
@@ -201,6 +283,10 @@ def test_tighten_takes_the_one_that_pays(element, closed_form):
     assert found.after == pytest.approx(most, abs=4.0 * found.error + 2e-3)
     assert found.before == pytest.approx(stats.norm.sf(2.0 / SPREAD), abs=5e-3)
     assert found.cost == pytest.approx(12.0 * (1.0 - found.widths[0]), rel=ROUNDING)
+    # Both shares are of samples that the search has not seen.
+    own = Sampled(*given, numbers(cost=2.0), asked, samples=8000)
+    seen, fresh = (own.misses(*own.run(found.widths, k)).share for k in (0, 1))
+    assert found.after == fresh != seen
     cheap = [numbers(cost=2.0)[0], Scatter("bearing.b", stats.norm(0, 0.5), "b", 1e3)]
     dear = tighten(*given, cheap, asked, most, samples=8000)
     assert dear.widths == pytest.approx(found.widths, abs=0.02)
@@ -259,6 +345,12 @@ def test_tolerances_refuse_what_does_not_fit(element):
             [linear],
             {},
             "ball may be -0.001, which the design does not allow",
+        ),
+        (
+            [Scatter(f"bearing.{CROWN}", within(7e-3, 7e-2), "ball")],
+            [linear],
+            {},
+            "ball may be 0.07, which the design does not allow",
         ),
     ):
         with pytest.raises(ValueError, match=text):

@@ -67,7 +67,7 @@ def tolerance_warnings(task: ToleranceTask, run: ToleranceRun) -> list[Warning]:
             words = f"{one.name} scatters, on which load ratings depend: those of the"
             words += " standards stand in place of the published ones, which are of the"
             lost.append(Warning("ratings_dropped", f"{words} drawn size alone"))
-    return [*task.scene.warnings, *lost]
+    return [*task.scene.warnings, *run.found.warnings, *lost]
 
 
 def tolerances_as_dict(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]:
