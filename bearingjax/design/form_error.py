@@ -25,7 +25,16 @@ from ..numerics.types import (
 )
 from ..numerics.units import real, unit
 from .abstract import AbstractBearing
-from .checks import all_of_class, check, finite, instance, is_real, is_traced, must_be
+from .checks import (
+    all_of_class,
+    check,
+    finite,
+    instance,
+    is_real,
+    is_traced,
+    must_be,
+    of_shape,
+)
 from .deviation import largest_deviation
 
 _NODES = 256
@@ -368,11 +377,15 @@ class FormErrors(eqx.Module):
             bearing: A single row.
 
         Raises:
-            ValueError: For heights beyond `largest_deviation`, or a spall longer than
-                the way around its part.
+            ValueError: For heights beyond `largest_deviation`, a spall longer than
+                the way around its part, or another number of rolling elements.
         """
         if not (self.outer.shapes or self.inner.shapes or self.elements):
             return
+        places = bearing.n_places
+        allowed = f"({places}, ...), one entry for each rolling element"
+        for leaf in jax.tree.leaves(self.elements):
+            of_shape(self, "elements", np.shape(leaf)[:1] == (places,), allowed, leaf)
         most, surfaces = largest_deviation(bearing), Surfaces.from_bearing(bearing)
         parts = {
             "outer raceway": (self.outer.shapes, surfaces.outer),

@@ -86,6 +86,8 @@ def test_noise_design_refuses():
         design(inner=spall)
     with pytest.raises(ValueError, match="'none'; it must be waves"):
         design(RacewayErrors(), RacewayErrors(), ())
+    with pytest.raises(ValueError, match=r"`elements` has shape \(2,\).*\(9, ...\)"):
+        design(elements=(Harmonics([2, 4], [10e-9, 8e-9]),))
     with pytest.raises(ValueError, match="`bands` is 'half'"):
         design(bands="half")
     one = design()
