@@ -99,7 +99,7 @@ def test_many_gaps_are_counted():
         ([0.0, 2.0, 1.0], {}, "is 2 s in row 1 and 1 s in row 2; it must ascend"),
         ([0.0, np.nan, 1.0], {}, "has gaps: row 1: time is no finite number"),
         ([0.0, 1.0], {}, r"it must be \(3,\), a time for each row"),
-        ([np.nan] * 3, {"gaps": "leave_out"}, "it must ascend"),
+        ([np.nan] * 3, {"gaps": "leave_out"}, "it must be numbers, or instants"),
         ([0.0, 1.0, 2.0], {"gaps": "skip"}, "'refuse', 'leave_out'"),
     ],
 )
