@@ -19,7 +19,15 @@ from bearingjax.cases.sweep import SUMMARIES
 from bearingjax.files.quantity import QUANTITIES, kind_of
 from bearingjax.numerics.labels import axes_of
 from bearingjax.numerics.types import as_real
-from bearingjax.numerics.units import field_metadata, shown_count, unit, unit_of, units
+from bearingjax.numerics.units import (
+    field_metadata,
+    shown_change,
+    shown_count,
+    shown_number,
+    unit,
+    unit_of,
+    units,
+)
 from bearingjax.statics.solution import BallSolution, RollerSolution
 
 MEASURES = [
@@ -243,3 +251,9 @@ def test_a_column_of_another_shape_than_the_field_has_no_unit_of_one_entry():
 def test_one_thing_is_shown_in_the_singular():
     shown = [shown_count(count, "step") for count in (0, 1, 2)]
     assert shown == ["0 steps", "1 step", "2 steps"]
+
+
+def test_numbers_without_end_are_shown_in_words():
+    assert shown_number(np.inf, "m") == shown_change(np.inf, "K") == "infinite"
+    assert shown_number(-np.inf, "K") == "-infinite"
+    assert shown_change(2.0, "K") == "2 K" and shown_number(333.15, "K") == "60 °C"

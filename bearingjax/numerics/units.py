@@ -179,6 +179,8 @@ def shown_number(value: float, unit: str, digits: int = 4) -> str:
         unit: SI unit; empty for a pure number.
         digits: Significant digits.
     """
+    if np.isinf(value):
+        return "infinite" if value > 0.0 else "-infinite"
     if unit == "K":
         return f"{value - CELSIUS:.{digits}g} °C"
     small = unit == "N" and abs(value) < _SMALL_FORCE
@@ -188,7 +190,8 @@ def shown_number(value: float, unit: str, digits: int = 4) -> str:
 
 def shown_change(value: float, unit: str, digits: int = 4) -> str:
     """A difference, such as an error, as `shown_number` shows numbers: "2 K"."""
-    return f"{value:.{digits}g} K" if unit == "K" else shown_number(value, unit, digits)
+    kelvin = unit == "K" and np.isfinite(value)
+    return f"{value:.{digits}g} K" if kelvin else shown_number(value, unit, digits)
 
 
 def rpm(speed: Any) -> str:
