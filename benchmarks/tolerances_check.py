@@ -5,7 +5,7 @@ by NumPy as plain random numbers, each bearing solved by itself with `solve_load
 `rating_life`; means, deviations and quantiles compared over their standard errors.
 Derivatives: of the share of bearings that miss the requirements of that scene, by the
 width of each tolerance, beside differences of whole runs of the same samples with
-widths a fifth larger and smaller. Shafts: a shaft whose near bearing bears most; its
+widths a fifth larger and smaller. Many: 100 000 bearings beside single calls. Shafts: a shaft whose near bearing bears most; its
 life is required, narrowing costs the same at both, and `tighten` chooses.
 
 README: brute force within 3.3 standard errors (five bearings, seven statistics of life
@@ -147,6 +147,26 @@ def derivatives(samples):
     return rows, misses
 
 
+def many(samples, singles):
+    """Time of many bearings on their seats, with misses and causes, beside single
+    solves and lives of the same bearing, in a call of each [s of the processor]."""
+    task = read_tolerances(SCENE)
+    options = task.options | {"samples": samples}
+    bj.tolerances(*task.given, **options)  # compiles
+    begun = time.process_time()
+    found = bj.tolerances(*task.given, **options)
+    used, count = time.process_time() - begun, len(found.result)
+    place, cases, scatters, _ = task.given
+    paths = tuple(dict.fromkeys(p for one in scatters for p in one.path))
+    factors = np.array([[s.path.get(p, 0.0) for s in scatters] for p in paths])
+    fixed = cases, paths, factors, options["support"], options["solve"]
+    begun = time.process_time()
+    for values in drawn(scatters, singles, 12):
+        single(place, *fixed, values)
+    alone = (time.process_time() - begun) / singles
+    return {"samples": count, "cpu_s": used, "ratio": used / count / alone}
+
+
 def on_a_shaft():
     """Widths that `tighten` leaves the tolerances of both bearings of a shaft."""
     with tempfile.TemporaryDirectory() as folder:
@@ -194,6 +214,7 @@ def main(smoke=False, singles=1000, samples=8192):
         "share": misses.share,
         "smoothed": misses.smoothed,
         "derivatives": rows,
+        "many": many(256 if smoke else 100_000, 4 if smoke else 100),
     }
     if not smoke:
         found["shaft"] = on_a_shaft()
