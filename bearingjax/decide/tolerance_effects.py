@@ -18,6 +18,7 @@ from jaxtyping import Float, Int
 
 from ..cases.cases import Cases
 from ..design.checks import all_of_class, count, must_be
+from ..element import RINGS
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..numerics.shown import Shown
@@ -358,6 +359,7 @@ class Sampled:
             *(element, cases, self.measures),
             *((paths, jnp.asarray(factors)), solves, build),
         )
+        self._starts: Any = None
         self._several = isinstance(element, AbstractSystem)
         most = {False: _MACHINES if self._several else _BATCH, True: _SLOPES}
         self._batches = {k: max(1, n // cases.count) for k, n in most.items()}
@@ -376,7 +378,25 @@ class Sampled:
 
     def solve(self, samples: np.ndarray, slopes: bool) -> tuple[Any, Any, Any]:
         """Measures (sample, measure), result codes (sample,) and gradients (sample,
-        measure, number) of samples; `None` without `slopes`."""
+        measure, number) of samples; `None` without `slopes`.
+
+        Load solves start from the rings' displacements at the mean of all numbers, and
+        what is not solved so again from first contact."""
+        contact = np.full((self._given[1].count, 6), np.nan)
+        if self._starts is None:
+            self._starts = self._solve(self.centre[None], True, contact)[0][0]
+        _, *found = self._solve(samples, slopes, self._starts)
+        failed = np.flatnonzero(found[1])
+        if failed.size and not self._several:
+            _, *again = self._solve(samples[failed], slopes, contact)
+            pairs = zip(jax.tree.leaves(found), jax.tree.leaves(again), strict=True)
+            for every, new in pairs:
+                every[failed] = new
+        values, result, gradient = found
+        return np.where(result[:, None] == 0, values, np.nan), result, gradient
+
+    def _solve(self, samples, slopes, starts) -> Any:
+        """Displacements (sample, case, 6) and the like from starts (case, 6)."""
         run = _solve_few if slopes or self._several else _solve_many
         found, batch = [], self._batches[slopes]
         # One shape of samples with gradients: their program is compiled once.
@@ -384,14 +404,13 @@ class Sampled:
         for begin in range(0, len(samples), size):
             part = samples[begin : begin + size]
             filled = jnp.asarray(np.resize(part, (size, part.shape[1])))
-            out = run(*self._given, filled, batch, slopes)
+            out = run(*self._given, jnp.asarray(starts), filled, batch, slopes)
             found.append(jax.tree.map(np.asarray, out))
             if self._told is not None and not slopes:
                 self._told(min(1.0, (begin + size) / len(samples)))
-        values, result, gradient = jax.tree.map(
+        return jax.tree.map(
             lambda *parts: np.concatenate(parts)[: len(samples)], *found
         )
-        return np.where(result[:, None] == 0, values, np.nan), result, gradient
 
     def conclude(
         self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
@@ -524,15 +543,24 @@ def _variance_shares(samples: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.clip(found, 0.0, 1.0)
 
 
-def _solve(element, cases, measures, numbers, solves, build, samples, batch, slopes):
-    paths, factors = numbers
+def _solve(
+    element, cases, measures, numbers, solves, build, starts, samples, batch, slopes
+):
+    (paths, factors), (support, options) = numbers, solves
+    first = 6 * RINGS.index(support.moving_ring)
 
     def outputs(values):
         changed = with_numbers(element, dict(zip(paths, factors @ values, strict=True)))
         design = prepare(changed, build)
-        solution = jax.vmap(lambda case: solved_case(design, case, *solves))(cases)
-        exact = judge(measures, cases, design, solution)[1]
-        return exact, (exact, jnp.max(solution.result))
+
+        def solve_from(case, start):
+            return solved_case(design, case, support, options, start)
+
+        solution = jax.vmap(solve_from)(cases, starts)
+        exact, moved = judge(measures, cases, design, solution)[1], starts
+        if not isinstance(design, AbstractSystem):
+            moved = solution.displacement[:, first : first + 6]
+        return exact, (moved, exact, jnp.max(solution.result))
 
     def solve_sample(values):
         if not slopes:

@@ -123,7 +123,11 @@ def check_design(owner: str, design: Any, cases: Any) -> None:
 
 
 def solved_case(
-    design: Design, case: Any, support: Support, options: SolveOptions
+    design: Design,
+    case: Any,
+    support: Support,
+    options: SolveOptions,
+    start: Any = None,
 ) -> Any:
     """Solve one case of a design; for an element the load solve.
 
@@ -131,12 +135,13 @@ def solved_case(
 
     Args:
         design, case, support, options: As in `AbstractSystem.solve_case`.
+        start: As in `solve_load`, of a bearing; a system has its own.
     """
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, support, options)
     if isinstance(design, Installed):
         design = design.element_at(case_speed(case), throw=False)
-    return solve_case(design, case, support, options)
+    return solve_case(design, case, support, options, start)
 
 
 def prepare(design: Design, build: Callable[[Any], Any] | None) -> Design:
