@@ -138,7 +138,8 @@ class NoiseDesign(AbstractSystem):
 
         Args:
             cases: Operating cases.
-            solved: Not needed: the loads alone are solved anew.
+            solved: Solved cases; not used, as they do not keep the loads of the rolling
+                elements, which are solved anew.
         """
         shares = np.ones(cases.count)
         for k in range(cases.count):

@@ -384,19 +384,22 @@ class Sampled:
         what is not solved so again from first contact."""
         contact = np.full((self._given[1].count, 6), np.nan)
         if self._starts is None:
-            self._starts = self._solve(self.centre[None], True, contact)[0][0]
-        _, *found = self._solve(samples, slopes, self._starts)
+            self._starts = contact  # all that a system needs
+            if not self._several:
+                self._starts = self._solve_from(contact, self.centre[None], True)[0][0]
+        _, *found = self._solve_from(self._starts, samples, slopes)
         failed = np.flatnonzero(found[1])
         if failed.size and not self._several:
-            _, *again = self._solve(samples[failed], slopes, contact)
+            _, *again = self._solve_from(contact, samples[failed], slopes)
             pairs = zip(jax.tree.leaves(found), jax.tree.leaves(again), strict=True)
             for every, new in pairs:
                 every[failed] = new
         values, result, gradient = found
         return np.where(result[:, None] == 0, values, np.nan), result, gradient
 
-    def _solve(self, samples, slopes, starts) -> Any:
-        """Displacements (sample, case, 6) and the like from starts (case, 6)."""
+    def _solve_from(self, starts, samples, slopes) -> Any:
+        """Displacements of the moving ring (sample, case, 6) [m, rad], and what `solve`
+        returns, of load solves that start from displacements (case, 6) [m, rad]."""
         run = _solve_few if slopes or self._several else _solve_many
         found, batch = [], self._batches[slopes]
         # One shape of samples with gradients: their program is compiled once.

@@ -135,7 +135,8 @@ def solved_case(
 
     Args:
         design, case, support, options: As in `AbstractSystem.solve_case`.
-        start: As in `solve_load`, of a bearing; a system has its own.
+        start: Displacement of the moving ring of a bearing from which its solve starts
+            (6,) [m, rad]; `None`, or NaN: from first contact. A system ignores it.
     """
     if isinstance(design, AbstractSystem):
         return design.solve_case(case, support, options)

@@ -263,6 +263,7 @@ def test_patterns_are_the_waves_at_the_rolling_elements():
         expected[:, ring, 1] = size * np.exp(1j * (order * azimuth + phase))
         found = np.asarray(pattern[names.index(name)])
         np.testing.assert_allclose(found, expected, atol=1e-3 * size, err_msg=name)
+    # That of the nominal contact angle; the load has changed it.
     kinematic = noise.kinematic_frequencies(one.rig.element.bearing, one.rig.speed)
     assert frequency[names.index("line_2_BPFO")] == pytest.approx(
         2 * float(kinematic.outer_passage), rel=1e-2

@@ -230,6 +230,13 @@ def test_viscosity_is_an_unknown(tmp_path):
         with_values(task.subject.model.design, [one.path], [-1e-6])
 
 
+def test_other_commands_do_not_take_speeds_of_the_measured_table(run):
+    """And do not ignore the oil without a word."""
+    oil = 'life={viscosity="20 mm^2/s", contamination="grease, normal"}'
+    done = run("life", SCENE, "--set", oil)
+    assert done.status == 2 and "needs a speed of one ring" in done.err
+
+
 @pytest.mark.slow
 def test_friction_and_life_follow_the_viscosity(tmp_path):
     """As with the life's own viscosity, and as by differences."""

@@ -195,7 +195,8 @@ def test_tolerances_of_levels_that_are_refused(tmp_path, name):
 
 @pytest.mark.slow
 def test_levels_of_a_scene_as_its_vibration_in_time(tmp_path):
-    """Sensor, reference and bridging are those of the scene."""
+    """Sensor, reference and bridging are those of the scene; the record of 16 turns
+    leaks 0.03 dB (`test_noise_design`)."""
     task = tolerances(tmp_path, RIG + TOLERANCES)
     design, cases, *_ = task.given
     case = jax.tree.map(lambda leaf: leaf[0], cases)

@@ -29,8 +29,7 @@ def read_life(
     if "life" not in top:
         return None
     table = top.table("life")
-    listed = "cases" in top or "identify" in top  # cases that may have speeds
-    turning = listed or relative_speed(speed) != 0.0
+    turning = "cases" in top or relative_speed(speed) != 0.0  # each case has its own
     given = read_values(LifeConditions, table)
     if given["viscosity"] is not None and given["contamination"] is None:
         problem = "is missing; the modified life needs it beside `viscosity`"

@@ -168,8 +168,8 @@ def _measured(held: Table, setup: Setup) -> Any:
         lacks = "has no column of readings"
         problem = f"{alone[0]} {lacks}" if alone else "measures nothing"
         raise held.error("file", f"{name}: {problem}")
-    count = np.arange(len(next(iter(read.values()))))
-    columns = [VariedKey(key, v, count) for key, v in found.items() if key not in read]
+    index = np.arange(len(next(iter(read.values()))))
+    columns = [VariedKey(key, v, index) for key, v in found.items() if key not in read]
     return columns, read, units
 
 

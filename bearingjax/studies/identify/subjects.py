@@ -177,7 +177,7 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
         scene, rig, numbers = noise_design(data, path)
         own = scene.support, scene.solve_options
         return Setup(scene, CaseModel(rig, *own), numbers, data, path)
-    scene = scene_of(data, path)
+    scene = scene_of(data | {"cases": {}}, path)  # they are rows of the measured table
     oil = {} if scene.oil is None else {"supply": scene.oil.supply}
     given = scene.support, scene.solve_options, life_conditions(scene)
     placed, numbers = scene.installed, installed_numbers(scene)

@@ -419,7 +419,12 @@ def check_inside(
 ) -> None:
     """Raise SceneError unless `from` lies below `to`, and a number between them.
 
-    Args: as `read_number`; values of the key, `None` if absent, `from` and `to` [SI].
+    Args:
+        table: Table that holds `from`, `to` and the key.
+        unit: SI unit of the numbers.
+        key: Key of the number that must lie between them.
+        value: Its value [SI]; `None` if it is absent.
+        low, high: Values of `from` and `to` [SI].
     """
     first, last = (scene_number(x, kind_of(unit)) for x in (low, high))
     if not low < high:

@@ -121,7 +121,7 @@ class Choice(NamedTuple):
         inputs: The scene as it was read.
         designs: Shafts in each case; empty for a bearing alone.
         options: Other arguments of `select_positions`.
-        warnings: Warnings of the scene: none.
+        warnings: Warnings of the scene; there are none.
     """
 
     name: str

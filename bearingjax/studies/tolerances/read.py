@@ -51,7 +51,7 @@ SHAPES = ("normal", "uniform")
 
 
 class Unbound:
-    """Keys of a measure of which a bound is no duty."""
+    """Keys of a measure that may stand without a bound."""
 
     about = "[[tolerances.measures]]: what is asked, and what is required of it"
 
