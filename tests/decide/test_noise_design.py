@@ -1,6 +1,7 @@
 """Levels of lines and bands to first order, and what is identified by them."""
 
 import dataclasses
+from types import SimpleNamespace
 from typing import Any
 
 import equinox as eqx
@@ -104,6 +105,18 @@ def test_noise_design_refuses():
             one.check(Cases(**{"load": LOAD, **given}, inner_speed=[SPEED]))
     with pytest.raises(ValueError, match="NoiseLevel: `reading` is 'total_level'"):
         NoiseLevel()(bj.BearingElement(one.installed.drawing.bearing), None, None)
+
+
+def test_a_tenth_of_the_largest_load_parts_doubtful_levels(monkeypatch):
+    """Of both raceways the worse; a case whose rolling elements carry nothing fails."""
+    loads = [[[7.9, 9], [80, 80]], [[9, 7], [80, 80]], [[9, 9], [80, 80]], [[0, 0]] * 2]
+    each = iter(np.array(loads, float))
+    solve = lambda *_: SimpleNamespace(roller_load=next(each))  # noqa: E731
+    monkeypatch.setattr(noise.NoiseModel, "solve", solve)
+    (one,) = design().warnings(cases(*[SPEED] * 4))
+    assert one.size == 7 / 80 and one.endswith("in 2 of 4 cases, worst case 1")
+    each = iter(np.array([[[8, 8], [80, 80]]], float))
+    assert design().warnings(cases(SPEED)) == []  # a tenth
 
 
 @pytest.mark.slow

@@ -631,3 +631,11 @@ def test_rating_life_refuses_oil_of_each_case(straight, name):
     cases = bj.Cases([[0, -1e3, 0, 0, 0, 0]], inner_speed=100.0, **{name: [1e-5]})
     with pytest.raises(ValueError, match=f"RatingLife: `{name}` is"):
         bj.optimise.RatingLife().life(straight, cases, None)
+
+
+def test_bounds_are_told_in_words():
+    measure = bj.optimise.Stiffness("uy")
+    both = bj.optimise.Constraint(measure, lower=1.0, upper=2.0)
+    assert both.bounds_text("{:g} N/m".format) == "at least 1 N/m and at most 2 N/m"
+    one = bj.optimise.Constraint(measure, upper=3.0)
+    assert one.bounds_text("{:g}".format) == "at most 3"

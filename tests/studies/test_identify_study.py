@@ -14,7 +14,7 @@ from bearingjax.files import SceneError, shipped_scenes
 from bearingjax.optimise import Variable
 from bearingjax.optimise.variable import design_numbers, with_values
 from bearingjax.studies.identify.read_identify import read_identification
-from bearingjax.studies.identify.run import run_identification
+from bearingjax.studies.identify.run import identification_report, run_identification
 from bearingjax.studies.identify.subjects import read_setup
 
 FREE = "operating.free=['ux', 'uy']"
@@ -228,6 +228,20 @@ def test_viscosity_is_an_unknown(tmp_path):
     assert one.start_in(task.subject.model.design) == pytest.approx(20e-6)
     with pytest.raises(ValueError, match="above 0"):
         with_values(task.subject.model.design, [one.path], [-1e-6])
+
+
+def test_report_begins_with_the_largest_residual(tmp_path):
+    task = measured(tmp_path, f"{HEAD},{OUT} [um]\n-1,1\n")
+    task = task._replace(units={OUT: "m", "slope": ""}, wanted=())
+    unknowns = [Variable("slope", 0.0, 9.0)]
+    readings = {OUT: [1.1, 2.0, 2.5, 4.0]}
+    given = np.arange(1.0, 5.0), unknowns, readings, {OUT: 0.1}
+    found = bj.identify(lambda x, t: {OUT: x[0] * t}, *given)
+    lines = str(identification_report(task, found)).splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("largest res"))
+    cases = [line.split()[1] for line in lines[first + 1 : first + 5]]
+    off = np.abs(found.residual[OUT])
+    assert cases == [str(k) for k in np.argsort(-off)] and cases[0] == "2"
 
 
 def test_other_commands_do_not_take_speeds_of_the_measured_table(run):
