@@ -5,8 +5,9 @@ by NumPy as plain random numbers, each bearing solved by itself with `solve_load
 `rating_life`; means, deviations and quantiles compared over their standard errors.
 Derivatives: of the share of bearings that miss the requirements of that scene, by the
 width of each tolerance, beside differences of whole runs of the same samples with
-widths a fifth larger and smaller. Many: 100 000 bearings beside single calls. Shafts: a shaft whose near bearing bears most; its
-life is required, narrowing costs the same at both, and `tighten` chooses.
+widths a fifth larger and smaller. Many: 100 000 bearings beside single calls. Shafts: a
+shaft whose near bearing bears most; its life is required, narrowing costs the same at
+both, and `tighten` chooses.
 
 README: brute force within 3.3 standard errors (five bearings, seven statistics of life
     and clearance); derivatives of the share within 1.6; on a shaft the tolerance of the
