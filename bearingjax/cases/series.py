@@ -132,7 +132,8 @@ def _columns(cases: Cases) -> dict[str, np.ndarray]:
             found[LOADS[k] if name == "load" else f"{name} {k}".rstrip(" 0")] = column
     if "viscosity" in found:
         still = relative_speed(cases) == 0
-        found["viscosity"] = np.where(still, 1.0, found["viscosity"])
+        oil = np.where(still, 1.0, found.pop("viscosity"))
+        found["viscosity, or temperature, of the oil"] = oil
     return found
 
 

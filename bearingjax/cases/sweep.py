@@ -36,7 +36,7 @@ from .batches import Batches
 from .cases import Cases
 from .names_of_zeros import structural_zeros
 from .output_labels import FIELD_OF_LARGEST, label_cases, label_output
-from .sweep_program import WARNED, Program, Task
+from .sweep_program import Program, Task, named_sizes
 
 
 def _largest_value(field: str, solution: Solution) -> Array:
@@ -102,11 +102,7 @@ class Sweep(Printable):
     @property
     def warning_sizes(self) -> dict[str, np.ndarray]:
         """Size of every kind of warning, by its name (case,)."""
-        return {
-            name.removeprefix(WARNED): values
-            for name, values in self.outputs.items()
-            if name.startswith(WARNED)
-        }
+        return named_sizes(self.outputs)
 
     @property
     def warnings(self) -> list[Warning]:

@@ -52,6 +52,16 @@ WARNED = "warning_"
 """Before the names of the outputs that are sizes of warnings."""
 
 
+def named_sizes(outputs: dict[str, Any]) -> dict[str, Any]:
+    """Return the sizes of warnings among outputs, by the kind of warning.
+
+    Args:
+        outputs: Outputs by name.
+    """
+    pairs = outputs.items()
+    return {k.removeprefix(WARNED): x for k, x in pairs if k.startswith(WARNED)}
+
+
 class Task(eqx.Module):
     """Operations that a sweep performs on every case.
 

@@ -20,7 +20,6 @@ from ..numerics.warning import Warning
 from ..optimise.system import Design, check_design
 from ..optimise.variable import Variable, check_same_in_cases, check_variables
 from .least_squares import CLOSE, Fit, least_squares
-from .noise_design import NoiseDesign
 from .predict import CaseModel
 
 STEP_LIMIT = 100
@@ -517,8 +516,7 @@ def _warnings(given: _Problem, fit: Fit, chance: float, bent: float) -> list[War
     if not np.isfinite(fit.numbers).all():
         words = "some cases without readings do not solve: they predict nothing"
         found.append(Warning("unsolved", words))
-    if isinstance(getattr(model := given.model, "design", None), NoiseDesign):
-        first = {path: values[0] for path, values in model.varied.items()}
-        design: Any = model.design_at(given.lower + given.width * fit.at, first)
-        found += design.warnings(given.cases)
+    if isinstance(given.model, CaseModel):
+        values = given.lower + given.width * fit.at
+        found += given.model.warnings(values, given.cases)
     return found

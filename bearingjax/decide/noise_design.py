@@ -138,8 +138,7 @@ class NoiseDesign(AbstractSystem):
 
         Args:
             cases: Operating cases.
-            solved: Solved cases; not used, as they do not keep the loads of the rolling
-                elements, which are solved anew.
+            solved: Not used: the loads alone are solved, without the vibration.
         """
         shares = np.ones(cases.count)
         for k in range(cases.count):

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import equinox as eqx
@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 from ..cases.cases import Cases
 from ..cases.output_labels import OPERATING_CLEARANCE, OPERATING_PRELOAD, label_output
 from ..cases.sweep import SUMMARIES, Keep
-from ..cases.sweep_program import Task
+from ..cases.sweep_program import Task, named_sizes
 from ..design import rows_of
 from ..design.bearing_set import bearings_of
 from ..design.checks import check_fields
@@ -25,10 +25,13 @@ from ..files.table import not_among
 from ..fits import radial_clearance
 from ..friction.friction import friction_torque
 from ..life.life import LIFE_OUTPUTS, Life, LifeConditions
+from ..life.life_warning import ALL
+from ..numerics.compiled.programs import program
 from ..numerics.labels import stated_axes
 from ..numerics.result import Result
 from ..numerics.types import Real, with_fields
 from ..numerics.units import real
+from ..numerics.warning import Warning, warnings_of_cases
 from ..optimise.design_problem import CHUNK
 from ..optimise.system import (
     AbstractSystem,
@@ -146,18 +149,42 @@ class CaseModel(eqx.Module):
         self, values: Float[Array, " number"], cases: Any
     ) -> dict[str, Float[Array, " case"]]:
         """The numbers by name (case,) [SI], at numbers of the design [SI]."""
+        return self._in_cases(self._numbers, values, cases)
+
+    def warnings(self, values: Any, cases: Any) -> list[Warning]:
+        """Warnings about solved cases, each kind once, as `sweep` has them.
+
+        Args:
+            values: Numbers of the design, concrete (number,) [SI].
+            cases: The cases.
+        """
+        if isinstance(self.design, AbstractSystem):
+            first = {path: np.asarray(x)[0] for path, x in self.varied.items()}
+            system: Any = self.design_at(np.asarray(values), first)
+
+            def solved():
+                if system.is_solved_by_parts(cases):
+                    return system.solve_by_parts(cases, None)[0]
+                return jax.device_get(_solve_system(self, jnp.asarray(values), cases))
+
+            return system.warnings(cases, solved)
+        sizes = jax.device_get(_warning_sizes(self, jnp.asarray(values), cases))
+        return warnings_of_cases(sizes, ALL)
+
+    def _in_cases(self, function: Callable, values: Any, cases: Any) -> dict[str, Any]:
+        """Outputs of a function of design, solved case and case, in all cases."""
         shared = None if self.varied else self.design_at(values, {})
 
-        def numbers(given):
+        def outputs(given):
             case, varied = given
             design = self.design_at(values, varied) if shared is None else shared
             solved = solved_case(design, case, self.support, self.options)
-            return self._numbers(design, solved, case)
+            return function(design, solved, case)
 
         given = cases, {path: jnp.asarray(x) for path, x in self.varied.items()}
         if cases.count <= CHUNK:
-            return jax.vmap(numbers)(given)
-        return lax.map(numbers, given, batch_size=CHUNK)
+            return jax.vmap(outputs)(given)
+        return lax.map(outputs, given, batch_size=CHUNK)
 
     def why_failed(self, values: Any, cases: Cases, case: int) -> str:
         """Reason why a case fails at concrete numbers, in words."""
@@ -179,9 +206,7 @@ class CaseModel(eqx.Module):
             return self._entries(kept, solution.result == Result.CONVERGED)
         wanted = dict.fromkeys(place.output for _, place in self.places)
         lives = tuple(name for name in wanted if name in LIFE_OUTPUTS)
-        life = LifeConditions() if self.life is None else self.life
-        if isinstance(design, Oiled):
-            life = with_fields(life, viscosity=design.viscosity)
+        life = self._life(design) or LifeConditions()
         keep = Keep(tuple(name for name in wanted if name not in (*lives, *_STATES)))
         task = Task(
             self.support, self.options, keep, False, lives, life if lives else None
@@ -199,6 +224,11 @@ class CaseModel(eqx.Module):
         real = solution.displacement.dtype
         numbers = {name: kept[name].astype(real) for name in wanted}
         return self._entries(numbers, solution.converged)
+
+    def _life(self, design: Design) -> LifeConditions | None:
+        if self.life is None or not isinstance(design, Oiled):
+            return self.life
+        return with_fields(self.life, viscosity=design.viscosity)
 
     def _entries(self, kept: dict[str, Array], solved: Any) -> dict[str, Array]:
         return {
@@ -243,6 +273,22 @@ class CaseModel(eqx.Module):
                     short = [label.removeprefix(own) for label in labels]
                     short = short[:1] if len(set(short)) == 1 else short
                     yield "_".join([output, *short]), place
+
+
+@program(quick=True, level=1, what="cases of the system")
+def _solve_system(model, values, cases):
+    return model._in_cases(lambda design, solved, case: solved, values, cases)
+
+
+@program(quick=True, level=1, what="warnings of the cases")
+def _warning_sizes(model, values, cases):
+    """Return the size of every kind of warning by name (case,)."""
+
+    def sizes(design, solution, case):
+        life, given = model._life(design), (model.support, model.options)
+        return Task(*given, Keep(()), True, (), life).outputs(solution, case)
+
+    return named_sizes(model._in_cases(sizes, values, cases))
 
 
 def _drawing(design: Any) -> BearingElement[Any]:

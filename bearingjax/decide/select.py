@@ -105,7 +105,7 @@ def _as_bounds(given: Any) -> Any:
 
 
 def _as_words(given: Any) -> Any:
-    return (given,) if isinstance(given, str) else tuple(given or ())
+    return (given,) if isinstance(given, str) else given and tuple(given)
 
 
 class Requirements(Printable):
@@ -119,7 +119,7 @@ class Requirements(Printable):
             which may be `None`; or one number, which is the exact bore, the greatest
             outside diameter, width, mass, share of a speed, pressure or friction, and
             the least of all others.
-        types: Types that may be chosen; none named: all.
+        types: Types that may be chosen; `None`: all.
         clearance_class: Class of radial clearance, "C3", of types that have classes;
             `None`: CN, and other types too.
         rank_by: Some of `NUMBERS`, of which the later ones tell ties apart; the least
@@ -139,7 +139,7 @@ class Requirements(Printable):
     bounds: dict[str, tuple[float | None, float | None]] = eqx.field(
         converter=_as_bounds, default=()
     )
-    types: tuple[str, ...] = eqx.field(converter=_as_words, default=())
+    types: tuple[str, ...] | None = eqx.field(converter=_as_words, default=None)
     clearance_class: str | None = None
     rank_by: tuple[str, ...] = eqx.field(converter=_as_words, default=SIZES[1:])
     support: Support = Support()
@@ -153,6 +153,8 @@ class Requirements(Printable):
         for what in ("bounds", "rank_by"):
             for name in getattr(self, what):
                 one_of(self, what, name, NUMBERS)
+        for what, names in {"types": self.types, "rank_by": self.rank_by}.items():
+            must_be(self, what, names, names != (), "one name at least")
         for name, ends in self.bounds.items():
             known = [end for end in ends if end is not None]
             ordered = bool(known) and 0 < known[0] <= known[-1] < np.inf
@@ -357,7 +359,7 @@ def select(
     if not every:
         raise ValueError("select: `entries` is empty; one bearing at least.")
     asked, told = requirements, progress or (lambda words, share: None)
-    for name in asked.types:
+    for name in asked.types or ():
         one_of("select", "types", name, sorted({entry.type for entry in every}))
     known = {id(entry): place for place, entry in enumerate(catalogue_entries())}
 

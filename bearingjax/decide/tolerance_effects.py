@@ -22,10 +22,12 @@ from ..element import RINGS
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..numerics.shown import Shown
+from ..numerics.types import with_fields
 from ..numerics.units import unit
-from ..numerics.warning import Warning
+from ..numerics.warning import Warning, warnings_of
 from ..optimise import Constraint
 from ..optimise.design_problem import judge
+from ..optimise.life import OfLife
 from ..optimise.measure import AbstractMeasure, label_of
 from ..optimise.search import search_least
 from ..optimise.system import AbstractSystem, Design, check_design, prepare, solved_case
@@ -33,7 +35,7 @@ from ..optimise.trials import Trial, Trials
 from ..optimise.variable import Variable, check_same_in_cases, with_numbers
 from ..statics import SolveOptions, Support
 from ..statics.support import RESTRAINED, check_held
-from .noise_design import NoiseDesign
+from .predict import CaseModel
 from .scatter import REPLICATES, Scatter, draw
 
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
@@ -121,7 +123,7 @@ class Tolerances(Shown):
         samples: Values of the numbers (sample, number) [SI].
         values: Values of the measures (sample, measure) [SI]; NaN of failed samples.
         result: `Result` code of each sample (sample,).
-        warnings: What to doubt of the design as it is given.
+        warnings: What to doubt of the design at the mean of all numbers.
     """
 
     scatters: tuple[Scatter, ...] = dataclasses.field(repr=False)
@@ -431,9 +433,18 @@ class Sampled:
             for k in range(len(self.measures))
         )
         misses = self.misses(samples, values, result) if self.bounds else None
-        design, cases = self._given[:2]
-        told = design.warnings(cases) if isinstance(design, NoiseDesign) else []
+        told = self._warnings()
         return Tolerances(self.scatters, spreads, misses, samples, values, result, told)
+
+    def _warnings(self) -> list[Warning]:
+        """Warnings about the cases of the design at the mean of all numbers."""
+        element, cases, measures, (paths, factors), solves, build = self._given
+        middle = dict(zip(paths, np.asarray(factors) @ self.centre, strict=True))
+        design = with_numbers(element, middle)
+        lives = [one.conditions for one in measures if isinstance(one, OfLife)]
+        model = CaseModel(design if build is None else build(design), *solves)
+        found = with_fields(model, life=(*lives, None)[0]).warnings((), cases)
+        return warnings_of("at the mean", found)
 
     def _spread(self, k, samples, values, middle, slope) -> Spread:
         measure, column = self.measures[k], values[:, k]

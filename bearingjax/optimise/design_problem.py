@@ -154,7 +154,7 @@ class Problem:
         lives = (m.warnings for m in self.measures if isinstance(m, OfLife))
         asked = [partial(warn, element, solution) for warn in lives][:1]
         if isinstance(element, AbstractSystem):
-            asked.append(partial(element.warnings, self.cases, solution))
+            asked.append(partial(element.warnings, self.cases, lambda: solution))
         return lambda: [text for warn in asked for text in warn()]
 
     def run(self, unit: np.ndarray | jax.Array, slopes: bool) -> "Run":

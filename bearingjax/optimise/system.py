@@ -96,12 +96,12 @@ class AbstractSystem(eqx.Module):
         fields of `solve_case`; by default none."""
         return {}
 
-    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
+    def warnings(self, cases: Cases, solved: Callable[[], Any]) -> list[Warning]:
         """Warnings other than those of the loads; none by default.
 
         Args:
             cases: Operating cases.
-            solved: Solved cases, concrete, leading axis case.
+            solved: Returns the solved cases, concrete, leading axis case.
         """
         return []
 

@@ -5,7 +5,7 @@ free = [Variable("system.seats.0.position", 0.03, 0.06)]
 best = bj.optimise.optimise(design, cases, free, SystemLife())
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -238,12 +238,12 @@ class ShaftDesign(AbstractSystem):
                 found[f"{mesh.wheel}.misalignment{mate}"] = own
         return found
 
-    def warnings(self, cases: Any, solved: Any) -> list[Warning]:
-        found = []
-        for seat, sizes in zip(self.system.seats, solved.warned, strict=True):
+    def warnings(self, cases: Any, solved: Callable[[], Any]) -> list[Warning]:
+        found, of_cases = [], solved()
+        for seat, sizes in zip(self.system.seats, of_cases.warned, strict=True):
             every = warnings_of_cases(jax.device_get(sizes), ALL)
             found += warnings_of(seat.name, every)
-        return [*found, *load_doubts(self.system, solved.load)]
+        return [*found, *load_doubts(self.system, of_cases.load)]
 
     def hours(self, cases: ShaftCases, solved: Any) -> Float[Array, " bearing"]:
         """Life of each bearing under all cases (bearing,) [h]; infinite of springs.

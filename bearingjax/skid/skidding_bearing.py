@@ -1,5 +1,6 @@
 """Skidding in design: a preloaded bearing with its oil, and measures of its cases."""
 
+from collections.abc import Callable
 from typing import Any
 
 import equinox as eqx
@@ -81,13 +82,14 @@ class SkiddingBearing(AbstractSystem):
             )
         return f"no end state of skidding: {solved.failure_message}"
 
-    def warnings(self, cases: Cases, solved: Any) -> list[Warning]:
+    def warnings(self, cases: Cases, solved: Callable[[], Any]) -> list[Warning]:
         still, rings = jnp.zeros(cases.count), (cases.inner_speed, cases.outer_speed)
         rings = (still if ring is None else jnp.asarray(ring) for ring in rings)
         speed = jax.vmap(Speed)(*rings)
         balls = self.model.bearing.is_ball
-        state = conditions(self.model, solved, speed) if balls else None
-        return skid_warnings(self.model, solved, state)
+        ended = solved()
+        state = conditions(self.model, ended, speed) if balls else None
+        return skid_warnings(self.model, ended, state)
 
 
 class FrictionTorque(AbstractMeasure):

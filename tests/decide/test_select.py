@@ -145,6 +145,8 @@ def test_bounds_by_one_number_have_the_sense_of_their_name():
         ({"bounds": {"boer": 0.04}}, "one of bore"),
         ({"load": bj.Cases(np.ones((2, 6)), design=[0, 1])}, "without `design`"),
         ({"rank_by": "price"}, "one of bore"),
+        ({"rank_by": ()}, "`rank_by` is ..; it must be one name at least"),
+        ({"types": []}, "`types` is ..; it must be one name at least"),
         ({"rank_by": "friction_torque"}, "without speed and oil"),
         ({"clearance_class": "C6"}, "one of C2"),
         ({"life": bj.LifeConditions(required=1e4), "load": np.ones(6)}, "turns"),

@@ -53,6 +53,7 @@ def closed_form(monkeypatch):
         return values, np.zeros(len(samples), int), gradient
 
     monkeypatch.setattr(Sampled, "solve", solve)
+    monkeypatch.setattr(Sampled, "_warnings", lambda self: [])
     monkeypatch.setattr(
         "bearingjax.decide.tolerance_effects._check_ends", lambda *_: None
     )

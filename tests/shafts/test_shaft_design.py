@@ -286,7 +286,7 @@ def test_warnings_are_those_of_the_system_too():
     load = np.zeros((2, 4, 6))
     load[:, 0, 2] = 200.0  # along the shaft
     load[1, :2, :3] = [[500.0, 0.0, 2.0], [500.0, 0.0, 0.0]]
-    solved = SimpleNamespace(warned=({},) * 4, load=load)
+    solved = lambda: SimpleNamespace(warned=({},) * 4, load=load)  # noqa: E731
     told = design.warnings(None, solved)
     assert len(told) == 3
     assert "B: it bears nothing in 1 of 2 cases (case 0); it may skid" in told

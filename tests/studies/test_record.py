@@ -1,6 +1,8 @@
 """A record in time as `[cases]`: reading, what is refused, `bearingjax life`."""
 
 import json
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas
@@ -8,9 +10,10 @@ import pytest
 from tolerances import SOLVER
 
 import bearingjax as bj
-from bearingjax.cases import SERIES_OUTPUTS, series_life
+from bearingjax.cases import SERIES_OUTPUTS, Sweep, series_life
 from bearingjax.files import SceneError
 from bearingjax.lubrication import OILS
+from bearingjax.studies.cases.life_run import _record_in_words
 from bearingjax.studies.cases.read_cases import read_cases
 
 SCENE = """
@@ -181,6 +184,9 @@ WRONG = {
         f"time [s],{SWING[:27]}\n0,1\n1,2"
     ),
     "is 300 °C in a case; it must be -60": OIL + "0,70\n1,300",
+    "line 3: viscosity, or temperature, of the oil is no finite number": (
+        OIL.replace("\n", ",operating.inner_speed [rpm]\n") + "0,40,9\n1,,9\n2,40,9\n"
+    ),
     "cases.life.viscosity`: cannot vary": "time [s],life.viscosity [mm^2/s]\n0,9\n1,8",
 }
 
@@ -209,6 +215,26 @@ def test_gaps_that_are_left_out_are_named(read):
     series = read(text, 'gaps = "leave_out"').series
     np.testing.assert_allclose(series.hours * 3600.0, [600, 0, 600, 600])
     assert series.gaps == ("line 3: Fx is no finite number",)
+
+
+def test_a_record_at_rest_uses_no_life(read):
+    """A damage of 0 is never 1, however often the record repeats."""
+    table = read(PLAIN.replace(",100", ",0"))
+    count = table.cases.count
+    safety, none = np.full(count, 5.0), np.zeros(count)
+    outputs: dict[str, Any] = {
+        "damage": none,
+        "raceway_damage": np.zeros((count, 1, 2)),
+        "static_safety": safety,
+        "peak_pressure": 1e9 * safety,
+        "largest_load": safety,
+    }
+    swept = Sweep(table.cases, outputs, "inner")
+    used = series_life(table.series, swept)
+    assert used.damage == 0.0 and used.life_hours == np.inf
+    run = SimpleNamespace(record=used, table=table, solved=swept)
+    words = " ".join(map(str, _record_in_words(run)))
+    assert "damage 0, as no row has any" in words and "inf" not in words
 
 
 @pytest.mark.slow

@@ -1,5 +1,5 @@
-"""`sweep` and `optimise` warn of all that `solve` warns of, whatever they keep or seek:
-the same sentences, word by word, with the same sizes."""
+"""`sweep`, `optimise`, `identify` and `tolerances` warn of all that `solve` warns of,
+whatever they keep or seek: the same sentences, word by word, with the same sizes."""
 
 import re
 
@@ -7,17 +7,23 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.files.scene_file import parse_scene
+from bearingjax.files.table import Table
 from bearingjax.life.life_warning import ALL, LIFE_KINDS, life_sizes
 from bearingjax.numerics.warning import warnings_of_cases
 from bearingjax.statics.warning import sizes
 from bearingjax.studies.bearing.solved import SolvedScene, scene_life
 from bearingjax.studies.cases.read_cases import read_cases
 from bearingjax.studies.cases.sweep_run import all_warnings, run_cases
+from bearingjax.studies.identify.subjects import read_setup
 from bearingjax.studies.optimise.read_shaft_optimise import read_optimisation
 from bearingjax.studies.optimise.report import optimisation_as_dict
 from bearingjax.studies.optimise.run import run_optimisation
 from bearingjax.studies.solve.output import solution_json
 from bearingjax.studies.solve.run import run_scene
+from bearingjax.studies.tolerances.read import read_tolerances
+from bearingjax.studies.tolerances.report import tolerance_warnings
+from bearingjax.studies.tolerances.run import run_tolerances
 
 LIGHT = """
 [bearing]
@@ -55,6 +61,13 @@ objective = "mean_pressure"
 max_steps = 1
 [optimise.variables]
 "bearing.radial_internal_clearance" = { from = "10 um", to = "40 um" }
+"""
+SCATTERED = """[tolerances]
+samples = 8
+measures = [{ measure = "rating_life" }]
+"""
+NUMBERS = """[tolerances.numbers]
+"bearing.radial_internal_clearance" = {{ mean = "{}", deviation = "1 nm" }}
 """
 
 
@@ -109,3 +122,26 @@ def test_a_sweep_of_one_case_warns_as_solve_does(best):
     swept = run_cases(table)
     assert not any("life" in output for output in swept.outputs if output[:4] != "warn")
     assert alone(all_warnings(table, swept)) == wanted
+
+
+def test_numbers_that_are_identified_are_warned_of_as_solve_does(best):
+    """At the values of the best design, in rows with empty places."""
+    path, settings, _, (wanted, _) = best
+    data = parse_scene(path, settings)
+    data = {k: data[k] for k in data.keys() - {"cases", "optimise"}}
+    subject = read_setup(data, path).subject(Table(data, path), [], 1)
+    told = subject.model.for_numbers([], []).warnings((), subject.cases)
+    assert alone([*subject.scene.warnings, *told]) == wanted
+
+
+def test_the_mean_within_tolerances_is_warned_of_as_solve_does(best, tmp_path):
+    path, settings, _, (wanted, _) = best
+    scene, text = tmp_path / "scene.toml", path.read_text(encoding="utf-8")
+    (clearance,) = (one.partition("=")[2] for one in settings)
+    scattered = text.partition("[optimise]")[0] + SCATTERED
+    if "[fit]" not in text:  # whose sizes scatter by themselves
+        scattered += NUMBERS.format(clearance)
+    scene.write_text(scattered, encoding="utf-8")
+    task = read_tolerances(scene, settings)
+    found = tolerance_warnings(task, run_tolerances(task))
+    assert alone([one.removeprefix("at the mean: ") for one in found]) == wanted

@@ -190,7 +190,8 @@ def with_speed_warnings(scene: Scene, turns: Any = None) -> Scene:
     """
     turns = relative_speed(scene.speed) if turns is None else turns
     texts = scene.installed.speed_warnings(turns)
-    return dataclasses.replace(scene, warnings=(*scene.warnings, *texts))
+    every = dict.fromkeys((*scene.warnings, *texts))
+    return dataclasses.replace(scene, warnings=tuple(every))
 
 
 def scene_of(

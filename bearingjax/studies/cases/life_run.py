@@ -359,14 +359,16 @@ def _record_in_words(run) -> list[Part]:
     hours = series.hours.sum()
     rows = {name: run.table.row_name(k) for name, k in record.rows.items()}
     most = [np.max(run.solved.outputs[k]) for k in _LARGEST]
+    used = f"; 1 after {record.life_hours / _YEAR:.4g} a of the same; most of it in an"
+    used = (
+        f"{used} hour in {rows['damage']}" if record.damage else ", as no row has any"
+    )
     alone = zip(RINGS, record.raceway_damage.T, strict=True)
     parts = [f"{ring} {' and '.join(f'{x:.4g}' for x in of)}" for ring, of in alone]
     found: list[Part] = [
         "",
         f"record of {shown_count(series.case.size, 'row')}, {hours:.6g} h"
-        f" ({hours / _YEAR:.4g} a) that count: damage {record.damage:.4g}; 1 after"
-        f" {record.life_hours / _YEAR:.4g} a of the same; most of it in an hour in"
-        f" {rows['damage']}",
+        f" ({hours / _YEAR:.4g} a) that count: damage {record.damage:.4g}{used}",
         f"damage of each raceway by itself: {', '.join(parts)}; the standard rates"
         " rolling elements with them",
         f"largest contact pressure {1e-6 * most[0]:.5g} MPa in {rows['peak_pressure']},"

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...cases.spectrum import relative_speed
 from ...cases.sweep_table import case_columns
 from ...decide import CaseModel
 from ...decide.predict import Oiled
@@ -18,7 +19,7 @@ from ...optimise.system import AbstractSystem
 from ...optimise.variable import with_numbers
 from ...rotor.rotor_design import RotorCases
 from ..bearing.life_ratings import life_conditions
-from ..bearing.read_scene import scene_of
+from ..bearing.read_scene import scene_of, with_speed_warnings
 from ..cases.case_keys import OPERATING, VariedKey
 from ..cases.read_cases import cases_of_columns, check_varied_key
 from ..optimise.noise_numbers import noise_design
@@ -123,7 +124,8 @@ class Setup(NamedTuple):
             with table.building():
                 self.model.design.check(cases)
         model = dataclasses.replace(self.model, varied=varied)
-        return Subject(self.scene, model, cases, dict(case_columns(cases)) | kept)
+        scene = with_speed_warnings(self.scene, relative_speed(cases))
+        return Subject(scene, model, cases, dict(case_columns(cases)) | kept)
 
     def _shafts(self, table, columns, count) -> Subject:
         if any(column.key == "hours" for column in columns):
