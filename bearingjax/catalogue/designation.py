@@ -91,8 +91,8 @@ def split_designation(
         names: By known names, compact, what they name: type, key, changes, remarks.
 
     Raises:
-        ValueError: If it has no known name, or letters whose meaning is not known, or
-            that contradict each other.
+        ValueError: If it has no known name, two readings as 62202RS, or letters whose
+            meaning is not known, or that contradict each other.
     """
     plain = text.translate(_PLAIN)
     # "ß" would become "SS", and other signs than these no separators.
@@ -110,7 +110,12 @@ def split_designation(
             raise ValueError(_unknown_message(text, plain, names))
         before.append(prefix)
         words = words[len(prefix[0]) :].lstrip("-")
-    kind = names[found[0][0]][0]
+    name, rest = found[0]
+    fewer = name[:-1], f"2{rest}"
+    if fewer in found and re.match(r"R|NS|Z(?!Z)", rest):
+        problem = f"may be {name} with {rest} or {fewer[0]} with {fewer[1]}; write"
+        raise ValueError(f"{text!r} {problem} {name}-{rest} or {'-'.join(fewer)}")
+    kind = names[name][0]
     if any(letters.types and kind not in letters.types for _, letters in before):
         raise ValueError(_unknown_message(text, plain, names))
     for name, rest in found:
@@ -129,12 +134,14 @@ def _matching_names(words: str, names: Mapping[str, Any]) -> list[tuple[str, str
     """Return the names with which a text begins, the longest first, and the rests.
 
     Separators may stand between letters and digits: 62/22 is not 6222, nor 7205 A-C a
-    7205 AC.
+    7205 AC; 25580-25520 of inch bearings is 25580/25520.
     """
     found, name = [], ""
     for place, sign in enumerate(words):
         if sign == "-":
-            if words[place - 1].isdigit() == words[place + 1].isdigit():
+            if re.match(r"\d{3}-\d{3}", words[max(place - 3, 0) :]):
+                name += "/"
+            elif words[place - 1].isdigit() == words[place + 1].isdigit():
                 break
             continue
         name += sign
@@ -239,7 +246,7 @@ def _similar_names(squeezed: str, names: Mapping[str, Any]) -> list[str]:
     cuts = [(squeezed[:k], squeezed[k:]) for k in range(len(squeezed) + 1)]
     swapped = {a + b[1] + b[0] + b[2:] for a, b in cuts if len(b) > 1}
     close = {a + b[1:] for a, b in cuts if b}
-    for sign in "ABCEJKNPQRUX0123456789":
+    for sign in "ABCEJKNPQRUX0123456789/":
         close |= {a + sign + b for a, b in cuts} | {a + sign + b[1:] for a, b in cuts}
     found = sorted((close - swapped) & set(names))
     digits = re.sub(r"\D", "", squeezed)

@@ -174,7 +174,8 @@ class CatalogueEntry:
         static_capacity: C0 as published [N].
         fatigue_load_limit: Pu [N].
         reference_speed: Thermal reference speed [rad/s].
-        limiting_speed: Limiting speed [rad/s].
+        limiting_speed: Limiting speed [rad/s]; with grease where the publisher prints
+            that, unless `sources` says with oil.
         mass: Mass [kg].
         other: Ratings in another catalogue for this internal geometry, or of the
             standard class for an improved one.
