@@ -1,5 +1,6 @@
 """Numbers from measurements, of closed forms: nothing heavy is compiled."""
 
+import sys
 from typing import Any
 
 import jax.numpy as jnp
@@ -7,8 +8,10 @@ import numpy as np
 import pytest
 
 import bearingjax as bj
+from bearingjax.decide.identify import _Problem
 from bearingjax.optimise import Variable
 
+MODULE = sys.modules["bearingjax.decide.identify"]  # the name is that of the function
 LOADS = np.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
 TRUE = np.array([2e-7, 2.0 / 3.0])
 ERROR = 5e-8
@@ -218,6 +221,49 @@ def test_strongly_bent_readings_are_told():
     sharp = bj.identify(bent, times, unknown, np.exp(-times), 1e-4)
     assert sharp.nonlinearity < 1e-3
     assert [one.kind for one in sharp.warnings] == ["close_fit"]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_readings_bent_to_one_side_alone_are_told(side):
+    """Of the tangent at 1, ten times the distance squared are missing on one side."""
+
+    def bent(values, sizes):
+        off = values[0] - 1.0
+        return sizes * (off + 10.0 * jnp.maximum(side * off, 0.0) ** 2)
+
+    unknown = [Variable("a", 0.0, 2.0, start=0.9)]
+    found = bj.identify(bent, np.ones(1), unknown, np.zeros(1), 0.05)
+    np.testing.assert_allclose(found.nonlinearity, 10.0 * 0.05, rtol=1e-2)
+
+
+def test_a_search_that_is_cut_off_says_so(monkeypatch):
+    whole, read = _Problem.fit, hertz(TRUE, LOADS)["approach"]
+    cut = lambda self, start=None, limit=2: whole(self, start, limit)  # noqa: E731
+    monkeypatch.setattr(_Problem, "fit", cut)
+    monkeypatch.setattr(MODULE, "STEP_LIMIT", 2)
+    found = bj.identify(hertz, LOADS, CONTACT, {"approach": read}, ERROR)
+    assert not found.converged and found.result == "step_limit"
+    assert found.message.startswith("step_limit after 2 evaluations, ")
+    monkeypatch.setattr(MODULE, "STEP_LIMIT", 3)
+    found = bj.identify(hertz, LOADS, CONTACT, {"approach": read}, ERROR)
+    assert found.result == "stalled"
+
+
+def test_errors_that_are_not_known_do_not_hang_on_the_unit(exact, noise):
+    """The first guess of them is a share of the readings: in other units all is the
+    same, so large or small the numbers are."""
+    read, usual = exact + noise[0], None
+    for size in (1.0, 1e-6, 1e6):
+
+        def scaled(values, loads, size=size):
+            return {"approach": size * hertz(values, loads)["approach"]}
+
+        found = bj.identify(scaled, LOADS, CONTACT, {"approach": size * read})
+        usual = found if usual is None else usual
+        np.testing.assert_allclose(found.estimate, usual.estimate, rtol=1e-9)
+        np.testing.assert_allclose(
+            found.standard_error, usual.standard_error, rtol=1e-6
+        )
 
 
 def test_a_step_to_where_a_model_fails_is_rejected():

@@ -1,5 +1,6 @@
 """Tolerances: samples, causes, misses and tightening, against closed forms."""
 
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import jax.numpy as jnp
@@ -297,6 +298,30 @@ def test_tighten_takes_the_one_that_pays(element, closed_form):
     out = tighten(*given, numbers(cost=2.0), asked, 1e-4, samples=8000)
     assert not out.converged and out.widths[0] == pytest.approx(0.2)
     assert out.message.startswith("no widths reach it: of the narrowest")
+
+
+def test_tighten_searches_with_the_slopes_of_its_margin(
+    element, closed_form, monkeypatch
+):
+    """By differences of the share with smooth requirements; the width over which they
+    are smoothed changes with the spread, which the slopes leave out."""
+    seen = []
+
+    def catch(method, trials, *_):
+        seen.append(trials)
+        return SimpleNamespace(unit=np.ones(1), converged=True, text="caught")
+
+    monkeypatch.setattr(tolerance_effects, "search_least", catch)
+    given = element, bj.Cases([np.zeros(6)])
+    asked = [Constraint(linear, upper=2.0)]
+    tighten(*given, numbers(cost=2.0), asked, 0.2, samples=8000)
+    (trials,) = seen
+    low, middle, high = (trials.attempt(np.array([x]), True) for x in (0.3, 0.5, 0.7))
+    slope = (high.margins - low.margins) / 0.4
+    np.testing.assert_allclose(middle.margin_slopes[:, 0], slope, rtol=0.08)
+    np.testing.assert_allclose(
+        middle.slope, (high.objective - low.objective) / 0.4, rtol=ROUNDING
+    )
 
 
 def test_tighten_refuses_what_is_none(element, closed_form):
