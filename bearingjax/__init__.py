@@ -42,9 +42,9 @@ package lists its names in the same way, see `help(bearingjax.rotor)`.
   `LifeConditions`.
 - Oil and friction: `Lubricant`, `films`, `friction_torque`.
 - Whether an answer holds: `Result`, `SolveError`, `warnings`.
-- Numbers from measurements: `identify`.
-- A choice of bearing: `select`.
-- What tolerances do: `tolerances`.
+- Identification from measurements: `identify`.
+- Selection of a bearing from the catalogue: `select`.
+- Tolerance analysis: `tolerances`.
 - Scene files: `run`, `read_scene`, `SceneError`.
 - The program: `keep_programs`, `__version__`.
 

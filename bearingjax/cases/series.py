@@ -1,4 +1,4 @@
-"""A record in time as cases: rows all of whose numbers are equal are one case."""
+"""A record in time as cases: rows with equal numbers are one case, and solved once."""
 
 from collections.abc import Callable
 from typing import Any
@@ -18,26 +18,26 @@ from .spectrum import relative_speed
 from .sweep import Sweep
 
 GAPS = "refuse", "leave_out"
-"""What a gap of a record may count as."""
+"""Treatments of gaps in a record."""
 
 LONG, _NAMED, _SAME = 10.0, 3, 1e-9
-"""Steps this much longer than the median are gaps; gaps that are named each; difference
-of extremes that are alike [1]."""
+"""Length of a step over the median step from which it is a gap [1]; largest number of
+gaps that are listed; relative difference below which extremes are equal [1]."""
 
 _EXTREMES = "static_safety", "peak_pressure", "largest_load"
 SERIES_OUTPUTS = ("damage", "raceway_damage", *_EXTREMES)
-"""Outputs of a sweep that `series_life` takes."""
+"""Outputs of a sweep that `series_life` needs."""
 
 
 class Series(Printable):
     """A record in time as cases.
 
     Attributes:
-        cases: Its different cases with their hours, shuffled: a sweep starts all from
-            its first ones.
-        case: Case of each row of the record (time,); -1: the row does not count.
-        hours: Time that each row counts (time,) [h].
-        gaps: What is missing from the record, in words.
+        cases: Distinct cases with their hours, in random order: a sweep starts its
+            solves from the first ones, which should be typical.
+        case: Number of the case of each row (time,); -1 where the row does not count.
+        hours: Time for which each row holds (time,) [h].
+        gaps: Gaps of the record, in words.
     """
 
     cases: Cases
@@ -47,15 +47,15 @@ class Series(Printable):
 
 
 class SeriesLife(Printable):
-    """Use of a bearing's life in a record.
+    """Fatigue damage of a bearing in a record.
 
     Attributes:
-        damage: Part of the life that is used [1].
-        raceway_damage: The same of every raceway by itself (row, raceway) [1].
+        damage: Damage of the record, the share of the rating life that it uses [1].
+        raceway_damage: Damage of each raceway by itself (row, raceway) [1].
         life_hours: Time until the damage is 1 if the record repeats [h].
-        row_damage: Part of `damage` that each row of the record uses (time,) [1].
-        rows: First row with the most damage in an hour, the least static safety, the
-            largest pressure and load of a rolling element, by output.
+        row_damage: Damage by each row of the record (time,) [1].
+        rows: Number of the first row with the largest damage in an hour, the smallest
+            static safety, the largest pressure and rolling-element load, by output.
     """
 
     damage: float = eqx.field(metadata=unit("1"))
@@ -72,21 +72,21 @@ def series_cases(
     gaps: str = "refuse",
     row_name: Callable[[int], str] = "row {}".format,
 ) -> Series:
-    """Cases of a record, each row of which holds until the next one.
+    """Return the distinct cases of a record, each row of which holds until the next.
 
-    The last row holds for the median step. Gaps are steps above `LONG` medians, and
-    rows with a number that is not finite.
+    The last row holds for the median step. Gaps are steps longer than ten median steps,
+    and rows with a number that is not finite.
 
     Args:
         time: Time of each row, ascending (time,) [s].
-        cases: Loads, speeds and the like of each row, without hours.
-        gaps: "refuse"; "leave_out": a row before a long step counts a median step, rows
-            that are not finite nothing.
-        row_name: What errors call a row, by its number from 0.
+        cases: Loads, speeds and other conditions of each row, without hours.
+        gaps: "refuse" raises an error for gaps; with "leave_out" a row before a long
+            step holds for a median step, and rows that are not finite do not count.
+        row_name: Function from the number of a row, from 0, to its name in errors.
 
     Raises:
-        ValueError: For fewer than two rows, times that do not ascend or are not of each
-            row, cases with hours, an unknown word, and gaps if they are refused.
+        ValueError: For fewer than two rows, times that do not ascend or are not one for
+            each row, cases with hours, an unknown `gaps`, and gaps if they are refused.
     """
     allowed = "one of " + ", ".join(map(repr, GAPS))
     must_be("series_cases", "gaps", gaps, gaps in GAPS, allowed)
@@ -124,7 +124,7 @@ def series_cases(
 
 
 def _columns(cases: Cases) -> dict[str, np.ndarray]:
-    """Numbers of each row by name; the oil of rows at rest is that of one."""
+    """Return the numbers of all rows by name; rows at rest share one viscosity."""
     found = {}
     for path, leaf in jax.tree_util.tree_leaves_with_path(cases):
         name = jax.tree_util.keystr(path).strip(".")
@@ -138,7 +138,7 @@ def _columns(cases: Cases) -> dict[str, np.ndarray]:
 
 
 def _hold_rows(time, columns, row_name):
-    """Hours that each row counts, and the gaps in words."""
+    """Return the time for which each row holds [h], and the gaps in words."""
     bad, found = np.zeros(time.shape, bool), []
     for name, values in {"time": time, **columns}.items():
         lost = np.flatnonzero(~np.isfinite(values) & ~bad)
@@ -169,15 +169,17 @@ def _hold_rows(time, columns, row_name):
 
 
 def series_life(series: Series, solved: Sweep) -> SeriesLife:
-    """Use of a life in a record in time (Palmgren, Miner).
+    """Return the fatigue damage of a record, by linear accumulation.
 
     Args:
         series: The record, from `series_cases`.
         solved: `series.cases`, swept with `SERIES_OUTPUTS` among the outputs.
 
     Returns:
-        NaN where a case was not solved; no damage without speeds. ISO/TS 16281 rates
-        raceways, and rolling elements with them.
+        SeriesLife, NaN where a case was not solved; rows at rest do no damage.
+
+    Source: Palmgren (1924); Miner (1945). Lives by ISO/TS 16281, which rates raceways,
+        the rolling elements included.
     """
     hours = np.asarray(series.cases.hours)
     turns = relative_speed(series.cases) * 1800.0 / np.pi
@@ -190,7 +192,7 @@ def series_life(series: Series, solved: Sweep) -> SeriesLife:
     extremes = {name: getattr(solved, name) for name in _EXTREMES}
     extremes |= {"damage": rate, "static_safety": -solved.static_safety}
     for name, values in extremes.items():
-        most = np.max(values)  # residuals of the solver choose no row
+        most = np.max(values)  # solver residuals must not choose the row
         alike = values[case] >= most - _SAME * np.abs(most)
         rows[name] = int(counted[np.argmax(alike)])
     life = hours.sum() / damage if damage else np.inf

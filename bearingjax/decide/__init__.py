@@ -1,26 +1,26 @@
-"""Decisions: numbers from measurements, the effect of tolerances, a choice of bearing.
+"""Decisions under uncertainty: identification, tolerances, selection of bearings.
 
-`identify(model, cases, unknowns, readings, errors)` finds numbers of a design, or of
-any differentiable function, from measurements, with their standard errors, what the
-readings cannot tell, and which further reading would tell most.
+`identify(model, cases, unknowns, readings, errors)` estimates numbers of a design, or
+of any differentiable function, from measurements, with their standard errors, the
+combinations that the readings leave open, and the most useful further reading.
 
 Names
 -----
 
-- Numbers from measurements: `identify`, `Identified`, `Candidate`.
+- Identification from measurements: `identify`, `Identified`, `Candidate`.
 - Results as a function of numbers of the design: `CaseModel`.
 - A bearing on its noise rig: `NoiseDesign`, `NoiseNumbers`, `NoiseLevel`.
-- A choice of bearing: `select`, `Requirements`, `Selection`; of several positions of a
-  system of shafts: `select_positions`, `PositionSelection`.
-- What tolerances do: `tolerances`, `tighten`, `Scatter`, `within`,
+- Selection of a bearing: `select`, `Requirements`, `Selection`; for several positions
+  of a system of shafts: `select_positions`, `PositionSelection`.
+- Tolerance analysis: `tolerances`, `tighten`, `Scatter`, `truncated_normal`,
   `class_scatters`.
-- Their results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
+- Its results: `Tolerances`, `Spread`, `Misses`, `Tightening`.
 """
 
 from .identify import Candidate, Identified, identify
 from .noise_design import NoiseDesign, NoiseLevel, NoiseNumbers
 from .predict import CaseModel
-from .scatter import Scatter, class_scatters, within
+from .scatter import Scatter, class_scatters, truncated_normal
 from .select import Requirements, Selection, select
 from .select_positions import PositionSelection, select_positions
 from .tolerance_effects import (
@@ -35,6 +35,6 @@ from .tolerance_effects import (
 __all__ = [
     "identify", "Identified", "Candidate", "CaseModel", "NoiseDesign", "NoiseNumbers",
     "NoiseLevel", "select", "Requirements", "Selection", "select_positions",
-    "PositionSelection", "tolerances", "tighten", "Scatter", "within",
+    "PositionSelection", "tolerances", "tighten", "Scatter", "truncated_normal",
     "class_scatters", "Tolerances", "Spread", "Misses", "Tightening",
 ]  # fmt: skip

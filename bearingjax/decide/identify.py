@@ -1,4 +1,4 @@
-"""Numbers of a bearing from measurements, with their standard errors."""
+"""Estimates of numbers of a bearing from measurements, with their standard errors."""
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,36 +23,35 @@ from .least_squares import CLOSE, Fit, least_squares
 from .predict import CaseModel
 
 STEP_LIMIT = 100
-"""Most evaluations of a search."""
+"""Largest number of evaluations in one search."""
 
 FAINT = 0.03
-"""Pull of the start over that of a reading, in ranges of the unknowns: it decides what
-the readings leave open, and moves nothing else."""
+"""Weight of the start values as faint readings, in ranges of the unknowns [1]: they fix
+what the readings leave open, and hardly move any other estimate."""
 
 UNTOLD = 0.5
-"""Standard error, over the range between the bounds, from which the readings are said
-not to tell a combination of unknowns [1]."""
+"""Standard error, over the range between the bounds, from which a combination of
+unknowns counts as not determined by the readings [1]."""
 
 CURVED = 0.2
-"""Departure from the tangent at one standard error, over that error, from which
-intervals are said to be approximate [1]."""
+"""Departure from linearity at one standard error, over that error, from which a warning
+says that intervals are approximate [1]."""
 
 DOUBTFUL = 0.01
-"""Probability of residuals so large, or so small, from which the fit is doubted [1]."""
-
+"""Tail probability of chi-square, on either side, below which a warning comes [1]."""
 
 _REFITS = 3
-"""Searches that tell the size of unknown errors."""
+"""Searches after the first one that estimate the size of unknown errors."""
 
 
 class Candidate(NamedTuple):
-    """A further reading.
+    """A further reading that could be taken.
 
     Attributes:
-        name: What is read.
-        case: In which case.
-        drop: Share of the variance of what is wanted that it would take away [1]; of
-            several wanted numbers the mean.
+        name: Name of the reading.
+        case: Number of the case in which it is taken, from 0.
+        drop: Share of the variance of the wanted number that it would take away [1];
+            the mean share over several wanted numbers.
     """
 
     name: str
@@ -62,38 +61,38 @@ class Candidate(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Identified(Shown):
-    """Numbers from measurements.
+    """Estimates from measurements, with their uncertainty; returned by `identify`.
 
     Attributes:
         names: Names of the unknowns.
-        units: Their SI units; empty: none, or not known.
-        estimate: Their values (unknown,) [SI].
-        standard_error: Standard errors (unknown,) [SI]; infinite where the readings
-            leave a number open.
-        interval: 95 % intervals (unknown, 2) [SI]: normal if the errors are known, else
-            of Student.
-        correlation: Correlations of the estimates (unknown, unknown) [1].
-        identifiable: Whether the readings tell all unknowns.
-        untold: Combinations that they do not tell, in words. There the estimate is the
-            nearest to the start, in ranges between the bounds.
-        singular_values: Singular values of the Jacobian of the readings over their
-            errors by the unknowns over their ranges, falling (unknown,) [1].
-        residual: Measured less predicted, by name, NaN where not measured [SI].
+        units: SI units of the unknowns; empty where there is none, or it is not known.
+        estimate: Estimated values (unknown,) [SI].
+        standard_error: Standard errors of the estimates (unknown,) [SI]; infinite where
+            the readings do not determine an unknown.
+        interval: 95 % confidence intervals (unknown, 2) [SI], by the normal
+            distribution if the errors are known, else by Student's t distribution.
+        correlation: Correlation matrix of the estimates (unknown, unknown) [1].
+        identifiable: Whether the readings determine all unknowns.
+        untold: Combinations that the readings do not determine, in words; there the
+            estimate is the one nearest to the start, in ranges between the bounds.
+        singular_values: Singular values of the Jacobian of readings over their errors
+            by unknowns over their ranges, in descending order (unknown,) [1].
+        residual: Measured minus predicted values by name, NaN where not measured [SI].
         error: Standard deviations of the readings, by name [SI].
-        prediction: Numbers at the estimate by name, of all cases [SI].
-        prediction_error: Their standard errors, without those of a reading [SI].
-        chi_square: Sum of squares of residuals over errors [1].
-        degrees_of_freedom: Readings less unknowns.
-        probability: Probability of residuals as large by chance [1]; NaN where the
-            errors are not known, or no degree of freedom is left.
-        error_scale: Factor on the given errors, told by the residuals if they are not
-            known [1].
-        nonlinearity: Largest departure of the readings from the tangent at one standard
+        prediction: Predicted values in all cases, by name (case,) [SI].
+        prediction_error: Their standard errors, without those of a new reading [SI].
+        chi_square: Sum of the squares of residuals over errors [1].
+        degrees_of_freedom: Number of readings minus number of unknowns.
+        probability: Probability of a chi-square at least as large by chance [1]; NaN
+            where the errors are not known or no degree of freedom is left.
+        error_scale: Factor on the given errors, estimated from the residuals if the
+            errors are not known [1].
+        nonlinearity: Largest departure of the readings from linearity at one standard
             error, over that error [1].
-        candidates: Further readings, most useful first.
-        warnings: What to doubt.
+        candidates: Further readings, the most useful first.
+        warnings: Warnings about fit, bounds, linearisation, and the solved cases.
         result: "converged", "step_limit" or "stalled".
-        message: The same in words.
+        message: How the search ended, in words.
     """
 
     names: tuple[str, ...]
@@ -125,13 +124,14 @@ class Identified(Shown):
         return self.result == "converged"
 
     def shown_facts(self) -> Iterator[Any]:
-        """Yield the unknowns with their standard errors, and what to think of them."""
+        """Yield estimates with standard errors, open combinations, warnings and fit."""
         rows = self.names, self.estimate, self.standard_error, self.units
         for name, value, error, unit in zip(*rows, strict=True):
             text = f"{shown_number(value, unit)} ± {shown_change(error, unit)}"
             yield 1, name, text, "estimate, standard error"
         for text in (*self.untold, *map(str, self.warnings)):
-            yield 1, "not told" if text in self.untold else "warning", text, ""
+            name = "not determined" if text in self.untold else "warning"
+            yield 1, name, text, ""
         yield from facts_of(
             self, ("identifiable", "chi_square", "degrees_of_freedom", "message")
         )
@@ -148,40 +148,44 @@ def identify(
     candidates: Mapping[str, float] | None = None,
     known_errors: bool = True,
 ) -> Identified:
-    """Find the numbers of a design that measurements tell, and how well.
+    """Estimate unknown numbers of a design from measurements, with standard errors.
 
-    Least squares of the residuals over their errors, by Levenberg and Marquardt's
-    method with exact Jacobians (implicit function theorem, forward mode), within the
-    bounds. A step to numbers at which a measured case does not solve is rejected.
-    Standard errors, correlations and bands are those of the linearised problem;
-    `nonlinearity` says how far they go.
+    Minimises the sum of squares of residuals over errors within the bounds, by the
+    Levenberg-Marquardt method with exact Jacobians (implicit function theorem, forward
+    mode). A step to where a measured case does not solve is rejected. Standard errors,
+    correlations and prediction bands are those of the problem linearised at the
+    estimate; `nonlinearity` measures how far that holds.
 
     Args:
-        model: The design, an element or on its seats; a `CaseModel` of it, which has
-            support and life; or any differentiable function (values, cases) ->
-            readings, an array, or arrays by name.
+        model: The design (`BearingElement`, `Installed` or a system); a `CaseModel` of
+            it, with support and life; or any differentiable function (values, cases) ->
+            readings, which returns an array, or arrays by name.
         cases: Operating cases; for a function whatever it takes. Cases without readings
-            only predict.
-        unknowns: The numbers, between bounds; of a function any name is the path.
-        readings: Measured numbers by name (case,) [SI], named as in `CaseModel`, NaN
-            where there is none; for a function that returns an array, one. Under the
-            name of an unknown: what is known of it before (a prior).
-        errors: Standard deviations of the readings by name, one or (case,) [SI];
-            `None`: alike, and not known; there must then be readings of one name.
-        wanted: Names of results, or of unknowns, that are to be known better. Results
-            are predicted in all cases.
+            are only predicted.
+        unknowns: The unknown numbers, with bounds, in the order of `values`; for a
+            function the path of a `Variable` is any name.
+        readings: Measured values by name (case,) [SI], named as in `CaseModel`, NaN
+            where not measured; one array for a function that returns an array. A value
+            under the name of an unknown is prior knowledge of it, a prior.
+        errors: Standard deviations of the readings by name, one or (case,) [SI].
+            `None`: equal and unknown, which takes readings of a single name.
+        wanted: Names of results or unknowns whose variance `candidates` are to lower;
+            by default all unknowns. Results are predicted in all cases.
         candidates: Readings that could be taken in any of the cases, with their
-            standard deviation; `None`: those that are there, once more.
-        known_errors: Whether `errors` are known; if not, up to a common factor, which
-            the residuals tell.
+            standard deviation [SI]; `None`: those of `readings`, repeated.
+        known_errors: Whether `errors` hold as they are; if not, up to a common factor,
+            which is estimated from the residuals.
 
     Returns:
         Estimates; check `result`, `identifiable` and `warnings`.
 
     Raises:
-        TypeError, ValueError: For wrong unknowns, names, readings or errors; too few
-            readings; readings of what no unknown moves.
+        TypeError, ValueError: For wrong unknowns, names, readings or errors, too few
+            readings, and readings that depend on no unknown.
         SolveError: If a measured case does not solve at the start.
+
+    Source: Levenberg (1944); Marquardt (1963); Seber and Wild, Nonlinear Regression
+        (1989), ch. 2.
     """
     wanted = (wanted,) if isinstance(wanted, str) else tuple(wanted)
     more = dict.fromkeys([*wanted, *(candidates or ())])
@@ -199,7 +203,7 @@ def identify(
         )
     fit, scale = given.fit(), 1.0
     _check(given, fit)
-    for _ in range(0 if known else _REFITS):  # the faint pull must stay faint
+    for _ in range(0 if known else _REFITS):  # the start values must stay faint
         missed = (given.reading - fit.numbers) / given.error
         factor = float(np.sqrt(np.nansum(missed**2) / left)) or 1.0
         given = given._replace(error=factor * given.error)
@@ -211,9 +215,9 @@ def identify(
     covariance = _covariance(rows)
     size = np.sqrt(np.diagonal(covariance))
     estimate = given.lower + given.width * fit.at
-    standard = given.width * _spread(covariance, np.eye(size.size))
+    standard = given.width * _standard_errors(covariance, np.eye(size.size))
     wide = stats.norm.ppf(0.975) if known else stats.t.ppf(0.975, left)
-    untold, bent = _untold(given, rows), _bend(given, fit, rows)
+    untold, bent = _open_combinations(given, rows), _nonlinearity(given, fit, rows)
     result = "converged" if fit.left <= 10 * CLOSE else "stalled"
     if result == "stalled" and fit.steps >= STEP_LIMIT:
         result = "step_limit"
@@ -233,13 +237,13 @@ def identify(
         residual=given.split(given.reading - fit.numbers, True),
         error=given.split(np.where(given.used, given.error, np.nan), True),
         prediction=given.split(fit.numbers),
-        prediction_error=given.split(_spread(covariance, fit.slopes)),
+        prediction_error=given.split(_standard_errors(covariance, fit.slopes)),
         chi_square=chi_square,
         degrees_of_freedom=left,
         probability=chance,
         error_scale=scale,
         nonlinearity=bent,
-        candidates=_rank(given, fit, covariance, wanted, candidates, scale),
+        candidates=_rank_readings(given, fit, covariance, wanted, candidates, scale),
         warnings=_warnings(given, fit, chance, bent),
         result=result,
         message=words,
@@ -263,7 +267,7 @@ def _fit(model, cases, names, own, box, error, reading, start, limit):
 
 
 class _ByName(eqx.Module):
-    """A function whose array has a name."""
+    """A function whose array, if it returns one, gets the name "reading"."""
 
     function: Callable
 
@@ -273,7 +277,7 @@ class _ByName(eqx.Module):
 
 
 class _Problem(NamedTuple):
-    """A call of `identify`, checked; the numbers of all names one after the other."""
+    """A checked call of `identify`; arrays hold the numbers name by name."""
 
     model: Any
     cases: Any
@@ -303,14 +307,14 @@ class _Problem(NamedTuple):
         return tuple(unit_of(model.design, x.path[0]) if known else "" for x in of)
 
     def split(self, flat: Any, measured: bool = False) -> dict[str, np.ndarray]:
-        """Numbers by name; only of names with readings, if `measured`."""
+        """Return numbers by name; with `measured` only of names with readings."""
         ends = np.cumsum(self.sizes)[:-1]
         parts = np.split(flat, ends), np.split(self.used, ends)
         found = zip(self.names, *parts, strict=True)
         return {n: part for n, part, used in found if used.any() or not measured}
 
     def fit(self, start: Any = None, limit: int = STEP_LIMIT) -> Fit:
-        """Search from a start in the unit box; after one evaluation it is there."""
+        """Search from a start in the unit box; a limit of 1 evaluates it alone."""
         start = self.start if start is None else start
         box = jnp.asarray(self.lower), jnp.asarray(self.width)
         data = map(jnp.asarray, (self.error, self.reading, start, limit))
@@ -355,7 +359,8 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
     else:
         all_of_class("identify", "unknowns", unknowns, Variable, "Variables")
         if not own or len(set(own)) < len(own):
-            raise ValueError(f"identify: `unknowns` are {own}; they must be one each.")
+            problem = f"`unknowns` are {own}; their names must differ, one at least"
+            raise ValueError(f"identify: {problem}.")
         starts = ((v.start, 0.5 * (v.lower + v.upper)) for v in unknowns)
         start = [middle if first is None else first for first, middle in starts]
         model, cases = _ByName(model), jax.tree.map(jnp.asarray, cases)
@@ -388,7 +393,7 @@ def _read_call(model, cases, unknowns, readings, errors, more) -> _Problem:
 
 
 def _numbers(what: str, name: str, values: Any, size: int) -> np.ndarray:
-    """So many numbers, NaN for `None`."""
+    """Return an array of `size` numbers, NaN for `None`."""
     try:
         found = np.asarray(np.nan if values is None else values, float)
         if not np.isinf(found).any():
@@ -422,21 +427,21 @@ def _check(given: _Problem, fit: Fit) -> None:
 
 
 def _covariance(rows: Any) -> np.ndarray:
-    """Covariance of the unknowns in the unit box, of readings and the faint pull."""
+    """Return the covariance in the unit box, by readings and faint start values."""
     pulled = np.concatenate([rows, FAINT * np.eye(rows.shape[1])])
     _, size, axes = np.linalg.svd(pulled, full_matrices=False)
     return (axes.T / size**2) @ axes
 
 
-def _spread(covariance: np.ndarray, slopes: Any) -> np.ndarray:
-    """Standard errors of numbers; infinite of those that the faint pull holds."""
+def _standard_errors(covariance: np.ndarray, slopes: Any) -> np.ndarray:
+    """Return standard errors of numbers, infinite where the start values hold them."""
     gain = slopes @ covariance
     variance, pulled = (gain * slopes).sum(axis=1), FAINT**2 * (gain**2).sum(axis=1)
     return np.where(pulled > 0.2 * variance, np.inf, np.sqrt(np.maximum(variance, 0.0)))
 
 
-def _untold(given: _Problem, rows: Any) -> tuple[str, ...]:
-    """Combinations of unknowns that the readings do not tell, in words."""
+def _open_combinations(given: _Problem, rows: Any) -> tuple[str, ...]:
+    """Return in words the combinations that the readings do not determine."""
     _, size, axes = np.linalg.svd(rows)
     size = np.pad(size, (0, len(axes) - size.size))
     texts = []
@@ -459,8 +464,8 @@ def _untold(given: _Problem, rows: Any) -> tuple[str, ...]:
     return tuple(texts)
 
 
-def _bend(given: _Problem, fit: Fit, rows: Any) -> float:
-    """Departure from the tangent at one standard error along each axis [1]."""
+def _nonlinearity(given: _Problem, fit: Fit, rows: Any) -> float:
+    """Return the largest departure from linearity at one standard error [1]."""
     pulled = np.concatenate([rows, FAINT * np.eye(fit.at.size)])
     _, size, axes = np.linalg.svd(pulled, full_matrices=False)
     worst = 0.0
@@ -472,8 +477,9 @@ def _bend(given: _Problem, fit: Fit, rows: Any) -> float:
     return worst
 
 
-def _rank(given, fit, covariance, wanted, candidates, scale) -> tuple[Candidate, ...]:
-    """Further readings by what they would tell of the wanted numbers."""
+def _rank_readings(given, fit, covariance, wanted, candidates, scale):
+    """Return candidates in descending order of the variance that they take away, by
+    the Sherman-Morrison update (c-optimal design: Atkinson and Donev, 1992)."""
     slopes = given.split(fit.slopes)
     slopes |= {
         one.name: row[None]

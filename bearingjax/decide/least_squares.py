@@ -1,4 +1,4 @@
-"""Bounded nonlinear least squares: Levenberg and Marquardt's method of Optimistix."""
+"""Bounded nonlinear least squares by the Levenberg-Marquardt method of Optimistix."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -12,21 +12,21 @@ from jaxtyping import Array, Float, Int
 from ..numerics.linear import solve_symmetric
 
 DAMPING = 1e-3
-"""Share of the diagonal of the normal equations that the first step adds to it."""
+"""Share of the diagonal of the normal equations that the first step adds to it [1]."""
 
 CLOSE = 1e-4
-"""Step that is left at the end, in standard errors of the readings [1]."""
+"""Remaining step at which the search ends, in standard errors of the readings [1]."""
 
 _SCATTER = 100.0
-"""Most that residuals which exceed their errors raise the step that may be left [1]."""
+"""Largest factor by which residuals above their errors relax that limit [1]."""
 
 _SMALLEST = 1e-12
-"""Share of the first trust at which the search gives up [1]."""
+"""Trust-region size over the first one at which the search gives up [1]."""
 
 
 class Fit(NamedTuple):
-    """End of a search, in the unit box: other numbers of the function and their slopes,
-    step that is left in standard errors of the readings [1], number of evaluations."""
+    """End of a search: unknowns in the unit box, numbers of the function, their slopes,
+    remaining step in standard errors of the readings [1], number of evaluations."""
 
     at: Float[Array, " unknown"]
     numbers: Float[Array, " number"]
@@ -50,7 +50,7 @@ class _Descent(optx.AbstractDescent):
 
 
 def _bounded_step(state, damping):
-    """Unknowns at a bound, beyond which the residuals fall, stay there."""
+    """Return the damped step; unknowns held by a bound from descending stay there."""
     at, gradient, matrix = state
     held = ((at <= 0.0) & (gradient > 0.0)) | ((at >= 1.0) & (gradient < 0.0))
     free = jnp.where(held, 0.0, 1.0)
@@ -59,14 +59,14 @@ def _bounded_step(state, damping):
     return jnp.clip(at - step, 0.0, 1.0) - at
 
 
-def _step_left(state, residual):
+def _remaining_step(state, residual):
     step = _bounded_step(state, 0.0)
     size = jnp.sqrt(jnp.maximum(step @ state[2] @ step, 0.0))
     return size / jnp.clip(jnp.sqrt(jnp.mean(residual**2)), 1.0, _SCATTER)
 
 
 class _Bounded(optx.AbstractGaussNewton):
-    """Levenberg and Marquardt's method in the unit box; `args` is the step limit."""
+    """The Levenberg-Marquardt method in the unit box; `args` is the step limit."""
 
     rtol: float = 0.0
     atol: float = 0.0
@@ -76,7 +76,7 @@ class _Bounded(optx.AbstractGaussNewton):
     verbose: Callable = eqx.field(static=True, default=lambda **_: None)
 
     def terminate(self, fn, y, args, options, state, tags):
-        close = _step_left(state.descent_state, state.f_info.residual) <= CLOSE
+        close = _remaining_step(state.descent_state, state.f_info.residual) <= CLOSE
         stuck = state.search_state.step_size < _SMALLEST
         ended = close | stuck | (state.num_steps >= args)
         return ended & ~state.first_step, optx.RESULTS.successful
@@ -85,19 +85,21 @@ class _Bounded(optx.AbstractGaussNewton):
 def least_squares(
     function: Callable[[Any], tuple[Any, Any]], start: Any, limit: Any
 ) -> Fit:
-    """Least sum of squares in the unit box; traced, and mapped by `jax.vmap`.
+    """Minimise a sum of squares in the unit box; can be traced, and mapped by `vmap`.
 
     The Jacobian is exact, in forward mode. A step to where a residual is not finite is
-    rejected, and a shorter one tried.
+    rejected, and a shorter one is tried.
 
     Args:
         function: Unknowns (unknown,) -> residuals (row,) and other numbers (number,).
         start: First values, in the unit box (unknown,).
-        limit: Most evaluations; 1: the function and its slopes at `start`.
+        limit: Largest number of evaluations; 1: only evaluate at `start`.
+
+    Source: Levenberg, Q. Appl. Math. 2 (1944) 164; Marquardt, J. SIAM 11 (1963) 431.
     """
 
     @jax.custom_jvp
-    def evaluate(at):  # linearised by Optimistix: the slopes are made once
+    def evaluate(at):  # Optimistix linearises it: the slopes are computed once
         found = jax.jacfwd(lambda at: (function(at),) * 2, has_aux=True)(at)
         return found[::-1]
 
@@ -115,5 +117,5 @@ def least_squares(
         residuals, _Bounded(), start, limit, has_aux=True, max_steps=None, throw=False
     )
     state, (numbers, slopes) = found.state, found.state.aux
-    left = _step_left(state.descent_state, state.f_info.residual)
+    left = _remaining_step(state.descent_state, state.f_info.residual)
     return Fit(found.value, numbers, slopes, left, state.num_steps)

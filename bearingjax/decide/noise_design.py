@@ -1,4 +1,4 @@
-"""A bearing on its noise rig whose numbers are varied: levels of lines and of bands."""
+"""Levels of lines and bands of a bearing on its noise rig, as functions of numbers."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -29,19 +29,19 @@ from ..statics.installed import Installed
 TOTAL = "total_level"
 
 UNLIKE = 0.1
-"""Load of a rolling element over the largest one below which levels are doubted [1]."""
+"""Load of a rolling element over the largest one below which a warning is given [1]."""
 
 
 class NoiseNumbers(eqx.Module):
-    """Levels of a bearing on its rig in one case, of root mean squares.
+    """Levels of the acceleration of a bearing on its rig in one case, by its RMS.
 
     Attributes:
         line: Level of each line (line,) [dB].
         band: Level of each band (band,) [dB].
         total: Level of all lines together [dB].
         frequency: Frequency of each line (line,) [Hz].
-        solution: Load solve of the bearing.
-        result: `Result` code of both equilibria.
+        solution: Solution of the bearing under its load.
+        result: `Result` code of the bearing and of the rig, the larger of the two.
     """
 
     line: Float[Array, " line"] = eqx.field(metadata=unit("dB"))
@@ -53,42 +53,42 @@ class NoiseNumbers(eqx.Module):
 
 
 _Line = tuple[int, int, int]
-"""A line by the multiples of the speeds of the rolling elements' orbit, of the ring
-that turns, and of the rolling elements about their own axes, whose sum it is."""
+"""A line as integer multiples of the orbital speed, of the speed of the ring that turns
+and of the speed of the rolling elements about their own axes; it is their sum."""
 
 
 class NoiseDesign(AbstractSystem):
     """A bearing on its noise rig, for `bearingjax.identify` and `decide.tolerances`.
 
-    Levels are those of first order: every wave acts alone, on contacts with the
-    stiffness of their mean load, through the receptance of the rig with its rolling
-    elements where they stand at time zero. Differences of the rolling elements, their
-    passing of a radial load, and sums and differences of lines are in the vibration in
-    time (`noise.vibration`) alone. Levels differ from it by 0.03 dB under an axial load
-    and small waves (near modes of rolling elements that orbit at 190 Hz lines by 2 dB);
-    under a radial one too, while every rolling element carries a tenth of the largest
-    load, lines by 0.3 dB and totals by 1 dB; below that `warnings` tell it. Beside
-    waves as large as the contacts' approach (1 µm) the loudest bands are off by 0.5 dB,
-    others by 4 dB, and quiet ones, to which such waves add, by 20 dB.
+    Levels are of first order: each wave acts alone, on contacts with the stiffness of
+    their mean load, through the receptance of the rig with its rolling elements at
+    their places of time zero. Only the vibration in time (`noise.vibration`) has the
+    effects of unequal rolling elements, of their passage through a radial load, and of
+    sums and differences of lines. Levels differ from it by 0.03 dB under an axial load
+    with small waves (by 2 dB for lines near modes, at an orbital frequency of 190 Hz);
+    under a radial load by 0.3 dB for lines and 1 dB for totals, as long as each rolling
+    element carries a tenth of the largest load; below that `warnings` say so. With
+    waves as large as the approach of the contacts (1 µm) the loudest bands are off by
+    0.5 dB, others by 4 dB, and quiet ones, to which such waves add, by 20 dB.
 
-    Any number may be an unknown or scatter: "installed.drawing.bearing.contact_angle",
+    Any number may be unknown or scatter: "installed.drawing.bearing.contact_angle",
     "rig.errors.outer.outwards.0.amplitude.1", "rig.retardation". Load and speeds are
     those of each case.
 
     Attributes:
-        installed: The bearing, on its seats or not.
-        rig: The rig and the form errors, waves alone; its bearing, load and speed are
-            replaced by those of `installed` and of the case.
+        installed: The bearing, on its seats or as drawn.
+        rig: The rig and the form errors, which must be waves; its bearing, load and
+            speed are replaced by those of `installed` and of the case.
         bands: Bands of the levels, "octave" or "third_octave".
-        direction: Unit vector of the measured acceleration (3,) [1].
+        direction: Unit vector along which the acceleration is measured (3,) [1].
         reference: Acceleration of 0 dB [m/s²].
-        turning: The ring that turns, "inner" or "outer"; the other one stands still.
+        turning: Ring that turns, "inner" or "outer"; the other ring stands still.
 
     Traced: all numbers. Static: bands, turning.
 
     Raises:
         TypeError: If a part is of another class.
-        ValueError: For a set, and form errors that are no waves, or without any.
+        ValueError: For a bearing of several rows, and form errors other than waves.
     """
 
     installed: Installed
@@ -134,7 +134,7 @@ class NoiseDesign(AbstractSystem):
         must_be("NoiseDesign", "cases", "with displacements", not moved, "loads alone")
 
     def warnings(self, cases: Cases, solved: Any = None) -> list[Warning]:
-        """Warn of rolling elements that carry far less than others.
+        """Return a warning if some rolling elements carry far less than others.
 
         Args:
             cases: Operating cases.
@@ -146,7 +146,7 @@ class NoiseDesign(AbstractSystem):
             rig, speed = with_fields(self.rig, load=case.load), case_speed(case)
             element = self.installed.element_at(speed, throw=False)
             load = rig.solve(element, speed).roller_load
-            if (load > 0.0).any(axis=0).all():  # else it fails
+            if (load > 0.0).any(axis=0).all():  # otherwise the case fails
                 shares[k] = (load.min(axis=0) / load.max(axis=0)).min()
         if not (unlike := shares < UNLIKE).any():
             return []
@@ -158,8 +158,8 @@ class NoiseDesign(AbstractSystem):
         return [in_cases(found, int(unlike.sum()), cases.count, worst)]
 
     def _waves(self) -> Iterator[tuple[str, int, Harmonics, int, list[_Line]]]:
-        """Yield part, direction and shape of all waves; for rolling elements each part
-        of their forces by its multiple of the orbit; and the line of each order."""
+        """Yield of each wave its part, direction and shape, the multiple of the orbital
+        speed (of rolling elements; else 0), and the line of each order."""
         z, errors = self.installed.drawing.bearing.n_places, self.rig.errors_of_rows[0]
         for ring in RINGS:
             own, turns = getattr(errors, ring), ring == self.turning
@@ -175,13 +175,13 @@ class NoiseDesign(AbstractSystem):
 
     @property
     def _lines(self) -> tuple[_Line, ...]:
-        """Lines of the spectrum, but for what stands still: long waves of a ring at
-        rest."""
+        """Lines of the spectrum, without long waves of a ring at rest, which stand
+        still."""
         found = (one for *_, lines in self._waves() for one in lines if any(one))
         return tuple(dict.fromkeys(found))
 
     def _name(self, line: _Line) -> str:
-        """Name of a line, as in `noise.name_lines` with words for the signs."""
+        """Return the name of a line as of `noise.name_lines`, with signs as words."""
         orbit, ring, own = line
         passages = orbit // self.installed.drawing.bearing.n_places
         turning, still = ("BPFI", "BPFO")[:: 1 if self.turning == "inner" else -1]
@@ -200,8 +200,8 @@ class NoiseDesign(AbstractSystem):
         return text
 
     def readings(self) -> dict[str, Reading]:
-        """Levels that can be measured: of lines by their names, as "line_2_BPFO" or
-        "line_BPFI_plus_shaft", of bands by their centres, as "band_1000", and the
+        """Return the levels that can be measured: of lines by name, as "line_2_BPFO" or
+        "line_BPFI_plus_shaft", of bands by centre frequency, as "band_1000", and
         "total_level"."""
         found = {
             self._name(one): Reading("line", k, "dB")
@@ -224,7 +224,7 @@ class NoiseDesign(AbstractSystem):
         lower, upper = (jnp.asarray(e)[:, None] for e in BANDS[self.bands]()[2:])
         inside = ((place[None] >= lower) & (place[None] < upper)).astype(square.dtype)
         powers = square, inside @ square, jnp.sum(square)
-        # The level of a square counts twice.
+        # The level of a square is twice that of the amplitude.
         line, band, total = (0.5 * level(p / self.reference**2, 1.0) for p in powers)
         result = jnp.maximum(solution.result, moved.result)
         return NoiseNumbers(line, band, total, place, solution, result)
@@ -232,7 +232,7 @@ class NoiseDesign(AbstractSystem):
     def _patterns(
         self, model: NoiseModel
     ) -> tuple[Float[Array, " line"], Complex[Array, "line element 2 3"]]:
-        """Frequencies of the lines, signed, and the complex deviations behind them."""
+        """Return signed frequencies of the lines [Hz], and complex deviations [m]."""
         system = model.still_system()
         outer, inner, orbit, own = system.speeds
         (surfaces,) = bridged_surfaces(model, system.surfaces)
@@ -247,7 +247,7 @@ class NoiseDesign(AbstractSystem):
             order = jnp.asarray(one.order, azimuth.dtype)
             share = getattr(surfaces, part).bridged_share(order)
             if part == "element":
-                # What they have in common as they go round.
+                # The part that all rolling elements have in common as they orbit.
                 size = share[None] * one.amplitude
                 each = _phasor(size, one.phase + m * azimuth[:, None])
                 turned = _phasor(1.0, -m * azimuth)
@@ -267,10 +267,10 @@ class NoiseDesign(AbstractSystem):
 
 
 class NoiseLevel(AbstractMeasure):
-    """Level of the acceleration of a `NoiseDesign`, the largest of all cases [dB].
+    """Measure: level of the acceleration of a `NoiseDesign`, largest of all cases [dB].
 
     Attributes:
-        reading: One of its `readings`: "total_level", "band_1000", "line_2_BPFO".
+        reading: Name of a level in its `readings`, such as "band_1000".
 
     Static: reading.
     """

@@ -49,14 +49,14 @@ from ..statics.solution import solution_kind
 _FRICTION = "friction_torque"
 _STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD, _FRICTION)
 _COUNTED = ("element", "row")
-"""Axes whose length is that of the bearing."""
+"""Axes whose length depends on the bearing."""
 
 
 class Oiled(Installed):
-    """A bearing in its place with an oil whose viscosity may be an unknown.
+    """An installed bearing with an oil whose viscosity may be an unknown.
 
     Attributes:
-        viscosity: Kinematic viscosity of the oil, in place of that of the life [m²/s].
+        viscosity: Kinematic viscosity, used in place of that of the life [m²/s].
     """
 
     viscosity: Real = eqx.field(**real("m²/s", above=0), kw_only=True)
@@ -66,30 +66,30 @@ class Oiled(Installed):
 
 
 class CaseModel(eqx.Module):
-    """Numbers of solved cases, as a function of numbers of the design.
+    """Results of solved cases, as a function of numbers of the design.
 
-    A number is named as its column in the table of a sweep, without the unit:
-    "displacement_inner_uz", "peak_pressure", "life_hours"; of the moving ring
-    "displacement_uz" and "stiffness_uz" will do. "friction_torque" [N m] by Palmgren
-    needs a life with a viscosity, and a speed. Those of a failed case are NaN.
+    A result is named as its column in the table of a sweep, without the unit:
+    "displacement_inner_uz", "peak_pressure", "life_hours"; for the moving ring
+    "displacement_uz" and "stiffness_uz" suffice. "friction_torque" [N m] by Palmgren
+    needs a life with a viscosity, and a speed. Results of a failed case are NaN.
 
-    Those of a system (`optimise.AbstractSystem`) are its `readings`.
+    The results of a system (`optimise.AbstractSystem`) are its `readings`.
 
     Attributes:
-        design: The bearing, an element or on its seats (`Installed`); or a system.
-        support: What holds the rings; displacements are those of the cases.
+        design: The bearing, as drawn (`BearingElement`) or `Installed`; or a system.
+        support: Support of the rings; prescribed displacements are those of the cases.
         options: Numerics of the load solves.
-        life: Conditions of a life among the numbers.
+        life: Conditions of the rating life, where lives are among the results.
         supply: Oil supply, as `friction_torque` takes it.
         varied: Numbers of the design that differ from case to case, by their dotted
             path (case,) [SI].
-        paths: Dotted paths of the numbers that are given, a sequence each.
-        places: The numbers that are returned, by name.
+        paths: Dotted paths that each argument sets, a sequence for each argument.
+        places: Results that are returned, by name.
 
     Traced: all numbers. Static: supply, paths, places.
 
     Raises:
-        TypeError: If the design is another object.
+        TypeError: If the design is of another class.
     """
 
     design: Any
@@ -110,10 +110,10 @@ class CaseModel(eqx.Module):
             )
 
     def place(self, name: str) -> Reading:
-        """Return where a number stands.
+        """Return output, entry and unit of the result of a name.
 
         Raises:
-            ValueError: If there is none of this name.
+            ValueError: If no result has this name.
         """
         if isinstance(self.design, AbstractSystem):
             known = self.design.readings()
@@ -130,13 +130,13 @@ class CaseModel(eqx.Module):
     def for_numbers(
         self, paths: Sequence[Sequence[str]], names: Sequence[str]
     ) -> "CaseModel":
-        """Return the model as a function of numbers of the design, of some names.
+        """Return the model with its arguments and results chosen.
 
-        Rows have `PLACES`, so that bearings of a kind share one program.
+        Rows get empty places (`PLACES`), so that bearings of a kind share one program.
 
         Args:
-            paths: Dotted paths of each number in the design.
-            names: Names of the numbers that are wanted.
+            paths: Dotted paths in the design that each argument sets.
+            names: Names of the results.
 
         Raises:
             ValueError: As `place`.
@@ -148,11 +148,11 @@ class CaseModel(eqx.Module):
     def __call__(
         self, values: Float[Array, " number"], cases: Any
     ) -> dict[str, Float[Array, " case"]]:
-        """The numbers by name (case,) [SI], at numbers of the design [SI]."""
+        """Return results by name (case,) [SI], at numbers of the design [SI]."""
         return self._in_cases(self._numbers, values, cases)
 
     def warnings(self, values: Any, cases: Any) -> list[Warning]:
-        """Warnings about solved cases, each kind once, as `sweep` has them.
+        """Return warnings about solved cases, each kind once, as `sweep` has them.
 
         Args:
             values: Numbers of the design, concrete (number,) [SI].
@@ -172,7 +172,7 @@ class CaseModel(eqx.Module):
         return warnings_of_cases(sizes, ALL)
 
     def _in_cases(self, function: Callable, values: Any, cases: Any) -> dict[str, Any]:
-        """Outputs of a function of design, solved case and case, in all cases."""
+        """Return outputs in all cases of a function of design, solution and case."""
         shared = None if self.varied else self.design_at(values, {})
 
         def outputs(given):
@@ -187,7 +187,7 @@ class CaseModel(eqx.Module):
         return lax.map(outputs, given, batch_size=CHUNK)
 
     def why_failed(self, values: Any, cases: Cases, case: int) -> str:
-        """Reason why a case fails at concrete numbers, in words."""
+        """Return in words why a case fails at concrete numbers of the design."""
         one, varied = jax.tree.map(lambda leaf: leaf[case], (cases, self.varied))
         design = self.design_at(np.asarray(values), varied)
         solved = solved_case(design, one, self.support, self.options)
@@ -195,7 +195,7 @@ class CaseModel(eqx.Module):
         return f"case {case}: {label}: {describe_failure(design, solved)}"
 
     def design_at(self, values: Any, varied: dict[str, Any]) -> Design:
-        """The design at numbers of its paths, and others of one case by path [SI]."""
+        """Return the design at values of its paths, and of one case by path [SI]."""
         pairs = zip(self.paths, values, strict=True)
         numbers = {path: x for several, x in pairs for path in several}
         return prepare(with_numbers(self.design, numbers | varied), None)
@@ -237,7 +237,7 @@ class CaseModel(eqx.Module):
         }
 
     def _axes(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield outputs of a case with their axes, but for those along a roller."""
+        """Yield outputs of a case with their axes, except those along a roller."""
         for kind in (solution_kind(_drawing(self.design).choices), Life):
             for field in dataclasses.fields(kind):
                 axes = stated_axes(field.type)
@@ -248,14 +248,14 @@ class CaseModel(eqx.Module):
         yield from dict.fromkeys((*SUMMARIES, *_STATES), ()).items()
 
     def _names_with_places(self, name: str) -> Iterator[tuple[str, Reading]]:
-        """Yield the numbers of the outputs with which a name begins, by name."""
+        """Yield name and place of the results of each output that begins a name."""
         rows = bearings_of(_drawing(self.design).bearing)
         places, counts = (
             sum(r.n_places for r in rows),
             [int(r.n_elements) for r in rows],
         )
         sizes = {"element": places, "row": len(rows)}
-        there = np.arange(places)  # behind the elements of a row may be empty places
+        there = np.arange(places)  # empty places may follow the elements of a row
         if sum(counts) < places:
             there = element_places(tuple(counts))[0]
         own = f"{self.support.moving_ring}_"

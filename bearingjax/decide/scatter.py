@@ -1,4 +1,4 @@
-"""Numbers that scatter from one machine to the next, and samples of them."""
+"""Distributions of numbers that differ from machine to machine, and their samples."""
 
 import dataclasses
 import math
@@ -21,33 +21,33 @@ SIZES = {
     "housing": {"housing_interference": -1.0},
     "outside_diameter": {"housing_interference": 1.0},
 }
-"""Sizes of `fits.SizeLimits` by their name in [fit], with the numbers of a `Mounting`
-to which they add."""
+"""Sizes of `fits.SizeLimits` by their name in [fit], with the factors by which they add
+to numbers of a `Mounting`."""
 REPLICATES = 8
-"""Sets of samples, each shuffled by itself, whose spread is the error of a result."""
+"""Independently scrambled sets of samples, whose spread gives the standard errors."""
 SIGMAS = 6.0
-"""Standard deviations of a normal distribution from limit to limit: 99.7 % of what is
-made lies between them before the rest is sorted out."""
+"""Standard deviations between the limits of a tolerance: 99.7 % of the normal
+distribution lies within them before it is truncated."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Scatter:
-    """A number of the design that scatters.
+    """A number of the design that scatters, with its distribution.
 
     Attributes:
-        path: Dotted path in the design, as of `optimise.Variable`; a tuple of several
-            that share the value; or factors by path: what it adds to each. The number
-            of a path that several scatters name is the sum of what they add, as an
-            interference is the deviation of the shaft less that of the bore.
-        distribution: Distribution of its values [SI], frozen, of `scipy.stats`, such as
-            `norm(300.0, 40.0)`, or that of `within`.
-        name: In reports; default: the first path.
-        cost: What narrowing its width by one SI unit costs, in any currency; `None`:
-            it cannot be narrowed.
+        path: Dotted path in the design, as in `optimise.Variable`; a tuple of paths
+            that share the value; or a mapping of factors by path. Where scatters have a
+            path in common, its number is the sum of factors times values, as an
+            interference is the deviation of the shaft minus that of the bore.
+        distribution: Frozen distribution of `scipy.stats` for the values [SI], such as
+            `norm(300.0, 40.0)` or `truncated_normal(lower, upper)`.
+        name: Name in reports; by default the first path.
+        cost: Cost of narrowing the tolerance by one SI unit of width, in any currency;
+            `None`: it cannot be narrowed.
 
     Raises:
-        TypeError: If a path is no text, or the distribution is none.
-        ValueError: Without a spread, and for a cost below zero.
+        TypeError: If a path is not a string, or the distribution not one of SciPy.
+        ValueError: If mean or standard deviation is not finite, or a cost is negative.
     """
 
     path: Any  # a text, several, or factors by path; afterwards factors by path
@@ -64,7 +64,7 @@ class Scatter:
         object.__setattr__(self, "path", {p: float(f) for p, f in factors.items()})
         object.__setattr__(self, "name", self.name or next(iter(factors)))
         known, allowed = hasattr(self.distribution, "ppf"), "a distribution of SciPy"
-        must_be("Scatter", "distribution", self.name, known, allowed, TypeError)
+        must_be("Scatter", "distribution", self.distribution, known, allowed, TypeError)
         real = math.isfinite(self.centre) and 0.0 < self.spread < math.inf
         allowed = "one with a mean, and a standard deviation above 0"
         must_be("Scatter", "distribution", self.name, real, allowed)
@@ -83,7 +83,7 @@ class Scatter:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Least and largest value; three standard deviations where there is none."""
+        """Smallest and largest value [SI]; unbounded: three deviations off the mean."""
         far = 0.5 * SIGMAS * self.spread
         low, high = map(float, self.distribution.support())
         low = low if math.isfinite(low) else self.centre - far
@@ -91,22 +91,22 @@ class Scatter:
 
     @property
     def width(self) -> float:
-        """Width between its ends [SI]."""
+        """Width of the tolerance, between its ends [SI]."""
         return self.ends[1] - self.ends[0]
 
 
-def within(
+def truncated_normal(
     lower: float,
     upper: float,
     mean: float | None = None,
     deviation: float | None = None,
 ) -> Any:
-    """Return the normal distribution between limits, as those of a tolerance class.
+    """Return a normal distribution truncated at the limits of a tolerance.
 
     Args:
-        lower, upper: Limits at which it is cut off [SI].
-        mean: Mean before it is cut off [SI]; `None`: the middle.
-        deviation: Standard deviation before it is cut off [SI]; `None`: a sixth of the
+        lower, upper: Limits of the values [SI].
+        mean: Mean before truncation [SI]; `None`: the middle.
+        deviation: Standard deviation before truncation [SI]; `None`: a sixth of the
             width.
 
     Raises:
@@ -114,27 +114,29 @@ def within(
     """
     from scipy.stats import truncnorm
 
-    must_be("within", "lower", lower, lower < upper, f"below `upper`, {upper:g}")
+    own = "truncated_normal"
+    must_be(own, "lower", lower, lower < upper, f"below `upper`, {upper:g}")
     middle = 0.5 * (lower + upper) if mean is None else mean
     scale = (upper - lower) / SIGMAS if deviation is None else deviation
-    must_be("within", "deviation", scale, scale > 0.0, "above 0")
+    must_be(own, "deviation", scale, scale > 0.0, "above 0")
     ends = ((end - middle) / scale for end in (lower, upper))
     return truncnorm(*ends, loc=middle, scale=scale)
 
 
 def class_scatters(installed: Installed) -> tuple[Installed, tuple[Scatter, ...]]:
-    """Return the sizes of the classes of fit and clearance of a bearing, as `within`.
+    """Return the scatters of the toleranced sizes of a bearing and its seats.
 
     Args:
-        installed: The bearing on its seats; sizes scatter between its `limits`.
+        installed: The bearing on its seats, with `limits` of its sizes (ISO 286-2, ISO
+            492, ISO 5753-1).
 
     Returns:
-        The bearing, whose clearance before mounting is a number of its mounting if it
-        scatters; and the sizes, named "clearance", "shaft", "bore", "housing" and
-        "outside_diameter". There are none without `limits`.
+        The bearing, with its clearance before mounting as a number of its mounting if
+        that scatters; and a `truncated_normal` `Scatter` of each size: "clearance",
+        "shaft", "bore", "housing", "outside_diameter". None without `limits`.
 
     Raises:
-        TypeError: If it is no `Installed`.
+        TypeError: If `installed` is not an `Installed`.
     """
     of_class("class_scatters", "installed", installed, Installed, "an Installed")
     found = []
@@ -142,7 +144,8 @@ def class_scatters(installed: Installed) -> tuple[Installed, tuple[Scatter, ...]
     for name, (low, high) in limits.items():
         if low < high:
             paths = {f"mounting.{path}": factor for path, factor in SIZES[name].items()}
-            found.append(Scatter(paths, within(float(low), float(high)), name))
+            spread = truncated_normal(float(low), float(high))
+            found.append(Scatter(paths, spread, name))
     if any(one.name == "clearance" for one in found):
         free = radial_clearance(rows_of(installed.drawing.bearing)[0].bearing)
         installed = eqx.tree_at(
@@ -154,23 +157,23 @@ def class_scatters(installed: Installed) -> tuple[Installed, tuple[Scatter, ...]
     return installed, tuple(found)
 
 
-def draw(
+def draw_samples(
     scatters: Sequence[Scatter],
     root: Float[np.ndarray, "number number"],
     count: int,
     seed: int,
 ) -> Float[np.ndarray, "sample number"]:
-    """Draw samples of numbers that scatter: Sobol's points, shuffled.
+    """Return samples of numbers that scatter, from scrambled Sobol points.
 
     Args:
-        scatters: The numbers.
-        root: Cholesky factor of the correlations of the normal scores behind them.
-        count: Least number of samples; drawn are `REPLICATES` sets one after the other,
-            each of a power of 2.
-        seed: Seed of the shuffling.
+        scatters: Numbers that scatter.
+        root: Cholesky factor of the correlations of their normal scores.
+        count: Smallest number of samples; `REPLICATES` sets are drawn one after the
+            other, the size of each is a power of 2.
+        seed: Seed of the scrambling.
 
     Source: Owen, Scrambled net variance for integrals of smooth functions, Ann.
-        Statist. 25 (1997) 1541-1562.
+        Statist. 25 (1997) 1541-1562; Gaussian copula: Nataf (1962).
     """
     from scipy.special import ndtr, ndtri
     from scipy.stats import qmc
@@ -178,7 +181,7 @@ def draw(
     power, sets = max(0, math.ceil(math.log2(count / REPLICATES))), []
     for source in np.random.default_rng(seed).spawn(REPLICATES):
         points = qmc.Sobol(len(scatters), rng=source).random_base2(power)
-        # 0 and 1 are at infinity of a normal number.
+        # The normal scores of 0 and 1 are infinite.
         sets.append(ndtr(ndtri(np.clip(points, 1e-9, 1.0 - 1e-9)) @ root.T))
     shares = np.concatenate(sets).T
     pairs = zip(scatters, shares, strict=True)

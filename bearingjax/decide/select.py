@@ -1,8 +1,8 @@
-"""A choice of bearing: requirements against the whole catalogue.
+"""Selection of a bearing: requirements compared with the whole catalogue.
 
-What the catalogue prints sieves first. What is left is solved by one program for each
-kind of bearing, `_LANES` solves at a time, whatever the number of bearings and cases;
-it is compiled once, and kept from one process to the next.
+Printed data exclude bearings first. The remaining ones are solved by one program for
+each type of bearing, `_LANES` solves at a time, whatever the number of bearings and
+cases; a program is compiled once, and may be kept from one process to the next.
 """
 
 import contextlib
@@ -50,7 +50,7 @@ from ..statics.empty_places import points_of_kind
 from ..statics.support import axial_senses, check_held, restrained_freedoms
 
 _LANES = 64
-"""Solves of a batch."""
+"""Number of solves in a batch."""
 
 _LIVES = (
     "damage",
@@ -59,33 +59,33 @@ _LIVES = (
     "equivalent_load",
     "reference_load",
 )
-"""Numbers of the life in a case that are taken."""
+"""Results of the life of each case that are used."""
 
 _STEEL = 7850.0
-"""Density in the masses that are estimated [kg/m³]."""
+"""Density in estimated masses [kg/m³]."""
 
 SIZES = ("bore", "outside_diameter", "width")
 NUMBERS = {
-    "bore": ("m", "exact", "d"),
-    "outside_diameter": ("m", "most", "D"),
-    "width": ("m", "most", "B, T of tapers, H of thrust bearings"),
-    "mass": ("kg", "most", "as printed, else estimated from the envelope"),
-    "limiting_speed": ("1", "most", "greatest speed over that of the catalogue"),
-    "reference_speed": ("1", "most", "greatest speed over that of the catalogue"),
-    "life_hours": ("h", "least", "modified; without oil the reference life times a1"),
-    "rating_life": ("rev", "least", "the same in revolutions"),
-    "basic_rating_life": ("rev", "least", "L10 of ISO 281"),
-    "static_safety": ("1", "least", "least C0/P0 of all cases"),
-    "minimum_load": ("N", "most", "0.01 C of balls, 0.02 C of rollers"),
-    "load_ratio": ("1", "least", "least load of a case that turns, over minimum_load"),
-    "peak_pressure": ("Pa", "most", "largest of all contacts and cases"),
-    "friction_torque": ("N m", "most", "by Palmgren, mean over the hours"),
+    "bore": ("m", "exact", "bore diameter d"),
+    "outside_diameter": ("m", "most", "outside diameter D"),
+    "width": ("m", "most", "width B; T of tapered roller, H of thrust bearings"),
+    "mass": ("kg", "most", "printed mass, else an estimate from the envelope"),
+    "limiting_speed": ("1", "most", "highest speed over the printed limiting speed"),
+    "reference_speed": ("1", "most", "highest speed over the printed reference speed"),
+    "life_hours": ("h", "least", "modified rating life; without oil a1 times L10r"),
+    "rating_life": ("rev", "least", "that rating life in revolutions"),
+    "basic_rating_life": ("rev", "least", "basic rating life L10 of ISO 281"),
+    "static_safety": ("1", "least", "smallest C0/P0 of all cases (ISO 76)"),
+    "minimum_load": ("N", "most", "minimum load, 0.01 C of balls, 0.02 C of rollers"),
+    "load_ratio": ("1", "least", "smallest load of turning cases over minimum_load"),
+    "peak_pressure": ("Pa", "most", "largest pressure of all contacts and cases"),
+    "friction_torque": ("N m", "most", "torque by Palmgren, averaged over the hours"),
 }
 for _name, _unit in zip(FREEDOMS, ("N/m",) * 3 + ("N m/rad",) * 2, strict=False):
-    _about = f"least of all cases in {_name}, the other freedoms held"
+    _about = f"smallest stiffness of all cases along {_name}, other freedoms held"
     NUMBERS[f"stiffness_{_name}"] = (_unit, "least", _about)
-"""Numbers of a candidate: SI unit; sense of a bound by one number, which tells too what
-ranks first; meaning. The catalogue tells those before the lives."""
+"""Numbers of a candidate: SI unit; sense of a bound given as one number, which also
+says which end ranks first; meaning. Those before the lives need no solve."""
 
 
 def _as_cases(given: Any) -> Cases:
@@ -109,29 +109,31 @@ def _as_words(given: Any) -> Any:
 
 
 class Requirements(Printable):
-    """What a bearing must do to be chosen by `select`.
+    """Requirements on a bearing, for `select`.
 
     Attributes:
         load: `Cases`, whose damage adds up over their `hours`; or one load on the
             moving ring, at rest (6,) [N, N m].
-        life: Conditions of the life, with that which is required; without ratings.
-        bounds: Bounds of `NUMBERS` by name [SI]: a pair (least, greatest), either of
+        life: Conditions of the rating life, with the required life, without ratings.
+        bounds: Bounds by name of a number [SI]: a pair (least, greatest), either of
             which may be `None`; or one number, which is the exact bore, the greatest
-            outside diameter, width, mass, share of a speed, pressure or friction, and
-            the least of all others.
+            outside_diameter, width, mass, limiting_speed and reference_speed (shares of
+            the printed ones), minimum_load, peak_pressure and friction_torque, and the
+            least life_hours, rating_life, basic_rating_life, static_safety, load_ratio
+            and stiffness_ux to stiffness_gy.
         types: Types that may be chosen; `None`: all.
-        clearance_class: Class of radial clearance, "C3", of types that have classes;
-            `None`: CN, and other types too.
-        rank_by: Some of `NUMBERS`, of which the later ones tell ties apart; the least
-            first, of lives and the static safety the greatest.
-        support: What holds the rings, as in `sweep`.
-        options: Numerics of the solves.
+        clearance_class: Class of radial clearance, such as "C3", which excludes types
+            without classes; `None`: CN, and those types too.
+        rank_by: Names of numbers by which to rank, the later ones to break ties; the
+            smallest first, of numbers with a least bound the greatest.
+        support: Support of the rings, as in `sweep`.
+        options: Numerics of the load solves.
         supply: Oil supply, as `friction_torque` takes it.
 
     Raises:
-        TypeError: If a part is of another kind, or a number is traced.
-        ValueError: For numbers that are not allowed or contradict each other; a life
-            in hours or with an oil, if nothing turns; no load at all.
+        TypeError: If a part is of another class, or a number is traced.
+        ValueError: For bounds that are not allowed or contradict each other, a required
+            life or an oil if nothing turns, and no load at all.
     """
 
     load: Cases = eqx.field(converter=_as_cases)
@@ -154,7 +156,7 @@ class Requirements(Printable):
             for name in getattr(self, what):
                 one_of(self, what, name, NUMBERS)
         for what, names in {"types": self.types, "rank_by": self.rank_by}.items():
-            must_be(self, what, names, names != (), "one name at least")
+            must_be(self, what, names, names not in ((), []), "one name at least")
         for name, ends in self.bounds.items():
             known = [end for end in ends if end is not None]
             ordered = bool(known) and 0 < known[0] <= known[-1] < np.inf
@@ -173,9 +175,9 @@ class Requirements(Printable):
         check_held("Requirements", cases.load, self.support, cases.prescribed)
         never = "dynamic_capacity", "static_capacity", "fatigue_load_limit"
         for name in (*never, *(() if turning else ("required", "viscosity"))):
-            why = "as each bearing has its own" if name in never else "as nothing turns"
+            why = "each bearing has its own" if name in never else "no ring has a speed"
             none = getattr(life, name) is None
-            must_be(self, "life", f"with {name}", none, f"without it, {why}")
+            must_be(self, "life", f"with {name}", none, f"without it, as {why}")
         oiled = life.viscosity is not None
         for name, ok in {"life_hours": turning, "friction_torque": oiled}.items():
             ok = ok or name not in (*self.bounds, *self.rank_by)
@@ -188,7 +190,7 @@ class Requirements(Printable):
 
     @property
     def all_bounds(self) -> dict[str, Any]:
-        """The bounds, and the required life among them."""
+        """The bounds with the required life among them [SI]."""
         lives = {"life_hours": self.life.required}
         lives["rating_life"] = self.life.required_revolutions
         given = {name: (low, None) for name, low in lives.items() if low is not None}
@@ -196,16 +198,16 @@ class Requirements(Printable):
 
 
 def unit_of_number(name: str) -> str:
-    """Return the SI unit of a column of a `Selection`, or of the forces of a
-    `PositionSelection`; empty of a pure number."""
+    """Return the SI unit of a column of a `Selection` or `PositionSelection`; empty for
+    a pure number."""
     return (
         "N" if name.endswith("_force") else NUMBERS.get(name, ("",))[0].replace("1", "")
     )
 
 
 class Miss(NamedTuple):
-    """A requirement that is missed: the number that misses it, NaN if there is none,
-    and its limit [SI]; what they do not tell; how much of it is kept, below 1."""
+    """A requirement that a bearing fails: its name, value (NaN if unknown) and limit
+    [SI], a reason in words, and the ratio of value and limit, below 1 [1]."""
 
     requirement: str = ""
     value: float = np.nan
@@ -215,7 +217,7 @@ class Miss(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What is missed, as "life_hours 8200 h of 20000 h"; empty without a miss."""
+        """The miss in words, as "life_hours 8200 h of 20000 h"; empty without one."""
         unit = unit_of_number(self.requirement)
         ends = [shown_number(end, unit, 5) for end in (self.value, self.limit)]
         words = f"{self.requirement} {self.why or ' of '.join(ends)}"
@@ -223,7 +225,7 @@ class Miss(NamedTuple):
 
 
 def _missed(name: str, value: Any, ends: tuple[Any, Any]) -> Iterator[Miss]:
-    """Yield the bound that a value misses by more than round-off."""
+    """Yield the bound that a value fails by more than round-off."""
     value, (low, high), near = float(value), ends, 1.0 - 1e-9
     if np.isnan(value):
         yield Miss(name, limit=low or high, why="it is not known")
@@ -234,7 +236,7 @@ def _missed(name: str, value: Any, ends: tuple[Any, Any]) -> Iterator[Miss]:
 
 
 def _missed_directions(asked: Requirements, bearing: Any) -> Iterator[Miss]:
-    """Yield the loads that no bearing of a kind carries."""
+    """Yield the loads that bearings of this type and arrangement do not carry."""
     may, senses = restrained_freedoms(bearing), axial_senses(bearing)
     sign = 1 if asked.support.moving_ring == "inner" else -1
     for freedom, name, loads in zip(FREEDOMS, LOADS, asked.load.load.T, strict=True):
@@ -254,15 +256,15 @@ def _missed_directions(asked: Requirements, bearing: Any) -> Iterator[Miss]:
 
 @dataclasses.dataclass(frozen=True)
 class Selection(Shown):
-    """Every bearing that was looked at: those that fit, the best first; then those that
-    were solved and miss the least; then those that the catalogue excludes.
+    """All bearings that were compared: first those that fit, the best first; then those
+    that were solved and fail, the nearest first; then those excluded by printed data.
 
     Attributes:
-        requirements: What was asked for.
-        table: Columns by name (candidate,), in SI: designation, type; `NUMBERS`, NaN
-            where they are not known, and friction and stiffness where neither a bound
-            nor the rank asks for them; mass_printed; of what is missed, the most if it
-            was solved, requirement ("": it fits), value, limit, why.
+        requirements: The requirements.
+        table: Columns by name (candidate,) [SI]: designation, type, and the numbers
+            that `Requirements` may bound, NaN where not known (friction and stiffness
+            where neither a bound nor `rank_by` names them); mass_printed; and of the
+            requirement that fails by most its name ("": it fits), value, limit, why.
     """
 
     requirements: Requirements
@@ -274,12 +276,12 @@ class Selection(Shown):
 
     @property
     def fits(self) -> list[dict[str, Any]]:
-        """Facts and numbers of bearings that do what is required, the best first."""
+        """Bearings that fulfil all requirements, with their numbers, the best first."""
         return self._rows([k for k in self.table if k not in Miss._fields], True)
 
     @property
     def excluded(self) -> list[dict[str, Any]]:
-        """The others, and what they miss: requirement, value, limit [SI], why."""
+        """The other bearings, and why: requirement, value, limit [SI], reason."""
         return self._rows(["designation", *Miss._fields[:4]], False)
 
     @property
@@ -290,7 +292,8 @@ class Selection(Shown):
 
     @property
     def smallest(self) -> str | None:
-        """Designation of what fits with the least outside diameter, then width."""
+        """Designation of the smallest bearing that fits: by outside diameter, then
+        width."""
         fits = self.fits
         found = min(fits, key=lambda row: [row[k] for k in SIZES[1:]], default=None)
         return None if found is None else found["designation"]
@@ -299,16 +302,16 @@ class Selection(Shown):
         """Return the nearest misses in words: "6208: life_hours 8200 h of 20000 h".
 
         Args:
-            most: How many.
+            most: Largest number of misses.
         """
         rows = [row.values() for row in self.excluded[:most]]
         found = [(name, Miss(*miss).words) for name, *miss in rows]
         return [f"{name}: {words}" for name, words in found]
 
     def shown_facts(self) -> Iterator[Any]:
-        """Yield how many fit, which is the smallest, and what excludes the others."""
-        yield 1, "fits", str(len(self.fits)), "bearings that do what is required"
-        yield 1, "smallest", str(self.smallest), "of these"
+        """Yield how many fit, the smallest of them, and what excludes the others."""
+        yield 1, "fits", str(len(self.fits)), "bearings that fulfil all requirements"
+        yield 1, "smallest", str(self.smallest), "by outside diameter, then width"
         for name, count in self.counts.items():
             yield 1, f"excluded by {name}", str(count), ""
 
@@ -334,42 +337,43 @@ def select(
     install: Callable[[CatalogueEntry], Installed] | None = None,
     progress: Callable[[str, float], Any] | None = None,
 ) -> Selection:
-    """Choose among the bearings of the catalogue: what fits, and why others do not.
+    """Select bearings from the catalogue: those that fit, and why the others do not.
 
-    What the catalogue prints excludes first: type, envelope, direction of the load,
-    speeds. The others are solved under every case; of several requirements that one
-    misses the one that is missed the most is told.
+    Printed data exclude bearings first: type, envelope, direction of the load, speeds.
+    The others are solved under every case. Of several requirements that a bearing
+    fails, the one is reported that it fails by the largest ratio.
 
     Args:
-        requirements: What the bearing must do.
+        requirements: Requirements on the bearing.
         entries: Bearings to choose from; `None`: `catalogue_entries()`.
-        install: Bearing of an entry on its seats; one that it refuses by a `ValueError`
-            is excluded, with that text. `None`: as drawn.
-        progress: Called with words and the share that is done.
+        install: Function from an entry to the bearing on its seats; an entry for which
+            it raises `ValueError` is excluded, with that text. `None`: as drawn.
+        progress: Function called with a text and the share done.
 
     Returns:
-        Selection; what is not solved is excluded by "solved", with its result code.
+        Selection. Unsolved bearings are excluded by "solved", with the failure's name.
 
     Raises:
-        TypeError: For anything but `Requirements`.
+        TypeError: If `requirements` is not a `Requirements`.
         ValueError: If there are no entries, none of a type, or all are refused.
     """
     of_class("select", "requirements", requirements, Requirements, "`Requirements`")
     every = list(catalogue_entries() if entries is None else entries)
     if not every:
         raise ValueError("select: `entries` is empty; one bearing at least.")
-    asked, told = requirements, progress or (lambda words, share: None)
+    asked, progress = requirements, progress or (lambda words, share: None)
     for name in asked.types or ():
         one_of("select", "types", name, sorted({entry.type for entry in every}))
     known = {id(entry): place for place, entry in enumerate(catalogue_entries())}
 
     def build(entry: CatalogueEntry) -> Installed:
         if install is None and id(entry) in known:
-            return _drawn(known[id(entry)], jax.dtypes.canonicalize_dtype(float))
-        return _of_kind((install or as_drawn)(entry), entry.type)
+            real = jax.dtypes.canonicalize_dtype(float)
+            return _catalogue_bearing(known[id(entry)], real)
+        return _with_common_places((install or bearing_as_drawn)(entry), entry.type)
 
-    rows, made, refused = [_facts(asked, entry) for entry in every], {}, []
-    misses = [*_sieve(asked, every, rows)]
+    rows, made, refused = [_printed_row(asked, entry) for entry in every], {}, []
+    misses = [*_printed_misses(asked, every, rows)]
     for k, entry in enumerate(every):
         if misses[k] is None:
             try:
@@ -379,10 +383,10 @@ def select(
                 refused.append(error)
     if refused and not made:
         raise refused[0]
-    found = _solve(asked, [*made.values()], told)
+    found = _solve(asked, [*made.values()], progress)
     for number, k in enumerate(made):
         mine = {name: values[number] for name, values in found.items()}
-        misses[k] = judge(asked, mine, rows[k])
+        misses[k] = judge_bearing(asked, mine, rows[k])
     for row, entry, miss in zip(rows, every, misses, strict=True):
         row |= {"designation": entry.designation, **(miss or Miss(share=2.0))._asdict()}
     names = "designation", "type", *NUMBERS, "mass_printed", *Miss._fields
@@ -396,9 +400,9 @@ def select(
     return Selection(asked, {name: values[order] for name, values in table.items()})
 
 
-def _facts(asked: Requirements, entry: CatalogueEntry) -> dict[str, Any]:
-    """Return what the catalogue tells of a bearing; other masses are that of a solid
-    ring of the envelope, times the usual share of the type, or of all types."""
+def _printed_row(asked: Requirements, entry: CatalogueEntry) -> dict[str, Any]:
+    """Return the printed numbers of a bearing. A mass that is not printed is that of a
+    solid ring of the envelope times the median share of the type, or of all types."""
     mass, usual = entry.mass, _usual_masses()
     if mass is None:
         mass = usual.get(entry.type, usual[""]) * _solid_mass(entry)
@@ -417,7 +421,8 @@ def _solid_mass(entry: CatalogueEntry) -> float:
 
 @functools.cache
 def _usual_masses() -> dict[str, float]:
-    """Return printed masses over those of solid rings, by type and of all ("") [1]."""
+    """Return the median of printed masses over those of solid rings, by type and of all
+    types ("") [1]."""
     shares: dict[str, list[float]] = {}
     for entry in catalogue_entries():
         if entry.mass is not None:
@@ -426,10 +431,11 @@ def _usual_masses() -> dict[str, float]:
     return {name: float(np.median(values)) for name, values in shares.items()}
 
 
-def _sieve(
+def _printed_misses(
     asked: Requirements, every: list[CatalogueEntry], rows: list[dict[str, Any]]
 ) -> Iterator[Miss | None]:
-    """Yield what each entry misses unsolved; those left get the clearance class."""
+    """Yield what each entry fails by its printed data; entries that pass are replaced
+    in `every` by those of the clearance class."""
     directions: dict[Any, Miss | None] = {}
     facts = {n: asked.bounds[n] for n in (*NUMBERS,)[:6] if n in asked.bounds}
     for k, entry in enumerate(every):
@@ -438,7 +444,7 @@ def _sieve(
             found = [Miss("types", why=f"{entry.type} is not among them")]
         if not found and asked.clearance_class not in (None, entry.clearance_class):
             try:
-                every[k] = _of_class(entry, asked.clearance_class)
+                every[k] = _with_class(entry, asked.clearance_class)
             except ValueError as error:
                 found = [Miss("clearance_class", why=str(error))]
         kind = entry.type, entry.design.get("arrangement"), "ribs" in entry.design
@@ -448,8 +454,8 @@ def _sieve(
         yield found[0] if found else directions[kind]
 
 
-def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
-    """Return an entry with another class of clearance."""
+def _with_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
+    """Return an entry with another clearance class."""
     if entry.class_limits is None:
         raise ValueError(f"{entry.designation} has no classes")
     middle, _ = class_clearance(entry.type, name, entry.bore, entry.taper)
@@ -458,9 +464,9 @@ def _of_class(entry: CatalogueEntry, name: str) -> CatalogueEntry:
     return dataclasses.replace(entry, **changed)
 
 
-def _of_kind(design: Installed, kind: str) -> Installed:
-    """Return a bearing with the places of its kind, and without what some entries lack
-    and what changes no number here: speeds, limits, shoulders of the grooves."""
+def _with_common_places(design: Installed, kind: str) -> Installed:
+    """Return a bearing with the number of places of its type, and without what some
+    entries lack and no number here needs: speeds, limits, shoulders of the grooves."""
     element, rows = design.drawing, []
     for row in bearings_of(element.bearing):
         names = ("outer_shoulder", "inner_shoulder", "rated_contact_angle")
@@ -468,7 +474,7 @@ def _of_kind(design: Installed, kind: str) -> Installed:
         if names[2] in bare:
             bare[names[2]] = row.nominal_contact_angle
         rows.append(with_fields(row, **bare))
-    # Few programs compile sooner than many run, and empty places cost little.
+    # Compiling further programs would take longer than solving empty places.
     row = rows[0]
     stated = getattr(row, f"n_{row.noun}s") // row.n_places
     most = max(_most_elements().get(kind, 0) // stated, *(r.n_places for r in rows))
@@ -489,22 +495,18 @@ def _most_elements() -> dict[str, int]:
 
 
 @functools.cache
-def _drawn(place: int, real: Any) -> Installed:
-    """Return an entry of the catalogue as it is drawn, in numbers of this type."""
+def _catalogue_bearing(place: int, real: Any) -> Installed:
+    """Return a bearing of the catalogue as drawn, kept by place and type of numbers."""
     entry = catalogue_entries()[place]
-    return _of_kind(as_drawn(entry), entry.type)
+    return _with_common_places(bearing_as_drawn(entry), entry.type)
 
 
-def as_drawn(entry: CatalogueEntry) -> Installed:
-    """Return the bearing of an entry as it is drawn, without seats.
-
-    Args:
-        entry: The entry.
-    """
+def bearing_as_drawn(entry: CatalogueEntry) -> Installed:
+    """Return the bearing of a catalogue entry as drawn, without seats."""
     return Installed(BearingElement(bearing_of_entry(entry)))
 
 
-def _solve(asked: Requirements, made: list[Installed], told: Any) -> dict[str, Any]:
+def _solve(asked: Requirements, made: list[Installed], progress: Any) -> dict[str, Any]:
     """Return numbers of bearings under all cases by name (bearing, case, …)."""
     kinds: dict[Any, list[int]] = {}
     for number, design in enumerate(made):
@@ -521,11 +523,12 @@ def _solve(asked: Requirements, made: list[Installed], told: Any) -> dict[str, A
         task = Task(asked.support, options, kept, False, _LIVES, life)
         pairs = np.arange(len(numbers) * count)
         for begin in range(0, pairs.size, _LANES):
-            told("bearings under their loads", (done + begin) / (len(made) * count))
+            share = (done + begin) / (len(made) * count)
+            progress("bearings under their loads", share)
             mine = pairs[begin : begin + _LANES]
             design, case = np.divmod(np.resize(mine, _LANES), count)
             cases = jax.tree.map(lambda a: a[case], with_fields(asked.load, hours=None))  # noqa: B023
-            # A case of NaN ends at once.
+            # Lanes without a case get a load of NaN, with which a solve ends at once.
             spare = np.arange(_LANES)[:, None] >= mine.size
             cases = with_fields(cases, load=np.where(spare, np.nan, cases.load))
             designs = jax.tree.map(lambda a: a[design], stack)  # noqa: B023
@@ -555,17 +558,11 @@ def _solve_kind(designs, cases, task, supply):
     return jax.vmap(solve_one)(designs, cases)
 
 
-def judge(
+def judge_bearing(
     asked: Requirements, found: dict[str, Any], row: dict[str, Any]
 ) -> Miss | None:
-    """Add the numbers of a bearing under all cases to its row, and return what it
-    misses the most.
-
-    Args:
-        asked: What it must do.
-        found: Numbers by name (case, …).
-        row: Its row.
-    """
+    """Add the numbers of a bearing to its row, from its results by name (case, …) [SI];
+    return the requirement that it fails by most, or `None`."""
     failed = np.flatnonzero(found["result"] != Result.CONVERGED)
     if failed.size:
         label = Result(int(found["result"][failed[0]])).label

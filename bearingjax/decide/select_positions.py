@@ -1,8 +1,8 @@
-"""A choice of bearings for several positions of a system of shafts at once.
+"""Selection of the bearings at several positions of a system of shafts together.
 
-The loads that the present bearings share choose a short list for each position; the
-combinations of the short lists are then solved in the whole system, since loads shift
-with the stiffness of the bearings and with where their lines of action meet the axis.
+The loads with the present bearings give a short list for each position. Combinations of
+the short lists are then solved in the whole system, as loads shift with the stiffness
+of the bearings and with the points where their lines of action meet the axis.
 """
 
 import contextlib
@@ -33,39 +33,40 @@ from .select import (
     Miss,
     Requirements,
     Selection,
-    as_drawn,
-    judge,
+    bearing_as_drawn,
+    judge_bearing,
     select,
     unit_of_number,
 )
 
 _MOST = 100
-"""Most combinations that are solved."""
+"""Largest number of combinations that are solved."""
 
 _TYPES = 2
-"""Most types in the short list of a position: each has programs of its own."""
+"""Largest number of types in a short list: each type needs programs of its own."""
 
 _NO_LOAD = 1e-6
-"""Force over the largest of a case that counts as none [1]."""
+"""Force, over the largest one of its case, below which it counts as zero [1]."""
 
 _ITS_OWN = "bounds", "types", "clearance_class", "rank_by", "options", "supply"
 
 
 @dataclasses.dataclass(frozen=True)
 class PositionSelection(Shown):
-    """Combinations of bearings, the best first: those with which every position keeps
-    its requirements, then the others by what they miss the least.
+    """Combinations of bearings, the best first: those with which every position fulfils
+    its requirements, then the others, the nearest first.
 
     Attributes:
-        alone: Choice for each position by its name, under the loads of the present
-            bearings.
-        table: By name (combination, position), in SI: designation, type; `NUMBERS` in
-            the whole system, but friction and stiffness as of `alone`; radial_force
-            and axial_force, the largest of all cases, the latter along the z of the
-            bearing with its sign [N], and present_radial_force, present_axial_force;
-            of what is missed the most requirement ("": none), value, limit, why.
+        alone: `Selection` of each position by its name, under the loads with the
+            present bearings.
+        table: Columns by name (combination, position) [SI]: designation, type; the
+            numbers of a `Selection` in the whole system, friction and stiffness as in
+            `alone`; the largest radial_force and axial_force of all cases, the latter
+            along the z axis of the bearing, with its sign [N], and both with the
+            present bearings (present_radial_force, present_axial_force); and of the
+            requirement that fails by most its name ("": none), value, limit, why.
         kinds: Number of structures among the bearings of the short lists; the programs
-            of each are compiled once.
+            of each structure are compiled once.
     """
 
     alone: dict[str, Selection]
@@ -74,20 +75,20 @@ class PositionSelection(Shown):
 
     @property
     def holds(self) -> np.ndarray:
-        """Whether a combination keeps all requirements (combination,)."""
+        """Whether each combination fulfils all requirements (combination,)."""
         return (self.table["requirement"] == "").all(axis=1)
 
     @property
     def best(self) -> dict[str, str] | None:
-        """Designations of the best combination that holds, by position, or `None`."""
+        """Designations of the best combination by position; `None` if none holds."""
         names = self.table["designation"][0].tolist()
         return dict(zip(self.alone, names, strict=True)) if self.holds[0] else None
 
     def shown_facts(self) -> Iterator[Any]:
-        """Yield how many combinations hold, and the best."""
+        """Yield how many combinations hold, and the best one."""
         yield 1, "holds", f"{self.holds.sum()} of {self.holds.size}", "combinations"
         for name, one in (self.best or {}).items():
-            yield 1, name, one, "in the best of these"
+            yield 1, name, one, "in the best combination"
 
     def to_xarray(self) -> Any:
         """Return all combinations as an `xarray.Dataset`, with units.
@@ -116,31 +117,32 @@ def select_positions(
     install: Callable[[str, CatalogueEntry], Installed] | None = None,
     progress: Callable[[str, float], Any] | None = None,
 ) -> PositionSelection:
-    """Choose the bearings of several positions of a system of shafts.
+    """Select the bearings at several positions of a system of shafts together.
 
-    `select` compares the catalogue with the forces and tilts that each position has
-    with the present bearings. Every combination of the best is solved in the whole
-    system, where lives, static safety, load ratio and pressure are judged anew. Bounds
-    of friction and stiffness are judged under the loads of the present bearings alone;
-    positions that are not named are not judged.
+    `select` compares the catalogue under the forces and tilts that each position has
+    with the present bearings. Every combination of the best ones is solved in the whole
+    system, where lives, static safety, load ratio and pressure are evaluated again.
+    Bounds of friction and stiffness are compared under the loads with the present
+    bearings alone. Positions that are not named keep their bearings, without a verdict.
 
     Args:
         designs: The system with its present bearings, in each load case.
-        requirements: By name of the position `bounds`, `types`, `clearance_class`,
-            `rank_by`, `options`, `supply` as of `Requirements`, or some of them. The
-            bore is that of the shaft there, unless bounded. Conditions of the lives
-            are those of the designs; of the first one for a position alone.
+        requirements: By name of the position a mapping of `bounds`, `types`,
+            `clearance_class`, `rank_by`, `options`, `supply`, as of `Requirements`.
+            Unless bounded, the bore is the diameter of the shaft there. Conditions of
+            the lives are those of the designs, in the short lists of the first one.
         hours: Time in each case (case,) [h]; `None`: the same in all.
-        rank_by: Some of `NUMBERS`; combinations are ranked by their sum over the
-            positions, the least first, of lives and the static safety by the least,
-            the greatest first. Positions without their own are ranked by it too.
+        rank_by: Names of numbers as in `Requirements`, by their sum over the positions,
+            the smallest first; of numbers with a least bound by their minimum, the
+            greatest first. It also ranks positions without a `rank_by` of their own.
         short_list: Most bearings of a position that are combined, of two types at most.
         entries: Bearings to choose from; `None`: `catalogue_entries()`.
-        install: Bearing of an entry on the seats of a position; `None`: as drawn.
-        progress: Function that is called with words and the share that is done.
+        install: Function from the name of a position and an entry to the bearing on its
+            seats; `None`: as drawn.
+        progress: Function called with a text and the share done.
 
     Returns:
-        PositionSelection; a combination without equilibrium misses "solved".
+        PositionSelection; a combination without equilibrium fails "solved".
 
     Raises:
         TypeError, ValueError: As `select`; for a position that does not exist, has
@@ -149,7 +151,7 @@ def select_positions(
         SolveError: If the present bearings have no equilibrium, or no bearing fits a
             position, with the nearest misses.
     """
-    own, told = "select_positions", progress or (lambda words, share: None)
+    own, progress = "select_positions", progress or (lambda words, share: None)
     must_be(own, "designs", designs, bool(designs), "one at least")
     must_be(own, "requirements", requirements, bool(requirements), "of one position")
     count = short_list ** len(requirements)
@@ -161,7 +163,7 @@ def select_positions(
     systems = align_systems([design.system for design in designs])
     lives = [design.lives for design in designs]
     seats = {name: _seat_number(systems, name) for name in requirements}
-    told("present bearings", 0.0)
+    progress("present bearings", 0.0)
     present = _solve_cases(systems, lives)
     for case, code in enumerate(present.result):
         why = f"{Result(int(code)).label} with the present bearings (case {case})"
@@ -180,7 +182,7 @@ def select_positions(
         drawn: dict[str, Installed] = {}
 
         def build(entry: CatalogueEntry, name=name, drawn=drawn) -> Installed:
-            one = as_drawn(entry) if install is None else install(name, entry)
+            one = bearing_as_drawn(entry) if install is None else install(name, entry)
             return drawn.setdefault(entry.designation, one)
 
         found = alone[name] = select(
@@ -196,13 +198,14 @@ def select_positions(
         listed.append([(row | loads, drawn[row["designation"]]) for row in best])
     combined = [*itertools.product(*listed)]
     for done, combination in enumerate(combined):
-        told("combinations in the whole system", done / len(combined))
+        progress("combinations in the whole system", done / len(combined))
         new = {k: one for k, (_, one) in zip(seats.values(), combination, strict=True)}
         duty, changed = None, [_with_bearings(system, new) for system in systems]
-        with contextlib.suppress(SolveError):  # a preload that a bearing cannot bear
+        with contextlib.suppress(SolveError):  # a preload too large for a bearing
             duty = _solve_cases(align_systems(changed), lives)
         for (name, k), (row, _) in zip(seats.items(), combination, strict=True):
-            rows.append(_judged(alone[name].requirements, changed, duty, k, row))
+            asked = alone[name].requirements
+            rows.append(_judge_position(asked, changed, duty, k, row))
     table = {
         name: np.array([row[name] for row in rows]).reshape(-1, len(seats))
         for name in rows[0]
@@ -220,7 +223,7 @@ def select_positions(
 
 
 def _seat_number(systems: Sequence[ShaftSystem], name: str) -> int:
-    """Return the number of the seat of a position, or raise ValueError."""
+    """Return the number of the seat of a position; raises ValueError for others."""
     own, names = "select_positions", [seat.name for seat in systems[0].seats]
     one_of(own, "requirements", name, names)
     first, *others = (system.seats[names.index(name)].installed for system in systems)
@@ -231,7 +234,7 @@ def _seat_number(systems: Sequence[ShaftSystem], name: str) -> int:
 
 
 def _shaft_diameter(system: ShaftSystem, k: int) -> float:
-    """Return the diameter of the shaft at a seat [m], where there is one alone."""
+    """Return the diameter of the shaft at a seat [m]; raises where there are two."""
     seat, (index, station) = system.seats[k], system.station(system.seats[k])
     beside = np.asarray(system.beam(index).outer_diameter)
     sizes = {round(float(d), 9) for d in beside[max(station - 1, 0) : station + 1]}
@@ -241,7 +244,7 @@ def _shaft_diameter(system: ShaftSystem, k: int) -> float:
 
 
 def _with_bearings(system: ShaftSystem, new: Mapping[int, Installed]) -> ShaftSystem:
-    """Return a system with other bearings, by the number of their seat."""
+    """Return a system with other bearings, given by the number of their seat."""
     seats = [
         with_fields(seat, installed=new.get(k, seat.installed))
         for k, seat in enumerate(system.seats)
@@ -251,8 +254,8 @@ def _with_bearings(system: ShaftSystem, new: Mapping[int, Installed]) -> ShaftSy
 
 
 def _solve_cases(systems: Sequence[ShaftSystem], lives: Sequence[Any]) -> DutyResult:
-    """Solve all cases by the programs of the kinds of bearings, whatever their number:
-    the one of many cases would be compiled for each combination."""
+    """Solve all cases `FEW` at a time, by the programs of the kinds of bearings: one of
+    many cases would be compiled for each combination."""
     parts = [
         solve_duty(systems[at : at + FEW], lives[at : at + FEW])
         for at in range(0, len(systems), FEW)
@@ -261,8 +264,8 @@ def _solve_cases(systems: Sequence[ShaftSystem], lives: Sequence[Any]) -> DutyRe
 
 
 def _in_its_axes(systems: Sequence[ShaftSystem], found: DutyResult, k: int) -> Any:
-    """Return force (case, 3) [N] and tilt (case, 2) [rad] of an inner ring in the axes
-    of its bearing."""
+    """Return force (case, 3) [N] and tilt (case, 2) [rad] of the inner ring of a seat,
+    in the axes of its bearing."""
     seat = systems[0].seats[k]
     frames = np.stack([np.asarray(one.shaft(seat.shaft).frame) for one in systems])
     both = np.stack([found.load[:, k, :3], found.displacement[:, k, 3:]], axis=1)
@@ -273,14 +276,14 @@ def _in_its_axes(systems: Sequence[ShaftSystem], found: DutyResult, k: int) -> A
 
 
 def _loads(systems: Any, found: DutyResult, k: int, head: str = "") -> dict[str, float]:
-    """Return the largest forces of all cases by their names [N]."""
+    """Return the largest radial and axial force of all cases, by column name [N]."""
     x, y, z = _in_its_axes(systems, found, k)[0].T
     radial, axial = float(np.hypot(x, y).max()), float(z[np.argmax(np.abs(z))])
     return {f"{head}radial_force": radial, f"{head}axial_force": axial}
 
 
 def _requirements(systems, life, found, k, hours, given) -> Requirements:
-    """Return what the bearing of a seat must do under the loads that were found."""
+    """Return the requirements on the bearing of a seat, under the solved loads."""
     force, tilt = _in_its_axes(systems, found, k)
     load = np.pad(force, ((0, 0), (0, 3)))
     seat, speed = systems[0].seats[k], None
@@ -292,8 +295,8 @@ def _requirements(systems, life, found, k, hours, given) -> Requirements:
     return Requirements(cases, life, **given)
 
 
-def _judged(asked, systems, duty: DutyResult | None, k: int, alone) -> dict[str, Any]:
-    """Return numbers and verdict of a bearing of a combination in the whole system."""
+def _judge_position(asked, systems, duty, k: int, alone) -> dict[str, Any]:
+    """Return the row of a bearing of a combination, judged in the whole system."""
     row = {**alone, "radial_force": np.nan, "axial_force": np.nan}
     if duty is None:
         miss = Miss("solved", why="a preload is more than its bearing can bear")
@@ -304,5 +307,5 @@ def _judged(asked, systems, duty: DutyResult | None, k: int, alone) -> dict[str,
     found: dict[str, Any] = {name: of[:, k] for name, of in duty.lives.items()}
     found |= dict(result=duty.result, peak_pressure=duty.peak_pressure[:, k])
     found |= dict(equivalent_load=load, reference_load=load, minimum_load=least)
-    miss = judge(asked, found, row)
+    miss = judge_bearing(asked, found, row)
     return {**row, **(miss or Miss(share=2.0))._asdict()}

@@ -1,10 +1,10 @@
-"""What tolerances do to results: quantiles, misses, causes, and what to tighten.
+"""Tolerance analysis: quantiles, probability of failing a requirement, variance shares.
 
-Samples of all numbers that scatter are solved in batches of one program. Beside them
-stands the answer of first order, from the gradient at the mean. The share that misses
-a requirement has derivatives by the widths of the tolerances: from the requirement,
-smoothed over a small part of the spread of its measure, and the exact gradients of
-samples near it.
+Samples of all numbers that scatter are solved in batches by one program. Beside their
+statistics stand those of the first-order second-moment method, from the gradient at the
+mean. The probability of failing a requirement has derivatives with respect to the width
+of each tolerance: the requirement is smoothed over a small part of the spread of its
+measure, and samples near it contribute their exact gradients.
 """
 
 import dataclasses
@@ -36,45 +36,45 @@ from ..optimise.variable import Variable, check_same_in_cases, with_numbers
 from ..statics import SolveOptions, Support
 from ..statics.support import RESTRAINED, check_held
 from .predict import CaseModel
-from .scatter import REPLICATES, Scatter, draw
+from .scatter import REPLICATES, Scatter, draw_samples
 
 QUANTILES = (0.01, 0.1, 0.5, 0.9, 0.99)
-"""Shares of all machines whose quantiles are told."""
+"""Probabilities of the quantiles that are reported [1]."""
 _BATCH, _MACHINES, _SLOPES = 256, 16, 64
-"""Cases side by side: of a bearing, of several on shafts, of any with gradients."""
+"""Cases in a batch: of a bearing, of a system of shafts, of either with gradients."""
 _BLOCK = 32
-"""Batches between two visits of the host."""
+"""Batches in one call of the program."""
 _NEAR = 512
-"""Most samples near a requirement whose gradients are worked out."""
+"""Largest number of samples near a requirement whose gradients are computed."""
 _SMOOTHING = 0.9
-"""Width over which a requirement is smoothed, over the spread of its measure and the
-fifth root of the number of samples (Silverman's rule) [1]."""
+"""Width over which a requirement is smoothed, over the deviation of its measure and
+n^(-1/5) of n samples (Silverman, Density Estimation, 1986, eq. 3.31) [1]."""
 _FAR = 4.0
-"""Distance from a requirement beyond which a sample does not feel it [widths]."""
+"""Distance from a requirement beyond which a sample has no gradient [widths]."""
 _DEGREE, _SAMPLES_OF_DEGREE = 8, 32
-"""Degree of the polynomials of a number, for its part in a variance, and samples that
-each degree asks for."""
+"""Highest degree of the polynomials of one number in the regression of a measure, and
+number of samples that each degree needs."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Spread(Shown):
-    """One measure over all samples that were solved.
+    """Distribution of one measure over all samples that were solved.
 
     Attributes:
         name: Name of the measure.
-        unit: Its SI unit; empty: none, or not known.
-        mean: Mean.
-        deviation: Standard deviation.
-        quantiles: Values that the shares `QUANTILES` of the samples do not exceed.
-        errors: Standard errors of mean, deviation and quantiles, from the sets of
-            samples.
-        first_order: Mean and standard deviation by value and gradient at the mean of
-            all numbers.
-        shares: Part of the variance that each number causes alone (number,) [1]; what
-            they leave to 1 is of several together. Correlated ones share.
-        first_order_shares: The same by the gradient (number,) [1].
-        slopes: Gradient at the mean (number,) [unit of the measure over SI].
-        misses: Share of all samples that misses its requirement [1]; `None`: none.
+        unit: SI unit of the measure; empty where there is none, or it is not known.
+        mean: Mean [unit].
+        deviation: Standard deviation [unit].
+        quantiles: Quantiles of 1, 10, 50, 90 and 99 % (quantile,) [unit].
+        errors: Standard errors of mean, deviation and quantiles (2 + quantile,) [unit],
+            from the sets of samples.
+        first_order: Mean and standard deviation by the first-order second-moment
+            method, from value and gradient at the mean of all numbers [unit].
+        shares: Share of the variance that each number causes alone, Sobol's first-order
+            index (number,) [1]; the rest to 1 is due to interactions.
+        first_order_shares: Variance shares by the gradient alone (number,) [1].
+        slopes: Gradient at the mean (number,) [unit over SI].
+        misses: Share of all samples that fail its requirement [1]; `None`: no such.
     """
 
     name: str
@@ -92,16 +92,19 @@ class Spread(Shown):
 
 @dataclasses.dataclass(frozen=True)
 class Misses(Shown):
-    """Share of all machines that misses a requirement, and what changes it.
+    """Probability of failing a requirement, and its derivatives by the tolerances.
 
     Attributes:
-        share: Share of the samples that misses one or several; failed ones do [1].
-        error: Its standard error [1].
-        smoothed: The share with smooth requirements, whose derivatives follow [1].
-        by_width: Its change with the width of each tolerance, over that width (number,)
-            [1]: a tenth less width changes it by a tenth of this.
-        by_middle: Its change as the whole tolerance moves by its width (number,) [1].
-        errors: Standard errors of `by_width` (number,) [1].
+        share: Share of the samples that fail one or several requirements, unsolved ones
+            among them [1].
+        error: Standard error of the share [1].
+        smoothed: Probability with smoothed requirements, of which the derivatives are
+            taken [1].
+        by_width: Derivative by the width of each tolerance, times that width (number,)
+            [1]: a width a tenth smaller lowers the probability by a tenth of this.
+        by_middle: Derivative by the middle of each tolerance, times its width (number,)
+            [1].
+        errors: Standard errors of the derivatives by width (number,) [1].
     """
 
     share: float
@@ -117,13 +120,13 @@ class Tolerances(Shown):
     """Results of `tolerances`.
 
     Attributes:
-        scatters: The numbers that scatter.
-        spreads: Each measure.
-        misses: Share that misses a requirement; `None` without requirements.
+        scatters: Numbers that scatter.
+        spreads: Distribution of each measure.
+        misses: Probability of failing a requirement; `None` without requirements.
         samples: Values of the numbers (sample, number) [SI].
-        values: Values of the measures (sample, measure) [SI]; NaN of failed samples.
+        values: Values of the measures (sample, measure) [SI]; NaN for unsolved samples.
         result: `Result` code of each sample (sample,).
-        warnings: What to doubt of the design at the mean of all numbers.
+        warnings: Warnings about the design at the mean of all numbers.
     """
 
     scatters: tuple[Scatter, ...] = dataclasses.field(repr=False)
@@ -137,16 +140,16 @@ class Tolerances(Shown):
 
 @dataclasses.dataclass(frozen=True)
 class Tightening(Shown):
-    """Widths of tolerances that keep a share of misses at the least cost.
+    """Cheapest tolerances that keep a probability of failing a requirement.
 
     Attributes:
-        widths: Width of each over that given (number,) [1].
-        cost: Cost of narrowing them.
-        before: Share that misses with the widths given [1].
-        after: Share that misses with these [1].
+        widths: Width of each tolerance over the given width (number,) [1].
+        cost: Cost of narrowing, in the currency of the scatters.
+        before: Share of failing samples with the given widths [1].
+        after: Share of failing samples with the narrowed widths [1].
         error: Standard error of `after` [1].
         converged: Whether the search found a minimum.
-        message: How it ended.
+        message: How the search ended, in words.
     """
 
     widths: Float[np.ndarray, " number"]
@@ -165,20 +168,34 @@ def tolerances(
     measures: Sequence[Any],
     **options: Any,
 ) -> Tolerances:
-    """Solve many machines whose numbers scatter, and tell what results they have.
+    """Solve samples of a design whose numbers scatter, and return their distributions.
 
     Args:
-        element, cases: The design and its operating cases, as in `optimise`.
-        scatters: The numbers that scatter, each by itself but for `correlation`.
-        measures: What is asked, as in `optimise`; in a `Constraint` a requirement.
-        **options: Of `Sampled`: samples, seed, correlation, support, solve, build.
+        element: The design (`BearingElement`, `Installed` or a system), as in
+            `optimise`.
+        cases: Its operating cases.
+        scatters: Numbers that scatter, independent except for `correlation`.
+        measures: Measures, as in `optimise`; within a `Constraint` it is a requirement.
+        **options: `samples`: smallest number of samples (default 10 000), rounded up to
+            8 times a power of 2; `seed` of the samples (0); `correlation`: matrix of
+            all numbers (number, number), of their normal scores if they are not normal
+            (none); `support`: support of the rings, with displacements by the cases
+            (`statics.Support()`); `solve`: `SolveOptions`; `build`: function from the
+            changed design to that which is solved; `progress`: function called between
+            batches with the share done.
 
     Returns:
-        Tolerances. Samples that are not solved count as misses, and nowhere else.
+        Tolerances. Unsolved samples count as failing, and in no other statistic.
 
     Raises:
-        TypeError, ValueError: As `Sampled`.
+        TypeError, ValueError: For wrong numbers, measures or cases, numbers that the
+            design does not allow at an end of their range, and correlations that
+            contradict each other.
         SolveError: If the design at the mean of all numbers does not solve.
+
+    Source: First-order second-moment method: JCGM 100 (2008), eq. 13. Variance shares:
+        Sobol, Math. Comput. Simul. 55 (2001) 271, by regression as Sudret, Reliab. Eng.
+        Syst. Saf. 93 (2008) 964.
     """
     sampled = Sampled(element, cases, scatters, measures, **options)
     return sampled.conclude(*sampled.run())
@@ -195,23 +212,23 @@ def tighten(
     max_steps: int = 30,
     **options: Any,
 ) -> Tightening:
-    """Find the widths of tolerances that keep a share of misses at the least cost.
+    """Find the cheapest tolerances that keep a probability of failing a requirement.
 
-    Narrowed tolerances keep their mean. The search moves one set of samples, with
-    smooth requirements; `before` and `after` are counted in samples of another seed.
+    Narrowed tolerances keep their mean. The search (SLSQP) scales one set of samples,
+    with smoothed requirements; `before` and `after` are counted in other samples.
 
     Args:
-        element: The design.
-        cases: Its operating cases.
-        measures: What is asked; a `Constraint` at least is among it.
-        options: Of `Sampled`, as in `tolerances`.
-        scatters: The numbers that scatter; those with a `cost` may be narrowed.
-        most_misses: Largest share that may miss a requirement [1].
-        narrowest: Least width over that given [1].
-        max_steps: Step limit of the search (SLSQP).
+        element, cases: The design and its operating cases.
+        scatters: Numbers that scatter; those with a `cost` may be narrowed.
+        measures: Measures; at least one of them is in a `Constraint`.
+        most_misses: Largest probability of failing a requirement [1].
+        narrowest: Smallest width over the given width [1].
+        max_steps: Step limit of the search.
+        **options: As of `tolerances`.
 
-    Raises: as `tolerances`; ValueError too without costs or requirements, and for
-        shares that are none.
+    Raises:
+        TypeError, ValueError, SolveError: As `tolerances`; ValueError also without
+            costs or requirements, and for shares that are not between 0 and 1.
     """
     sampled = Sampled(element, cases, scatters, measures, **options)
     free = np.array([one.cost is not None for one in scatters])
@@ -254,19 +271,20 @@ def tighten(
 
 
 class Bounds(NamedTuple):
-    """Limits of a measure; infinite where there is none."""
+    """Requirement on a measure: its limits [SI], infinite where there is none."""
 
     measure: int
     lower: float
     upper: float
 
     def are_missed(self, values: np.ndarray) -> np.ndarray:
-        """Whether each sample misses them; NaN do."""
+        """Return whether each sample is beyond a limit, as NaN is (sample,)."""
         one = values[:, self.measure]
         return ~((one >= self.lower) & (one <= self.upper))
 
     def smooth(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Smooth miss of each sample, and its derivative by the measure (sample,)."""
+        """Return the smoothed miss of each sample, from 0 to 1, and its derivative by
+        the measure (sample,)."""
         from scipy.stats import norm
 
         one = values[:, self.measure]
@@ -283,28 +301,7 @@ class Bounds(NamedTuple):
 
 
 class Sampled:
-    """Samples of a design whose numbers scatter.
-
-    Args:
-        element: The design.
-        cases: Its operating cases.
-        scatters: The numbers that scatter.
-        measures: What is asked; requirements are in a `Constraint`.
-        samples: Least number of samples; taken are 8 times a power of 2.
-        seed: Seed of the samples.
-        correlation: Correlations of all numbers (number, number); of those that are not
-            normal, of the normal scores behind them. `None`: there are none.
-        support: What holds the rings; displacements are those of the cases.
-        solve: Numerics of the load solves; `None`: `SolveOptions()`.
-        build: Returns the design to be solved from that with other numbers; `None`: it
-            is that one.
-        told: Called between batches with the share that is done; `None`: nothing.
-
-    Raises:
-        TypeError, ValueError: For wrong numbers, measures or cases, numbers that the
-            design does not allow at an end of their range, and correlations that
-            contradict each other.
-    """
+    """Samples of a design whose numbers scatter; arguments and errors: `tolerances`."""
 
     def __init__(
         self,
@@ -319,7 +316,7 @@ class Sampled:
         support: Support = RESTRAINED,
         solve: SolveOptions | None = None,
         build: Callable[[Any], Any] | None = None,
-        told: Callable[[float], Any] | None = None,
+        progress: Callable[[float], Any] | None = None,
     ):
         owner = "tolerances"
         count(owner, "samples", samples)
@@ -341,8 +338,9 @@ class Sampled:
             root, fits = np.eye(n), False
         allowed = f"({n}, {n}), 1 along the diagonal and positive definite"
         must_be(owner, "correlation", correlation, fits, allowed)
-        self._draw = lambda more: draw(self.scatters, root, samples, seed + more)
-        self._told = told
+        drawn = self.scatters, root, samples
+        self._draw = lambda more: draw_samples(*drawn, seed + more)
+        self._progress = progress
         self.bounds, self.measures = [], ()
         for k, one in enumerate(measures):
             if isinstance(one, Constraint):
@@ -369,21 +367,21 @@ class Sampled:
     def run(
         self, widths: Any = 1.0, seed: int = 0
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Samples, their measures, NaN of failed ones, and result codes.
+        """Return samples, their measures, NaN where unsolved, and result codes.
 
         Args:
-            widths: Widths of the tolerances over those given (number,).
-            seed: Added to that of the samples.
+            widths: Widths of the tolerances over the given widths (number,) [1].
+            seed: Number added to the seed of the samples.
         """
         samples = self.centre + widths * (self._draw(seed) - self.centre)
         return samples, *self.solve(samples, False)[:2]
 
     def solve(self, samples: np.ndarray, slopes: bool) -> tuple[Any, Any, Any]:
-        """Measures (sample, measure), result codes (sample,) and gradients (sample,
-        measure, number) of samples; `None` without `slopes`.
+        """Return measures (sample, measure), result codes (sample,) and gradients
+        (sample, measure, number), or `None` without `slopes`.
 
-        Load solves start from the rings' displacements at the mean of all numbers, and
-        what is not solved so again from first contact."""
+        Load solves start from the displacements at the mean of all numbers; those that
+        fail are repeated from first contact."""
         contact = np.full((self._given[1].count, 6), np.nan)
         if self._starts is None:
             self._starts = contact  # all that a system needs
@@ -400,19 +398,19 @@ class Sampled:
         return np.where(result[:, None] == 0, values, np.nan), result, gradient
 
     def _solve_from(self, starts, samples, slopes) -> Any:
-        """Displacements of the moving ring (sample, case, 6) [m, rad], and what `solve`
-        returns, of load solves that start from displacements (case, 6) [m, rad]."""
+        """Return displacements of the moving ring (sample, case, 6) [m, rad] and what
+        `solve` returns, starting from displacements (case, 6) [m, rad]."""
         run = _solve_few if slopes or self._several else _solve_many
         found, batch = [], self._batches[slopes]
-        # One shape of samples with gradients: their program is compiled once.
+        # Samples with gradients have one shape, so that their program compiles once.
         size = batch * (1 if slopes else min(_BLOCK, -(-len(samples) // batch)))
         for begin in range(0, len(samples), size):
             part = samples[begin : begin + size]
             filled = jnp.asarray(np.resize(part, (size, part.shape[1])))
             out = run(*self._given, jnp.asarray(starts), filled, batch, slopes)
             found.append(jax.tree.map(np.asarray, out))
-            if self._told is not None and not slopes:
-                self._told(min(1.0, (begin + size) / len(samples)))
+            if self._progress is not None and not slopes:
+                self._progress(min(1.0, (begin + size) / len(samples)))
         return jax.tree.map(
             lambda *parts: np.concatenate(parts)[: len(samples)], *found
         )
@@ -420,10 +418,7 @@ class Sampled:
     def conclude(
         self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
     ) -> Tolerances:
-        """Results of solved samples.
-
-        Args: as `misses`.
-        """
+        """Return the results of solved samples, as from `run`."""
         middle, code, slopes = self.solve(self.centre[None], True)
         if code[0] != Result.CONVERGED:
             label = Result(int(code[0])).label
@@ -463,7 +458,7 @@ class Sampled:
             mean,
             deviation,
             np.array(quantiles),
-            _error(each),
+            _standard_error(each),
             (float(middle), variance**0.5),
             _variance_shares(samples[known], column[known]),
             effect**2 / (variance or 1.0),
@@ -474,16 +469,12 @@ class Sampled:
     def misses(
         self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
     ) -> Misses:
-        """Share that misses a requirement, and its derivatives.
-
-        Args:
-            samples, values, result: From `run`.
-        """
+        """Return probability of failing and its derivatives, of samples from `run`."""
         failed = result != Result.CONVERGED
         missed = failed | np.any([b.are_missed(values) for b in self.bounds], axis=0)
         smooth = [bound.smooth(values) for bound in self.bounds]
         kept = np.prod([1.0 - one for one, _ in smooth], axis=0) * ~failed
-        # d(miss)/d(measure) of each sample, by the product rule.
+        # Derivative of a sample's failing by each measure, by the product rule.
         pulls = np.zeros_like(values)
         for j, (bound, (_, pull)) in enumerate(zip(self.bounds, smooth, strict=True)):
             others = [1.0 - one for i, (one, _) in enumerate(smooth) if i != j]
@@ -493,7 +484,7 @@ class Sampled:
         by_width, by_middle, errors = np.zeros((3, n))
         if near.size:
             if near.size > _NEAR:
-                # Evenly from one side of the requirements to the other.
+                # Taken evenly from one side of the requirements to the other.
                 near = near[np.argsort(pulls[near].sum(axis=1), kind="stable")]
                 near = near[np.linspace(0, near.size - 1, _NEAR).astype(int)]
             gradient = self.solve(samples[near], True)[2]
@@ -503,7 +494,7 @@ class Sampled:
             by_middle = each.mean(axis=0) * [one.width for one in self.scatters]
         return Misses(
             float(missed.mean()),
-            float(_error([part.mean() for part in np.split(missed, REPLICATES)])),
+            float(_standard_error([m.mean() for m in np.split(missed, REPLICATES)])),
             float(np.mean(1.0 - kept)),
             by_width,
             by_middle,
@@ -530,20 +521,18 @@ def _check_ends(element, scatters, centre, paths, factors) -> None:
 
 
 def _statistics(values: np.ndarray) -> list[float]:
-    """Mean, standard deviation and quantiles."""
+    """Return mean, standard deviation and quantiles."""
     return [values.mean(), values.std(), *np.quantile(values, QUANTILES)]
 
 
-def _error(each: Sequence[Any]) -> Any:
-    """Standard error of a statistic of all sets, from those of each."""
+def _standard_error(each: Sequence[Any]) -> Any:
+    """Return the standard error of a statistic of all sets, from those of each."""
     return np.std(each, axis=0, ddof=min(1, len(each) - 1)) / len(each) ** 0.5
 
 
 def _variance_shares(samples: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Part of the variance that each number causes alone (number,).
-
-    That of the values' regression on polynomials of the number, less what chance adds.
-    """
+    """Return Sobol's first-order index of each number (number,) [1]: the variance of
+    the regression on polynomials of it over the whole, less the part due to chance."""
     variance, n, found = values.var(), len(values), []
     if variance == 0.0:
         return np.zeros(samples.shape[1])
@@ -590,7 +579,7 @@ def _solve_many(*given):
     return _solve(*given)
 
 
-# Gradients, and machines, take longer to compile than their samples to work out.
+# Gradients and systems take longer to compile than to solve their samples.
 @program(quick=True, what="samples within tolerances")
 def _solve_few(*given):
     return _solve(*given)

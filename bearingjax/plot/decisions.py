@@ -1,4 +1,4 @@
-"""Pages on identified numbers, choices of bearings and tolerances."""
+"""Figures of identification, selection of bearings and tolerance analysis."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,18 +14,19 @@ from .style import COLOURS, GREY, INNER, OUTER, ROLLER, Figure, head, new_page
 def identify_overview(
     found: Identified, units: Mapping[str, str], title: str = ""
 ) -> Figure:
-    """Plot predicted over measured numbers, and residuals with their errors.
+    """Plot predicted over measured values, and residuals with their errors.
 
-    A row for each measured name: left predicted over measured, with the line on which
-    they are alike; right the residuals over the cases, with bars of one standard error.
+    Each measured name has a row: on the left predicted over measured values, with the
+    line of equality; on the right residuals over cases, with bars of one standard
+    error.
 
     Args:
-        found: From `identify`.
-        units: SI units by name; others are pure numbers.
-        title: Head of the page.
+        found: Result of `identify`.
+        units: SI units by name; names that are missing have none.
+        title: Title of the figure; "Measured and predicted" if empty.
 
     Returns:
-        The figure, 10 inches wide.
+        Figure, 10 inches wide.
     """
     names = [name for name in found.residual if name not in found.names]
     figure = new_page(10.0, 0.6 + 3.2 * len(names))
@@ -55,17 +56,17 @@ def identify_overview(
 
 
 def selection_overview(found: Selection, title: str = "") -> Figure:
-    """Plot the bearings that were solved: life over mass, and the required life.
+    """Plot life over mass of the bearings that were solved, and the required life.
 
-    Without a life in hours the static safety stands in its place. The best of those
-    that fit is named.
+    Where nothing turns, static safety takes the place of the life. The best bearing
+    that fits is named.
 
     Args:
-        found: From `select`.
-        title: Head of the page.
+        found: Result of `select`.
+        title: Title of the figure; "Choice of bearing" if empty.
 
     Returns:
-        The figure, 8 by 5.5 inches.
+        Figure, 8 by 5.5 inches.
     """
     table, fits = found.table, found.table["requirement"] == ""
     turning = np.isfinite(table["life_hours"]).any()
@@ -94,23 +95,23 @@ def selection_overview(found: Selection, title: str = "") -> Figure:
 
 _BINS = 40
 _MOST = 4
-"""Most measures drawn."""
+"""Largest number of measures that are plotted."""
 
 
 def tolerance_overview(found: Any, title: str = "") -> Figure:
-    """Plot the distribution of each measure, and the causes of its variance.
+    """Plot the distribution of each measure, and the shares of its variance.
 
-    Above a histogram of the samples, with the quantiles of 1, 50 and 99 % and the
-    normal distribution by the gradient at the mean; below the share of the variance
-    that each number causes alone, and that by the gradient. Of many measures the first
-    four.
+    The upper row has histograms of the samples, with the quantiles of 1, 50 and 99 %
+    and the normal distribution of first order, by the gradient at the mean. The lower
+    row has the share of the variance that each number causes alone, from the samples
+    and by the gradient. Only the first four measures are shown.
 
     Args:
-        found: From `decide.tolerances`.
-        title: Head of the page; "Tolerances" if empty.
+        found: Result of `decide.tolerances`.
+        title: Title of the figure; "Tolerances" if empty.
 
     Returns:
-        The figure, 4.2 inches wide for each measure and 7.6 high.
+        Figure, 4.2 inches wide for each measure and 7.6 inches high.
     """
     spreads = found.spreads[:_MOST]
     figure = new_page(max(6.0, 4.2 * len(spreads)), 7.6)
@@ -143,5 +144,5 @@ def _histogram(spread, values, ax):
         ax.plot(x, normal, color="0.1", linestyle="--", label="by the gradient")
         ax.legend(fontsize="small")
     ax.set_yticks([])
-    ax.locator_params("x", nbins=5)  # lives of five digits
+    ax.locator_params("x", nbins=5)  # labels of five digits must not overlap
     Panel("", axis, Axis("density"), []).draw(ax)

@@ -335,8 +335,8 @@ WRONG = {
         ValueError,
         "one finite number, or 6",
     ),
-    "no unknowns": (dict(unknowns=[]), ValueError, "they must be one each"),
-    "twice": (dict(unknowns=[CONTACT[0]] * 2), ValueError, "they must be one each"),
+    "no unknowns": (dict(unknowns=[]), ValueError, "their names must differ"),
+    "twice": (dict(unknowns=[CONTACT[0]] * 2), ValueError, "their names must differ"),
     "no readings": (dict(readings={}), ValueError, "`readings` is {}"),
     "error of a candidate": (
         dict(candidates={"approach": 0.0}),

@@ -20,7 +20,7 @@ from bearingjax.decide import (
     NoiseLevel,
     Scatter,
     tolerances,
-    within,
+    truncated_normal,
 )
 from bearingjax.decide.identify import _read_call, _warnings
 from bearingjax.decide.least_squares import Fit
@@ -159,7 +159,7 @@ def test_warnings_are_those_of_what_is_found(monkeypatch):
         )
 
     monkeypatch.setattr(Sampled, "solve", solve)
-    scatters = [Scatter(path, within(1e-5, 2e-5))]
+    scatters = [Scatter(path, truncated_normal(1e-5, 2e-5))]
     found = tolerances(one, cases(SPEED), scatters, [NoiseLevel()], samples=16)
     assert found.warnings == ["at the mean: 1.5e-05"]  # not of the 1.2e-05 given
 
@@ -201,7 +201,7 @@ def test_levels_of_random_bearings_as_in_time():
     play = "installed.drawing.bearing.radial_internal_clearance"
     scatters = [
         Scatter(path, stats.rayleigh(scale=wave[0] / 2**0.5)),
-        Scatter(play, within(6e-6, 18e-6)),
+        Scatter(play, truncated_normal(6e-6, 18e-6)),
     ]
     asked = one, cases(SPEED), scatters, [NoiseLevel()]
     sampled = Sampled(*asked, samples=8, support=FREE)

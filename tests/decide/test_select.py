@@ -11,7 +11,12 @@ import bearingjax as bj
 from bearingjax.cases.sweep import SUMMARIES, structure_of
 from bearingjax.catalogue.entry import bearing_of_entry
 from bearingjax.decide import Requirements
-from bearingjax.decide.select import _as_bounds, _of_kind, as_drawn, judge
+from bearingjax.decide.select import (
+    _as_bounds,
+    _with_common_places,
+    bearing_as_drawn,
+    judge_bearing,
+)
 from bearingjax.decide.select_positions import _loads, _requirements
 from bearingjax.life.life_warning import minimum_load
 from bearingjax.shafts import Drive, DutyResult, Seat, ShaftLine, ShaftSystem
@@ -101,7 +106,7 @@ def test_select_judges_by_what_is_missed_most():
         "stiffness": np.array([1e8, 8e8])[:, None, None] * np.eye(12),
     }
     row = {}
-    miss = judge(asked, found, row)
+    miss = judge_bearing(asked, found, row)
     assert miss is not None and miss.requirement == "stiffness_uy"
     assert (miss.value, miss.limit, miss.share) == (8e8, 2e8, 0.25)
     turns = 150.0 * 3600.0 / (2.0 * np.pi)
@@ -110,7 +115,7 @@ def test_select_judges_by_what_is_missed_most():
     wanted |= {"peak_pressure": 2.5e9, "friction_torque": 1.75}
     for name, value in wanted.items():
         assert row[name] == pytest.approx(value, rel=ROUNDING)
-    miss = judge(asked, found | {"result": np.array([0, 3])}, row)
+    miss = judge_bearing(asked, found | {"result": np.array([0, 3])}, row)
     assert miss is not None and miss.requirement == "solved" and "case 1" in miss.why
 
 
@@ -120,7 +125,9 @@ def test_select_judges_by_what_is_missed_most():
 )
 def test_bearings_of_a_type_share_a_program(one, other):
     entries = map(bj.catalogue_entry, (one, other))
-    structures = [structure_of(_of_kind(as_drawn(e), e.type)) for e in entries]
+    structures = [
+        structure_of(_with_common_places(bearing_as_drawn(e), e.type)) for e in entries
+    ]
     assert structures[0] == structures[1]
 
 
@@ -149,7 +156,7 @@ def test_bounds_by_one_number_have_the_sense_of_their_name():
         ({"types": []}, "`types` is ..; it must be one name at least"),
         ({"rank_by": "friction_torque"}, "without speed and oil"),
         ({"clearance_class": "C6"}, "one of C2"),
-        ({"life": bj.LifeConditions(required=1e4), "load": np.ones(6)}, "turns"),
+        ({"life": bj.LifeConditions(required=1e4), "load": np.ones(6)}, "no ring"),
         ({"life": bj.LifeConditions(dynamic_capacity=1e4)}, "each bearing has its own"),
         ({"support": bj.Support(["ux", "uz"])}, "not among `free`"),
     ],

@@ -16,13 +16,13 @@ from bearingjax.decide import (
     tighten,
     tolerance_effects,
     tolerances,
-    within,
+    truncated_normal,
 )
-from bearingjax.decide.scatter import draw
+from bearingjax.decide.scatter import draw_samples
 from bearingjax.decide.tolerance_effects import (
     QUANTILES,
     Sampled,
-    _error,
+    _standard_error,
     _variance_shares,
 )
 from bearingjax.fits import Limits, SizeLimits
@@ -91,12 +91,12 @@ def test_scatter_refuses_what_is_none():
         with pytest.raises(kind, match=f"Scatter: `{text}`"):
             Scatter(*given)
     for given, text in (((2.0, 1.0), "lower"), ((1.0, 2.0, 1.5, 0.0), "deviation")):
-        with pytest.raises(ValueError, match=f"within: `{text}`"):
-            within(*given)
+        with pytest.raises(ValueError, match=f"truncated_normal: `{text}`"):
+            truncated_normal(*given)
 
 
-def test_within_is_cut_off_at_three_deviations():
-    made = Scatter("a", within(1e-6, 7e-6))
+def test_truncated_normal_ends_at_three_deviations():
+    made = Scatter("a", truncated_normal(1e-6, 7e-6))
     assert made.ends == pytest.approx((1e-6, 7e-6), rel=ROUNDING)
     assert made.centre == pytest.approx(4e-6, rel=ROUNDING)
     assert made.spread == pytest.approx(0.9866e-6, rel=1e-4)  # of ±3 standard ones
@@ -128,17 +128,17 @@ def test_sizes_of_classes_scatter_within_their_limits(element):
         class_scatters(element)
 
 
-def test_draw_has_distributions_and_correlation():
+def test_draw_samples_has_distributions_and_correlation():
     scatters = [*numbers(), Scatter("c", stats.uniform(2.0, 4.0))]
     root = np.linalg.cholesky([[1.0, 0.6, 0.0], [0.6, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    found = draw(scatters, root, 8000, 1)
+    found = draw_samples(scatters, root, 8000, 1)
     assert found.shape == (8192, 3)
     assert found.mean(axis=0) == pytest.approx([0.0, 0.0, 4.0], abs=1e-3)
     assert found.std(axis=0) == pytest.approx([1.0, 0.5, 4.0 / 12**0.5], rel=2e-3)
     assert np.corrcoef(found.T)[0] == pytest.approx([1.0, 0.6, 0.0], abs=2e-3)
     assert found[:, 2].min() > 2.0 and found[:, 2].max() < 6.0
-    assert not np.array_equal(found, draw(scatters, root, 8000, 2))
-    assert np.array_equal(found, draw(scatters, root, 8000, 1))
+    assert not np.array_equal(found, draw_samples(scatters, root, 8000, 2))
+    assert np.array_equal(found, draw_samples(scatters, root, 8000, 1))
 
 
 def test_spread_of_linear_measure(element, closed_form):
@@ -151,7 +151,9 @@ def test_spread_of_linear_measure(element, closed_form):
     assert found.first_order_shares == pytest.approx([9 / 13, 4 / 13], rel=ROUNDING)
     assert found.shares == pytest.approx([9 / 13, 4 / 13], abs=0.02)
     assert found.slopes == pytest.approx(SLOPE)
-    assert _error([1.0, 3.0]) == pytest.approx(1.0)  # 2**0.5 of each, of two sets
+    assert _standard_error([1.0, 3.0]) == pytest.approx(
+        1.0
+    )  # 2**0.5 of each, of two sets
 
 
 def test_spread_of_correlated_numbers(element, closed_form):
@@ -262,8 +264,8 @@ def test_samples_are_designs_that_all_their_cases_solve(element, monkeypatch):
         monkeypatch.setattr(f"{module}.{name}", tolerance_effects._solve)
     path = f"bearing.{PLAY}"
     scatters = [
-        Scatter({path: 1.0}, within(1e-5, 3e-5), "large"),
-        Scatter({path: -1.0}, within(-4e-6, 4e-6), "small"),
+        Scatter({path: 1.0}, truncated_normal(1e-5, 3e-5), "large"),
+        Scatter({path: -1.0}, truncated_normal(-4e-6, 4e-6), "small"),
     ]
     cases = bj.Cases([[2.5e-5, 0, 0, 0, 0, 0], [1.0, 0, 0, 0, 0, 0]])
     sampled = Sampled(element, cases, scatters, [linear], samples=8)
@@ -340,7 +342,7 @@ def test_variance_shares_of_few_samples():
     """Of a sum and of a kink, by integration; chance moves shares of 256 samples by
     0.015, and 0.04 is beyond its reach."""
     scatters = [Scatter({name: 1.0}, stats.norm(), name) for name in "abcd"]
-    x = draw(scatters, np.eye(4), 256, 5)
+    x = draw_samples(scatters, np.eye(4), 256, 5)
     shares = _variance_shares(x, x @ [3.0, 2.0, 1.0, 0.0])
     assert shares == pytest.approx(np.array([9.0, 4.0, 1.0, 0.0]) / 14.0, abs=0.04)
     bent = _variance_shares(x, 3.0 * np.minimum(x[:, 0], 0.3) + x[:, 1])
@@ -360,7 +362,7 @@ def test_variance_shares_of_ishigami():
 
 
 def test_tolerances_refuse_what_does_not_fit(element):
-    play = Scatter(f"bearing.{PLAY}", within(0.0, 2e-5), "play")
+    play = Scatter(f"bearing.{PLAY}", truncated_normal(0.0, 2e-5), "play")
     cases = bj.Cases([[0.0, -1e3, 0.0, 0.0, 0.0, 0.0]])
     for scatters, measures, more, text in (
         ([], [linear], {}, "scatters"),
@@ -368,16 +370,21 @@ def test_tolerances_refuse_what_does_not_fit(element):
         ([play], [], {}, "measures"),
         ([play], [linear], {"samples": 0}, "samples"),
         ([play], [linear], {"correlation": [[1.0, 0.0], [0.0, 1.0]]}, "correlation"),
-        ([Scatter("bearing.no", within(0, 1))], [linear], {}, "no number"),
-        ([Scatter("bearing.n_balls", within(0, 1))], [linear], {}, "no number"),
+        ([Scatter("bearing.no", truncated_normal(0, 1))], [linear], {}, "no number"),
         (
-            [Scatter(f"bearing.{CROWN}", within(-1e-3, 1e-2), "ball")],
+            [Scatter("bearing.n_balls", truncated_normal(0, 1))],
+            [linear],
+            {},
+            "no number",
+        ),
+        (
+            [Scatter(f"bearing.{CROWN}", truncated_normal(-1e-3, 1e-2), "ball")],
             [linear],
             {},
             "ball may be -0.001, which the design does not allow",
         ),
         (
-            [Scatter(f"bearing.{CROWN}", within(7e-3, 7e-2), "ball")],
+            [Scatter(f"bearing.{CROWN}", truncated_normal(7e-3, 7e-2), "ball")],
             [linear],
             {},
             "ball may be 0.07, which the design does not allow",
@@ -399,9 +406,9 @@ def fan():
     )
     shaft, bore = "mounting.shaft_interference", "mounting.shaft_interference"
     scatters = [
-        Scatter("mounting.radial_clearance", within(8e-6, 2e-5), "clearance"),
-        Scatter({shaft: 1.0}, within(2e-6, 1.1e-5), "shaft"),
-        Scatter({bore: -1.0}, within(-1e-5, 0.0), "bore"),
+        Scatter("mounting.radial_clearance", truncated_normal(8e-6, 2e-5), "clearance"),
+        Scatter({shaft: 1.0}, truncated_normal(2e-6, 1.1e-5), "shaft"),
+        Scatter({bore: -1.0}, truncated_normal(-1e-5, 0.0), "bore"),
     ]
     life = Constraint(RatingLife(hours=True), lower=2.93e3)
     return place, cases, scatters, [life, PeakPressure(), OperatingClearance()]

@@ -87,12 +87,12 @@ class CasesKeys(Keys):
         json=_VARIES,
     )
     file: str | None = scene_key(
-        "path of a CSV with a row for each case, its header such as"
-        " `operating.load.Fy [kN]`; with a column `time` (CSV or Parquet) of a record,"
-        " each row of which holds until the next one"
+        "path of a CSV table with a row for each case, headers such as"
+        " `operating.load.Fy [kN]`; with a column `time` (CSV or Parquet) a record in"
+        " time, each row of which holds until the next one"
     )
     gaps: str = scene_key(
-        "gaps and rows without a number in a record; `leave_out`: they do not count",
+        "treatment of gaps and bad rows in a record: an error, or they do not count",
         choices=GAPS,
         default="refuse",
         needs=("file",),

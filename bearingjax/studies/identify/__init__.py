@@ -1,1 +1,1 @@
-"""Numbers of a bearing from measurements."""
+"""Identification of numbers of a scene from measurements."""

@@ -6,8 +6,8 @@ from ..outcome import Outcome, Tools, outcome_of, picture, unsolved_start
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Identify the unknowns that [identify] of a scene names from a table of
-    measurements, a row for each case."""
+    """Estimate the unknown numbers that [identify] of a scene names from a table of
+    measurements with a row for each case, and report their standard errors."""
     from ...numerics import SolveError
     from . import run as identification
     from .read_identify import read_identification

@@ -1,4 +1,4 @@
-"""The [identify] table of a scene, and its measured table."""
+"""Reader of [identify] of a scene, and of its table of measurements."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -25,21 +25,21 @@ from ..optimise.read_optimise import (
 from .subjects import Setup, Subject, read_setup
 
 ERROR = ".error"
-"""Ends the header of a column of standard deviations."""
+"""Ending of the header of a column of standard deviations."""
 
 
 class IdentifyKeys(Keys):
-    about = "[identify]: numbers of bearing, shafts or rotor from measurements"
+    about = "[identify]: numbers of a bearing, shafts or a rotor from measurements"
 
     data: str | None = scene_key(
-        "path of a CSV with a row for each case: conditions by their keys, measured"
-        " numbers by their names (of a bearing as in the table of a sweep), each with"
-        " its unit",
+        "path of a CSV table with a row for each case: columns of conditions by their"
+        " keys and of measured results by name (of a bearing as in the table of a"
+        " sweep), each with its unit",
         otherwise="that of `--data`",
     )
     unknowns: Any = names_key(
-        "numbers that are not known, by their key in the scene, in quotes:"
-        " `{ from, to, start, prior, prior_error }`"
+        "unknown numbers by their key in the scene, in quotes: `{ from, to, start,"
+        " prior, prior_error }`, bounds, start value, prior and its standard deviation"
     )
     errors: Any = names_key(
         "standard deviation of the readings of each column, unless the table has it",
@@ -47,31 +47,31 @@ class IdentifyKeys(Keys):
         tables=False,
     )
     errors_known: bool = scene_key(
-        "whether the standard deviations hold; if not, up to a factor", default=True
+        "whether `errors` are absolute; if not, the residuals scale them", default=True
     )
     wanted: tuple[str, ...] | None = scene_key(
-        "results that are predicted with their bands, or unknowns, which further"
-        " readings should tell better",
+        "results that are predicted with standard errors, or unknowns, whose variance"
+        " further readings are to lower",
         otherwise="all unknowns",
     )
     candidates: Any = names_key(
-        "readings that could be taken, each with its standard deviation",
+        "further readings that could be taken, each with its standard deviation",
         default=None,
         tables=False,
     )
 
 
 class Identification(NamedTuple):
-    """What [identify] asks for, as in `decide.identify`.
+    """Arguments of `decide.identify` by [identify] of a scene.
 
     Attributes:
         subject: The scene, its model and the cases of the measured table.
-        unknowns: Numbers of the design, named as in the scene.
-        readings: Measured numbers by name (case,) [SI].
-        errors: Their standard deviations by name [SI]; `None`: not known.
-        wanted: Names of what is to be known better.
+        unknowns: Unknown numbers of the design, named as in the scene.
+        readings: Measured values by name (case,) [SI].
+        errors: Standard deviations of the readings by name [SI]; `None`: not known.
+        wanted: Names of results or unknowns whose variance is to be lowered.
         candidates: Standard deviations of further readings by name [SI].
-        errors_known: Whether the errors hold, or up to a factor.
+        errors_known: Whether the errors are absolute, or known up to a factor.
         units: SI units of all numbers, by name.
         inputs: The scene as it was read, in SI, with [identify].
     """
@@ -153,7 +153,7 @@ def _measured(held: Table, setup: Setup) -> Any:
     try:
         header = read_columns(folder / name)[0][1]
     except (ValueError, IndexError):
-        header = []  # told by `read_list`
+        header = []  # `read_list` raises the error
     for title in header:
         key = title.partition("[")[0].strip()
         own = key.removesuffix(ERROR)
@@ -202,7 +202,7 @@ def _unknowns(table: Table, design: Any, numbers) -> Any:
 
 
 def _errors(table: Table, given: Table, read: dict, units: dict) -> Any:
-    """Take the columns of errors out of those that were read; return all errors."""
+    """Remove the columns of errors from those that were read; return all errors."""
     found = {k.removesuffix(ERROR): read.pop(k) for k in [*read] if k.endswith(ERROR)}
     for name in given.keys():
         if name not in read or name in found:

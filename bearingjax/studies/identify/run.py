@@ -1,4 +1,4 @@
-"""Identify numbers of the bearing of a scene, and report them."""
+"""Run the identification of a scene, and report its estimates."""
 
 from typing import Any
 
@@ -15,18 +15,15 @@ from ..bearing.read_scene import Scene
 from .read_identify import Identification
 
 _MOST, _LONGEST = 5, 40
-"""Most residuals and further readings, and most predictions, that are shown."""
+"""Largest numbers of residuals and further readings, and of predictions, shown."""
 
 
 def run_identification(task: Identification) -> Identified:
-    """Identify the unknowns of a scene.
-
-    Args:
-        task: From `read_identification`.
+    """Estimate the unknowns of a scene, as read by `read_identification`.
 
     Raises:
         SolveError: If a measured case does not solve at the start.
-        SceneError: For readings that cannot tell the unknowns.
+        SceneError: For readings too few for the unknowns, or that depend on none.
     """
     subject = task.subject
     with scene_errors(f"{subject.scene.name}: [identify]"):
@@ -43,12 +40,7 @@ def run_identification(task: Identification) -> Identified:
 
 
 def identification_report(task: Identification, found: Identified) -> Report:
-    """Return the readable report.
-
-    Args:
-        task: From `read_identification`.
-        found: Its result, converged.
-    """
+    """Return the readable report of a converged identification."""
     read, subject = found.residual.items(), task.subject
     rows = [(n, k) for n, v in read for k in np.flatnonzero(np.isfinite(v)).tolist()]
     head = (
@@ -118,12 +110,7 @@ def _fit_words(found: Identified) -> str:
 
 
 def identification_as_dict(task: Identification, found: Identified) -> dict[str, Any]:
-    """Return the JSON, in SI.
-
-    Args:
-        task: From `read_identification`.
-        found: Its result.
-    """
+    """Return the results as plain numbers and lists, in SI."""
     numbers = {name: getattr(found, name) for name in _IN_JSON.split()}
     for name in ("estimate", "standard_error", "interval"):
         numbers[name] = dict(zip(found.names, numbers[name].tolist(), strict=True))
@@ -138,13 +125,8 @@ degrees_of_freedom probability error_scale nonlinearity"""
 
 
 def identification_columns(task: Identification, found: Identified) -> dict[str, Any]:
-    """Return the table, a row for each case: conditions, what was measured, what is
-    predicted; priors are none of its columns.
-
-    Args:
-        task: From `read_identification`.
-        found: Its result.
-    """
+    """Return the table with a row for each case: conditions, measured and predicted
+    values, residuals and errors, without priors."""
     columns: dict[str, Any] = dict(task.subject.columns)
     for name, values in found.prediction.items():
         parts = {".predicted": values, ".predicted_error": found.prediction_error[name]}

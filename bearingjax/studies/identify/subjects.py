@@ -1,4 +1,4 @@
-"""Whose numbers are identified: a bearing, shafts on bearings, or a rotor."""
+"""Designs whose numbers are identified: a bearing, shafts on bearings, or a rotor."""
 
 import dataclasses
 from pathlib import Path
@@ -35,9 +35,9 @@ class Subject(NamedTuple):
 
     Attributes:
         scene: The scene.
-        model: Numbers of its cases, with those that differ from case to case.
+        model: Results as a function of numbers of the design, in the cases.
         cases: The cases.
-        columns: What they are, in SI, by header of a table.
+        columns: Conditions of the cases in SI, by header of a table.
     """
 
     scene: Any
@@ -57,10 +57,10 @@ class Setup(NamedTuple):
 
     Attributes:
         scene: The scene.
-        model: Numbers of its cases.
-        numbers: Numbers of the design by their key, with their paths.
+        model: Results as a function of numbers of the design.
+        numbers: Paths in the design of each number, by its key in the scene.
         data: The scene as parsed.
-        path: Its path.
+        path: Path of the scene.
     """
 
     scene: Any
@@ -71,8 +71,8 @@ class Setup(NamedTuple):
 
     @property
     def kinds(self) -> dict[str, str]:
-        """Kinds of quantities of the columns that are conditions, by key; columns of
-        other conditions are settings as in a scene."""
+        """Kinds of quantities by key, of columns that are conditions; other conditions
+        are read as settings of the scene."""
         if isinstance(self.scene, RotorScene):
             return {"rotor.speed": "speed"}
         if is_shafts(self.data):
@@ -81,7 +81,7 @@ class Setup(NamedTuple):
         return OPERATING | {k: kind_of(unit_of(design, p[0])) for k, p in numbers}
 
     def measures(self, key: str) -> bool:
-        """Whether a column is of readings: of no condition in a table of the scene."""
+        """Return whether a column has readings: its key is no condition of a scene."""
         design, head = self.model.design, key.partition(".")[0]
         known = design.readings() if isinstance(design, AbstractSystem) else None
         named = known is not None and (key in known or head not in self.data)
@@ -91,9 +91,9 @@ class Setup(NamedTuple):
         """Return the design in the cases of a measured table.
 
         Args:
-            table: Table of the file, for errors.
-            columns: Its conditions.
-            count: Number of its rows.
+            table: Table that names the file, for errors.
+            columns: Columns of conditions.
+            count: Number of rows.
 
         Raises:
             SceneError: For conditions that cannot vary.
@@ -158,10 +158,10 @@ def read_setup(data: dict[str, Any], path: Path) -> Setup:
 
     Args:
         data: The scene as parsed.
-        path: Its path.
+        path: Path of the scene.
 
     Raises:
-        SceneError: If it cannot be read, or is of another kind.
+        SceneError: If the scene cannot be read, or is of another kind.
     """
     if is_shafts(data):
         scene: Any = shafts_of(data, path)

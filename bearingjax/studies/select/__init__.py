@@ -1,1 +1,1 @@
-"""A choice of bearing among those of the catalogue."""
+"""Selection of bearings from the catalogue by the requirements of a scene."""

@@ -6,9 +6,9 @@ from ..outcome import Outcome, Tools, outcome_of, picture, unsolved_start
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Compare the requirements of a scene file, its [select], loads and life, with all
-    bearings of the catalogue: what fits, the best first, and what excludes the others;
-    of a system of shafts the bearings of several positions together.
+    """Compare all bearings of the catalogue with the requirements of a scene file, its
+    [select], loads and life, and list those that fit, the best first, and what excludes
+    the others; for a system of shafts at several positions together.
     """
     from ...decide import PositionSelection
     from ...numerics import SolveError

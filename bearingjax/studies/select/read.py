@@ -1,4 +1,4 @@
-"""A scene with [select]: what a bearing must do, and among which it is chosen."""
+"""Reader of a scene with [select]: requirements, and bearings to choose from."""
 
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping
@@ -33,19 +33,19 @@ from ..cases.read_cases import CaseTable, case_table
 from ..shaft.read import OF_SEAT, shafts_of
 
 _COLUMNS = "designation", "type", *SIZES, "C", "C0"
-"""Columns that one's own bearings must have."""
+"""Columns that a user's table of bearings must have."""
 
 _OWN = {"mass": "mass", "limiting_speed": "speed"}
-"""Columns that they may have, with their kinds of quantities, beside `maker`."""
+"""Optional columns of it with their kinds of quantities; `maker` is another one."""
 
 _GIVEN = ("operating", "fit", "life", "contact", "numerics")
-"""Tables whose defaults differ from bearing to bearing."""
+"""Tables whose defaults depend on the bearing."""
 
-_SENSES = {"exact": "exact", "least": "the least", "most": "the greatest"}
+_SENSES = {"exact": "exact", "least": "the least allowed", "most": "the most allowed"}
 
 
 def _bound_key(name: str) -> Any:
-    """Return a key for one bound of a number, or a table of both."""
+    """Return the key of a bound: one number, or a table of both ends."""
     (_, sense, about), unit = NUMBERS[name], unit_of_number(name)
     kind = kind_of(unit.replace("rev", ""))  # revolutions are bare numbers
 
@@ -56,12 +56,12 @@ def _bound_key(name: str) -> Any:
         return table.quantity(key, kind, None)
 
     json = {"anyOf": [number_schema(kind), {"type": "object"}]}
-    text = f"{about}; {_SENSES[sense]}, or `{{ at_least, at_most }}`"
+    text = f"{about}; a number is {_SENSES[sense]}; or `{{ at_least, at_most }}`"
     return scene_key(text, default=None, reader=read, json=json)
 
 
 _BOUNDS: dict[str, Any] = {name: _bound_key(name) for name in NUMBERS}
-_BOUNDS["about"] = "[select]: what a bearing must do to be chosen"
+_BOUNDS["about"] = "[select]: requirements on a bearing of the catalogue"
 _BOUNDS["__annotations__"] = dict.fromkeys(NUMBERS, Any)
 _BoundKeys: Any = type("BoundKeys", (Keys,), _BOUNDS)
 
@@ -71,56 +71,57 @@ class PositionKeys(_BoundKeys):
         "types that may be chosen", choices=(*BALLS, *ROLLERS), otherwise="all"
     )
     rank_by: tuple[str, ...] | None = scene_key(
-        "what comes first among those that fit",
+        "numbers by which those that fit are ranked, the later ones to break ties",
         choices=(*NUMBERS,),
         otherwise="the outside diameter, then the width",
     )
     clearance_class: str | None = scene_key(
-        "class of radial clearance, of types that have classes",
+        "class of radial clearance; excludes types without classes",
         choices=CLEARANCE_CLASSES,
     )
 
 
 class SelectKeys(PositionKeys):
     file: str | None = scene_key(
-        "path of a CSV of one's own bearings: `designation`, `type`, `bore [mm]`,"
-        " `outside_diameter [mm]`, `width [mm]`, `C [kN]`, `C0 [kN]`, and where they"
-        " are known `mass [kg]`, `limiting_speed [rpm]`, `maker`"
+        "path of a CSV table of your own bearings: `designation`, `type`, `bore [mm]`,"
+        " `outside_diameter [mm]`, `width [mm]`, `C [kN]`, `C0 [kN]`, and optionally"
+        " `mass [kg]`, `limiting_speed [rpm]`, `maker`"
     )
 
 
 class ShaftSelectKeys(SelectKeys):
-    about = "[select] of a system of shafts: what each of the positions must do"
+    about = "[select] of a system of shafts: requirements on bearings at its positions"
 
     positions: Any = names_key(
-        "bearings that are chosen, by their name: keys of this table that differ there",
+        "positions whose bearings are chosen, by name, each with the keys of [select]"
+        " that differ there",
         name="positions",
         required=True,
     )
     short_list: int = scene_key(
-        "most bearings of a position that are combined with those of the others",
+        "number of bearings of each position that are combined with the others",
         default=3,
     )
 
 
 _CHOICES = "types", "rank_by", "clearance_class"
-"""Keys of what is chosen, beside its numbers."""
+"""Keys of a choice beside the bounds of numbers."""
 
 
 class Choice(NamedTuple):
-    """A scene with [select].
+    """Arguments of `select` or `select_positions` by [select] of a scene.
 
     Attributes:
         name: Name of the scene.
-        requirements: What a bearing must do; of shafts by position, as of
+        requirements: Requirements on a bearing; for shafts by position, as of
             `select_positions`.
         entries: Bearings to choose from.
-        install: Returns the bearing of an entry on the seats of the scene; of shafts,
-            of a position and an entry.
+        install: Function from an entry to the bearing on the seats of the scene; for
+            shafts from a position and an entry.
         written: The scene as it stands in its file.
         inputs: The scene as it was read.
-        designs: Shafts in each case; empty for a bearing alone.
-        options: Other arguments of `select_positions`.
+        designs: System of shafts in each case; empty for a bearing alone.
+        options: Further arguments of `select_positions`.
         warnings: Warnings of the scene; there are none.
     """
 
@@ -213,7 +214,7 @@ def _read_positions(data: dict[str, Any], path: Path) -> Choice:
         wanted = (life.required, life.required_revolutions) if life else (None, None)
         life = each[0].lives[[*seats].index(name)] or LifeConditions()
         life = with_fields(life, required=wanted[0], required_revolutions=wanted[1])
-        with table.building(top):  # of any load: its own is not known yet
+        with table.building(top):  # checked with any load, as its own is not known yet
             asked = Requirements(Cases(np.eye(1, 6), inner_speed=speed), life, **given)
         own[name] = given | {"bounds": asked.all_bounds}
     keys.table.finish()
@@ -238,7 +239,7 @@ def _read_positions(data: dict[str, Any], path: Path) -> Choice:
 
 
 def _read_common(scenes: Iterable[dict[str, Any]], path: Path) -> CaseTable:
-    """Read what all bearings have in common, of the first that it suits."""
+    """Read what all bearings have in common, from the first scene that can be read."""
     refused: list[SceneError] = []
     for data in scenes:
         try:
@@ -255,7 +256,7 @@ def _read_common(scenes: Iterable[dict[str, Any]], path: Path) -> CaseTable:
 
 
 def _own_entries(table: Table, name: str | None, path: Path) -> list[CatalogueEntry]:
-    """Read one's own bearings, and estimate their insides."""
+    """Read the user's table of bearings, and estimate their internal geometry."""
     if name is None:
         return []
     found = read_list(table, path.parent, _OWN, "bearings")

@@ -1,4 +1,4 @@
-"""Choose a bearing as a scene says, and report the choice."""
+"""Run the selection of a scene, and report it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -15,30 +15,33 @@ from ...report.report_model import Column, Grid, Part, Report, labelled_facts
 from .read import Choice
 
 _SHOWN = 10
-"""Bearings that a report lists."""
+"""Largest number of bearings that a report lists."""
 
 _USUAL = (*SIZES, "mass", "life_hours", "static_safety", "peak_pressure")
-"""Numbers that a report always has, beside those that are asked for."""
+"""Numbers that a report always lists; it adds those that are bounded or ranked."""
 
 _UNITS = {"m": (1e3, "mm"), "N m": (1e3, "N mm")}
 """Factor from SI, and unit, of lengths and torques in a report."""
 
 
-def run_select(choice: Choice, told: Callable[[str, float], Any] | None = None) -> Any:
-    """Choose a bearing, or those of several positions, as a scene says.
+def run_select(
+    choice: Choice, progress: Callable[[str, float], Any] | None = None
+) -> Any:
+    """Select a bearing, or those of several positions, by the requirements of a scene.
 
     Args:
         choice: From `read_select`.
-        told: As `progress` of `select`.
+        progress: As of `select`.
 
     Returns:
         `Selection`; of a system of shafts `PositionSelection`.
 
     Raises:
-        SceneError: If the scene suits no bearing that is left, or as `select_positions`
-            raises ValueError.
+        SceneError: If the scene suits no remaining bearing, or for a ValueError of
+            `select_positions`.
     """
-    more: Any = {"entries": choice.entries, "install": choice.install, "progress": told}
+    more: Any = {"entries": choice.entries, "install": choice.install}
+    more["progress"] = progress
     with scene_errors(choice.name):
         if choice.designs:
             given = choice.designs, choice.requirements
@@ -47,7 +50,7 @@ def run_select(choice: Choice, told: Callable[[str, float], Any] | None = None) 
 
 
 def select_as_dict(choice: Choice, found: Selection) -> dict[str, Any]:
-    """Return `fits` and `excluded` in SI, counts and the smallest; infinite is null."""
+    """Return fitting and excluded bearings in SI, counts and the smallest, for JSON."""
     numbers = {name: getattr(found, name) for name in ("fits", "excluded", "counts")}
     return run_json(numbers | {"smallest": found.smallest}, [], choice.inputs)
 
@@ -58,7 +61,7 @@ def select_columns(found: Selection) -> dict[str, np.ndarray]:
 
 
 def select_report(choice: Choice, found: Selection) -> Report:
-    """Return the readable report: what is asked, what fits, what excludes the rest."""
+    """Return the readable report: requirements, bearings that fit, and exclusions."""
     asked, rows = choice.requirements, found.fits[:_SHOWN]
     written = {k: v for k, v in choice.written.items() if k != "cases"}
     facts = [("cases", str(asked.load.count))]
@@ -82,7 +85,7 @@ def select_report(choice: Choice, found: Selection) -> Report:
         if any(row["designation"] in bare for row in rows):
             fits.append("those without inner ring (HK, NK, RNA) roll on the shaft")
         fits.append(
-            "`bearingjax life` of one tells its warnings, and what is estimated"
+            "`bearingjax life` of a designation has its warnings, and what is estimated"
         )
     counts = [(name, str(count)) for name, count in found.counts.items()]
     out: list[Part] = [labelled_facts(counts)] if counts else []
@@ -93,8 +96,8 @@ def select_report(choice: Choice, found: Selection) -> Report:
 
 
 def positions_as_dict(choice: Choice, found: PositionSelection) -> dict[str, Any]:
-    """Return `best`, the columns of `combinations` (combination, position), and of each
-    position what `select` gives, in SI."""
+    """Return the best combination, all combinations by column (combination, position),
+    and the selection of each position alone, in SI."""
     alone = {
         name: {"fits": len(one.fits), "counts": one.counts, "smallest": one.smallest}
         for name, one in found.alone.items()
@@ -105,7 +108,7 @@ def positions_as_dict(choice: Choice, found: PositionSelection) -> dict[str, Any
 
 
 def positions_columns(found: PositionSelection) -> dict[str, np.ndarray]:
-    """Return a row for each combination and position as columns by header, in SI."""
+    """Return columns by header in SI, a row for each combination and position."""
     count, names = found.holds.size, [*found.alone]
     columns = {"combination": np.repeat(np.arange(count), len(names))}
     columns["position"] = np.array(names * count)
@@ -114,8 +117,8 @@ def positions_columns(found: PositionSelection) -> dict[str, np.ndarray]:
 
 
 def positions_report(choice: Choice, found: PositionSelection) -> Report:
-    """Return the readable report: what fits each position under the loads with the
-    present bearings, and the combinations in the whole system."""
+    """Return the readable report: bearings that fit each position under the loads with
+    the present ones, and the combinations in the whole system."""
     alone = [
         f"{name}: of {one.table['type'].size} bearings {len(one.fits)} fit; the"
         f" smallest: {one.smallest}"

@@ -1,1 +1,1 @@
-"""The tolerances of a scene: quantiles, misses, and what to tighten."""
+"""Tolerance analysis of a scene: distributions of results, tolerances to tighten."""

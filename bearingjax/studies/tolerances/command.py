@@ -6,8 +6,8 @@ from ..outcome import Outcome, Tools, outcome_of, picture, unsolved_start
 
 
 def run(options: Namespace, tools: Tools) -> Outcome:
-    """Solve many bearings, or systems of shafts, of a scene file within the tolerances
-    of its [tolerances], over its [cases]."""
+    """Solve samples of the bearing, or of the system of shafts, of a scene file, whose
+    numbers scatter as its [tolerances] says, over its [cases]."""
     from ...numerics import SolveError
     from . import report
     from .read import read_tolerances
@@ -15,8 +15,8 @@ def run(options: Namespace, tools: Tools) -> Outcome:
 
     task, stage = read_tolerances(options.scene, options.set), tools.stage
     try:
-        told = None if stage is None else lambda share: stage("samples", share)
-        found = run_tolerances(task, told)
+        progress = None if stage is None else lambda share: stage("samples", share)
+        found = run_tolerances(task, progress)
     except SolveError as error:
         return unsolved_start(task.scene, task.inputs, error, "not_solved")
     narrower, title = found.narrower, task.scene.name

@@ -1,4 +1,4 @@
-"""[tolerances] of a scene: numbers that scatter, measures and their requirements."""
+"""Reader of [tolerances] of a scene: numbers that scatter, measures, requirements."""
 
 import dataclasses
 from collections.abc import Iterable, Mapping
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from ...decide import NoiseLevel, Scatter, class_scatters, within
+from ...decide import NoiseLevel, Scatter, class_scatters, truncated_normal
 from ...decide.noise_design import TOTAL
 from ...decide.scatter import SIZES
 from ...files.quantity import SceneError
@@ -47,23 +47,23 @@ from ..shaft.read import ShaftScene, read_shafts
 
 NOISE = "noise_level"
 SHAPES = ("normal", "uniform")
-"""Shapes of a distribution."""
+"""Shapes of the distribution of a number."""
 
 
 class Unbound:
     """Keys of a measure that may stand without a bound."""
 
-    about = "[[tolerances.measures]]: what is asked, and what is required of it"
+    about = "[[tolerances.measures]]: a measure, with a bound if it is a requirement"
 
     def check(self) -> None:
         """Accept a measure without a bound."""
 
 
 class MeasureKeys(Unbound, ConstraintKeys):
-    measure: str = scene_key("what is asked", choices=(*MEASURES, NOISE))
+    measure: str = scene_key("what is evaluated", choices=(*MEASURES, NOISE))
     reading: str | None = scene_key(
-        "level of the noise on the rig of [vibration], to first order: `total_level`,"
-        " of a band as `band_1000`, of a line as `line_2_BPFO`",
+        "level on the noise rig of [vibration], of first order in the form errors:"
+        " `total_level`, a band such as `band_1000`, or a line such as `line_2_BPFO`",
         only={"measure": (NOISE,)},
         otherwise="`total_level`",
     )
@@ -74,60 +74,60 @@ class ShaftMeasureKeys(Unbound, ShaftConstraintKeys):
 
 
 class CorrelationKeys(Keys):
-    about = "[[tolerances.correlations]]: two numbers that scatter together"
+    about = "[[tolerances.correlations]]: correlation of two numbers that scatter"
 
-    between: tuple[str, ...] = scene_key("the two, by their keys in `numbers`")
-    value: float = scene_key("coefficient of correlation", above=-1, below=1)
+    between: tuple[str, ...] = scene_key("the two numbers, by their keys in `numbers`")
+    value: float = scene_key("correlation coefficient", above=-1, below=1)
 
 
 class TightenKeys(Keys):
-    about = "[tolerances.tighten]: the search for the cheapest narrower tolerances"
+    about = "[tolerances.tighten]: search for the cheapest narrower tolerances"
 
     most_misses: float = scene_key(
-        "share that may miss a requirement", above=0, most=0.99
+        "largest share that may fail a requirement", above=0, most=0.99
     )
     narrowest: float = scene_key(
-        "least width of a tolerance over that given", default=0.2, above=0, below=1
+        "smallest width over the given one", default=0.2, above=0, below=1
     )
 
 
 class SharedKeys(Keys):
-    about = "[tolerances]: numbers that scatter, and what becomes of the results"
+    about = "[tolerances]: distributions of numbers, and measures of the results"
 
-    samples: int = scene_key("least number of samples", default=10_000, most=10**6)
+    samples: int = scene_key("smallest number of samples", default=10_000, most=10**6)
     seed: int = scene_key("seed of the samples", default=0, least=0)
     scattered: Any = names_key(
         "numbers that scatter, by their key in the scene, in quotes: `{ from, to }`,"
-        " `{ mean, deviation }` or both, `shape` (normal or uniform), `narrowing ="
-        " { by, costs }`; sizes of classes of fit and clearance scatter by themselves:"
-        f" {', '.join(f'`fit.{name}`' for name in SIZES)}",
+        " `{ mean, deviation }` (standard deviation) or both, `shape` (normal or"
+        " uniform), `narrowing = { by, costs }`; sizes with a tolerance or clearance"
+        f" class scatter without it: {', '.join(f'`fit.{name}`' for name in SIZES)}",
         default=None,
         name="numbers",
     )
     correlations: tuple[CorrelationKeys, ...] = scene_key(
-        "numbers that scatter together", default=()
+        "correlations of numbers that scatter", default=()
     )
     tighten: TightenKeys | None = scene_key("search for narrower tolerances")
 
 
 class ToleranceKeys(SharedKeys):
-    measures: tuple[MeasureKeys, ...] = scene_key("what is asked")
+    measures: tuple[MeasureKeys, ...] = scene_key("measures and requirements")
 
 
 class ShaftToleranceKeys(SharedKeys):
-    measures: tuple[ShaftMeasureKeys, ...] = scene_key("what is asked")
+    measures: tuple[ShaftMeasureKeys, ...] = scene_key("measures and requirements")
 
 
 @dataclasses.dataclass(frozen=True)
 class ToleranceTask:
-    """Tolerances of a scene.
+    """Arguments of `decide.tolerances` by [tolerances] of a scene.
 
     Attributes:
         scene: The scene, of a bearing or of shafts.
-        given: Design, cases, scatters and measures, as `decide.tolerances` takes them.
+        given: Design, cases, scatters and measures.
         units: SI unit of each number that scatters.
-        options: Samples, seed, correlation, support and numerics, likewise.
-        tighten: The search for narrower tolerances, or `None`.
+        options: Samples, seed, correlation, support and numerics, by keyword.
+        tighten: Keys of the search for narrower tolerances; `None`: not asked for.
         inputs: The scene as it was read, all quantities in SI.
     """
 
@@ -271,7 +271,7 @@ def _scatters(
     numbers: Mapping[str, tuple[str, ...]],
     sizes: Mapping[str, Any],
 ) -> tuple[Scatter, ...]:
-    """Read the numbers that scatter; sizes of classes do so unnamed."""
+    """Read the numbers that scatter; sizes with a class do so without being named."""
     found = []
     for key in dict.fromkeys((*sizes, *table.keys())):
         if key in sizes:
@@ -323,5 +323,5 @@ def _scatter(part: Table, key: str, paths, limits, design) -> Scatter:
     elif low is None:
         distribution = stats.norm(mean, deviation)
     else:
-        distribution = within(low, high, mean, deviation)
+        distribution = truncated_normal(low, high, mean, deviation)
     return Scatter(paths, distribution, key, cost)

@@ -1,4 +1,4 @@
-"""Tolerances of a scene as text, as numbers in SI, and as a table."""
+"""Tolerance analysis of a scene as a report, as numbers in SI, and as a table."""
 
 from typing import Any
 
@@ -16,17 +16,12 @@ from .read import ToleranceTask
 from .run import ToleranceRun
 
 _STEP = 0.1
-"""Change of a width, or of a middle, whose effect is told [width]."""
+"""Change of a width, or of a middle, whose effect is reported, over the width [1]."""
 _PERCENT = 100.0, "%"
 
 
 def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
-    """Return the readable report.
-
-    Args:
-        task: The task.
-        run: Its results.
-    """
+    """Return the readable report."""
     found, scatters = run.found, task.given[2]
     head = (
         f"{task.scene.name}: {shown_count(len(found.result), 'sample')} of"
@@ -56,8 +51,8 @@ def tolerance_report(task: ToleranceTask, run: ToleranceRun) -> Report:
 
 
 def tolerance_warnings(task: ToleranceTask, run: ToleranceRun) -> list[Warning]:
-    """Return warnings about the scene, samples that were not solved, and numbers that
-    take published ratings away."""
+    """Return warnings of the scene, of unsolved samples, and of scattering numbers for
+    which published ratings do not hold."""
     failed, n = int(np.count_nonzero(run.found.result)), len(run.found.result)
     words = f"{failed} of {n} samples were not solved; they count as misses"
     lost = [Warning("failed_samples", words, failed / n, 0.0)] if failed else []
@@ -74,10 +69,10 @@ def tolerances_as_dict(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]
     """Return the results as plain numbers and lists, in SI.
 
     Returns:
-        tolerances: for each measure mean, standard_deviation, quantiles, errors,
-        first_order, misses, shares; misses: share, error and its derivatives by number;
-        numbers; samples; failed; tightening, if it is asked for; warnings, inputs,
-        version.
+        "tolerances": of each measure mean, standard_deviation, quantiles, errors,
+        first_order, misses, shares; "misses": share, error and derivatives by number;
+        "numbers", "samples", "failed"; "tightening" if asked for; "warnings", "inputs",
+        "version".
     """
     found, names = run.found, [one.name for one in task.given[2]]
 
@@ -118,7 +113,7 @@ def tolerances_as_dict(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]
 
 
 def tolerance_columns(task: ToleranceTask, run: ToleranceRun) -> dict[str, Any]:
-    """Return the table: a row for each sample, columns by header, in SI."""
+    """Return the table with a row for each sample, columns by header, in SI."""
     found = run.found
     names = [one.name for one in task.given[2]] + [_key(x) for x in found.spreads]
     units = [*task.units, *(one.unit for one in found.spreads)]
@@ -131,7 +126,7 @@ def _key(spread: Spread) -> str:
 
 
 def _results(spreads) -> Grid:
-    """Tabulate quantiles and moments, below each those by the gradient."""
+    """Return quantiles and moments of each measure, and below those by the gradient."""
     rows = []
     for one in spreads:
         ends = [shown_number(x, one.unit) for x in one.quantiles]
@@ -143,7 +138,7 @@ def _results(spreads) -> Grid:
             last = shown_number(mean, one.unit), shown_change(deviation, one.unit)
             rows.append([name, *first, *last])
     heads = "", *(f"{100.0 * share:g} %" for share in QUANTILES), "mean", "deviation"
-    title = "what that share of the samples does not exceed"
+    title = "quantiles, mean and standard deviation of the samples"
     return Grid.of_rows(heads, rows, title)
 
 
@@ -167,8 +162,10 @@ def _requirements(task, found) -> list[Part]:
         Column("middle", _STEP * misses.by_middle, "", "+.2g", _PERCENT),
         Column("saved by a unit of cost", saved, "", ".2g", _PERCENT),
     ]
-    title = "change of that share with a tenth less width, and with the middle a tenth"
-    parts += ["", Grid(columns, f"{title} of the width higher")]
+    title = (
+        "change of that share with a tolerance a tenth narrower, and with its middle"
+    )
+    parts += ["", Grid(columns, f"{title} tenth of the width higher")]
     for words, gain in (("", misses.by_width), (" for its cost", np.nan_to_num(saved))):
         if gain.max(initial=0.0) > 0.0:
             first = names[gain.argmax()]

@@ -1,4 +1,4 @@
-"""Run the tolerances of a scene."""
+"""Run the tolerance analysis of a scene."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -9,11 +9,11 @@ from .read import ToleranceTask
 
 
 class ToleranceRun(NamedTuple):
-    """Results of the tolerances of a scene.
+    """Results of the tolerance analysis of a scene.
 
     Attributes:
-        found: Quantiles, misses and causes.
-        narrower: The tolerances to tighten; `None`: not asked for.
+        found: Distributions of the measures, and the probability of failing.
+        narrower: Cheapest narrower tolerances; `None`: not asked for.
     """
 
     found: Tolerances
@@ -21,13 +21,13 @@ class ToleranceRun(NamedTuple):
 
 
 def run_tolerances(
-    task: ToleranceTask, told: Callable[[float], Any] | None = None
+    task: ToleranceTask, progress: Callable[[float], Any] | None = None
 ) -> ToleranceRun:
-    """Solve many bearings, or systems of shafts, of a scene within its tolerances.
+    """Solve samples of a scene whose numbers scatter, and tighten them if asked for.
 
     Args:
         task: From `read_tolerances`.
-        told: As in `Sampled`.
+        progress: As of `tolerances`.
 
     Raises:
         SolveError: If the design at the mean of all numbers does not solve.
@@ -35,13 +35,13 @@ def run_tolerances(
     """
     narrower, keys = None, task.tighten
     with scene_errors(task.scene.name):
-        found = tolerances(*task.given, **task.options, told=told)
+        found = tolerances(*task.given, **task.options, progress=progress)
         if keys is not None:
             narrower = tighten(
                 *task.given,
                 keys.most_misses,
                 narrowest=keys.narrowest,
                 **task.options,
-                told=told,
+                progress=progress,
             )
     return ToleranceRun(found, narrower)
