@@ -8,6 +8,7 @@ measure, and samples near it contribute their exact gradients.
 """
 
 import dataclasses
+import functools
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any, NamedTuple
 
@@ -104,7 +105,8 @@ class Misses(Shown):
             [1]: a width a tenth smaller lowers the probability by a tenth of this.
         by_middle: Derivative by the middle of each tolerance, times its width (number,)
             [1].
-        errors: Standard errors of the derivatives by width (number,) [1].
+        errors: Standard errors of `by_width`, without the effect of smoothing (number,)
+            [1].
     """
 
     share: float
@@ -352,6 +354,7 @@ class Sampled:
         paths = tuple(dict.fromkeys(p for one in self.scatters for p in one.path))
         factors = np.array([[s.path.get(p, 0.0) for s in self.scatters] for p in paths])
         self.centre = np.array([one.centre for one in self.scatters])
+        self._widths = np.array([one.width for one in self.scatters])
         _check_ends(element, self.scatters, self.centre, paths, factors)
         solves = support, SolveOptions() if solve is None else solve
         cases = jax.tree.map(jnp.asarray, cases)
@@ -375,6 +378,12 @@ class Sampled:
         """
         samples = self.centre + widths * (self._draw(seed) - self.centre)
         return samples, *self.solve(samples, False)[:2]
+
+    @functools.cached_property
+    def middle(self) -> tuple[Any, Any, Any]:
+        """Measures, result code and gradient at the mean of all numbers."""
+        values, result, gradient = self.solve(self.centre[None], True)
+        return values[0], result[0], gradient[0]
 
     def solve(self, samples: np.ndarray, slopes: bool) -> tuple[Any, Any, Any]:
         """Return measures (sample, measure), result codes (sample,) and gradients
@@ -419,12 +428,12 @@ class Sampled:
         self, samples: np.ndarray, values: np.ndarray, result: np.ndarray
     ) -> Tolerances:
         """Return the results of solved samples, as from `run`."""
-        middle, code, slopes = self.solve(self.centre[None], True)
-        if code[0] != Result.CONVERGED:
-            label = Result(int(code[0])).label
+        middle, code, slopes = self.middle
+        if code != Result.CONVERGED:
+            label = Result(int(code)).label
             raise SolveError(f"tolerances: the design at the mean fails: {label}")
         spreads = tuple(
-            self._spread(k, samples, values, middle[0, k], slopes[0, k])
+            self._spread(k, samples, values, middle[k], slopes[k])
             for k in range(len(self.measures))
         )
         misses = self.misses(samples, values, result) if self.bounds else None
@@ -479,26 +488,31 @@ class Sampled:
         for j, (bound, (_, pull)) in enumerate(zip(self.bounds, smooth, strict=True)):
             others = [1.0 - one for i, (one, _) in enumerate(smooth) if i != j]
             pulls[:, bound.measure] += pull * np.prod(others, axis=0) * ~failed
-        near = np.flatnonzero(np.any(pulls, axis=1))
-        share_near, n = near.size / len(samples), len(self.scatters)
-        by_width, by_middle, errors = np.zeros((3, n))
-        if near.size:
-            if near.size > _NEAR:
+        # The gradient at the mean gives most of the change, of all samples (a control
+        # variate); those of some samples near the requirements give the rest.
+        around = pulls @ np.nan_to_num(self.middle[2])
+        ways = samples - self.centre, np.broadcast_to(self._widths, samples.shape)
+        offset, changes = np.stack(ways, axis=1), []
+        for part in np.split(np.arange(len(samples)), REPLICATES):
+            changes.append(np.mean(around[part, None] * offset[part], axis=0))
+            near = part[np.any(pulls[part], axis=1)]
+            if near.size:
                 # Taken evenly from one side of the requirements to the other.
                 near = near[np.argsort(pulls[near].sum(axis=1), kind="stable")]
-                near = near[np.linspace(0, near.size - 1, _NEAR).astype(int)]
-            gradient = self.solve(samples[near], True)[2]
-            each = share_near * np.einsum("sm,smn->sn", pulls[near], gradient)
-            moved = each * (samples[near] - self.centre)
-            by_width, errors = moved.mean(axis=0), moved.std(axis=0) / near.size**0.5
-            by_middle = each.mean(axis=0) * [one.width for one in self.scatters]
+                count = min(near.size, _NEAR // REPLICATES)
+                taken = near[np.linspace(0, near.size - 1, count).astype(int)]
+                gradient = self.solve(samples[taken], True)[2]
+                rest = np.einsum("sm,smn->sn", pulls[taken], gradient) - around[taken]
+                mean = np.mean(rest[:, None] * offset[taken], axis=0)
+                changes[-1] += near.size / part.size * mean
+        by_width, by_middle = np.mean(changes, axis=0)
         return Misses(
             float(missed.mean()),
             float(_standard_error([m.mean() for m in np.split(missed, REPLICATES)])),
             float(np.mean(1.0 - kept)),
             by_width,
             by_middle,
-            errors,
+            _standard_error(changes)[0],
         )
 
 
@@ -525,7 +539,7 @@ def _statistics(values: np.ndarray) -> list[float]:
     return [values.mean(), values.std(), *np.quantile(values, QUANTILES)]
 
 
-def _standard_error(each: Sequence[Any]) -> Any:
+def _standard_error(each: Any) -> Any:
     """Return the standard error of a statistic of all sets, from those of each."""
     return np.std(each, axis=0, ddof=min(1, len(each) - 1)) / len(each) ** 0.5
 

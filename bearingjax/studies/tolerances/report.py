@@ -163,7 +163,7 @@ def _requirements(task, found) -> list[Part]:
         Column("saved by a unit of cost", saved, "", ".2g", _PERCENT),
     ]
     title = (
-        "change of that share with a tolerance a tenth narrower, and with its middle"
+        "change of that share with a tolerance a tenth narrower, and with its middle a"
     )
     parts += ["", Grid(columns, f"{title} tenth of the width higher")]
     for words, gain in (("", misses.by_width), (" for its cost", np.nan_to_num(saved))):
