@@ -10,11 +10,11 @@ shaft whose near bearing bears most; its life is required, narrowing costs the s
 both, and `tighten` chooses.
 
 README: brute force within 3.3 standard errors (five bearings, seven statistics of life
-    and clearance); derivatives of the share within 1.6; on a shaft the tolerance of the
+    and clearance); derivatives of the share within 0.8; on a shaft the tolerance of the
     bearing that bears most is narrowed (to 46 %, 22 % misses become 14 %); 131 072
-    bearings on their seats in 30 CPU s, each in 0.011 of a single call | 4; 3 | yes
+    bearings on their seats in 32 CPU s, each in 0.011 of a single call | 4; 3 | yes
 
-jax 0.10.1, float64, two cores shared with others: 590 CPU s in all.
+jax 0.10.1, float64, two cores shared with others: 690 CPU s in all.
 """
 
 import tempfile
