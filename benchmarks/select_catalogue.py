@@ -128,7 +128,7 @@ def compare(asked):
     alone="compare the random requirements alone",
 )
 def main(smoke, n=56, alone=False):
-    kinds = ("deep_groove_ball",) if smoke else ()
+    kinds = ("deep_groove_ball",) if smoke else None
     with tempfile.TemporaryDirectory() as folder:
         loads = [[0.0, -4000.0, axial, 0.0, 0.0, 0.0] for axial in (0.0, 1000.0)]
         radial, both = (
