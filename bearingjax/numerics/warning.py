@@ -151,7 +151,7 @@ def warnings_of_cases(
 
 
 def in_cases(worst: Warning, count: int, of: int, case: int) -> Warning:
-    """Return the warning of the worst case, with the number of cases that have it.
+    """Return the warning of the worst of several cases, with the number that have it.
 
     Args:
         worst: The warning of that case.
@@ -159,4 +159,5 @@ def in_cases(worst: Warning, count: int, of: int, case: int) -> Warning:
         of: Number of all cases.
         case: Number of the worst one.
     """
-    return worst.followed_by(f", in {count} of {of} cases, worst case {case}")
+    where = f", in {count} of {of} cases, worst case {case}"
+    return worst if of == 1 else worst.followed_by(where)

@@ -45,4 +45,4 @@ def test_kind_shows_size_and_limit_in_its_unit():
     assert (one.kind, one.size, one.limit) == ("gap", 5e-6, 2e-6)
     worst = in_cases(one, 2, 9, 4)
     assert worst == "5 µm over 2 (row 1), in 2 of 9 cases, worst case 4"
-    assert worst.size == one.size
+    assert worst.size == one.size and in_cases(one, 1, 1, 0) == one
