@@ -96,7 +96,7 @@ class AbstractSystem(eqx.Module):
         fields of `solve_case`; by default none."""
         return {}
 
-    def warnings(self, cases: Cases, solved: Callable[[], Any]) -> list[Warning]:
+    def warnings(self, cases: Any, solved: Callable[[], Any]) -> list[Warning]:
         """Warnings other than those of the loads; none by default.
 
         Args:

@@ -329,6 +329,14 @@ def test_preload_housing_and_unbalance_of_a_rotor():
         np.testing.assert_allclose(slopes[name][:, k], change, rtol=DIFFERENCE)
 
 
+def test_a_system_without_warnings_of_its_own_is_not_solved_for_them(monkeypatch):
+    def solve(*_):
+        raise AssertionError("nothing is to be solved")
+
+    monkeypatch.setattr("bearingjax.decide.predict._solve_system", solve)
+    assert spindle().warnings((), bj.rotor.RotorCases([0.0, 500.0])) == []
+
+
 def test_preload_pushes_along_the_shaft_and_fits_turn_with_it(monkeypatch):
     """Each in the axes of its support; the solve for the preload is made up."""
     speeds = []
