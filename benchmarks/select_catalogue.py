@@ -8,16 +8,16 @@ minimum load) for each type in turn; of each a part of the bearings that were so
 solved alone by `solve_load` and `rating_life`: largest difference of the lives, and
 whether the verdict is the same.
 
-README: 2230 bearings, 1470 of them solved: 13 programs in 200 s of a processor that
-others used too, 19 s where they are stored, then 12; 145 of 145 verdicts of 13 types
+README: 2230 bearings, 1470 of them solved: 13 programs in 166 s of a processor that
+others used too, 17 s where they are stored, then 13; 145 of 145 verdicts of 13 types
 those of single solves, numbers within 4.1e-13 | 1e-9 | yes
 
 Last run, beside other work:
 
-first                     360.85 s  200.47 s CPU  1000 of 1470 fit
-programs stored            61.12 s   18.56 s CPU  1000 of 1470 fit
-programs at hand           14.73 s   12.46 s CPU  1000 of 1470 fit
-with an axial load        140.65 s   74.95 s CPU   808 of 1298 fit
+first                     263.15 s  165.96 s CPU  1000 of 1470 fit
+programs stored            26.39 s   17.08 s CPU  1000 of 1470 fit
+programs at hand           16.75 s   13.38 s CPU  1000 of 1470 fit
+with an axial load         83.47 s   65.42 s CPU   808 of 1298 fit
 excluded under the radial load: {'Fz': 730, 'life_hours': 470, 'Fy': 30}
 56 random requirements: 145 of 145 verdicts are those
 of single solves, 4 at least of a type; within 4.1e-13
