@@ -1,6 +1,7 @@
 """Results of cases as a function of the numbers of a design."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -38,6 +39,8 @@ from ..optimise.system import (
     Design,
     Reading,
     describe_failure,
+    has_loads,
+    loads_of,
     prepare,
     solved_case,
 )
@@ -45,6 +48,7 @@ from ..optimise.variable import with_numbers
 from ..statics import Installed, SolveOptions, Support
 from ..statics.preload import remaining_preload
 from ..statics.solution import solution_kind
+from ..statics.warning import solution_warnings
 
 _FRICTION = "friction_torque"
 _STATES = (OPERATING_CLEARANCE, OPERATING_PRELOAD, _FRICTION)
@@ -162,12 +166,16 @@ class CaseModel(eqx.Module):
             first = {path: np.asarray(x)[0] for path, x in self.varied.items()}
             system: Any = self.design_at(np.asarray(values), first)
 
+            @functools.cache
             def solved():
                 if system.is_solved_by_parts(cases):
                     return system.solve_by_parts(cases, None)[0]
                 return jax.device_get(_solve_system(self, jnp.asarray(values), cases))
 
-            return system.warnings(cases, solved)
+            found = system.warnings(cases, solved)
+            if solved.cache_info().currsize and has_loads(solved()):
+                return [*solution_warnings(loads_of(solved())), *found]
+            return found
         sizes = jax.device_get(_warning_sizes(self, jnp.asarray(values), cases))
         return warnings_of_cases(sizes, ALL)
 

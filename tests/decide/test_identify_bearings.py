@@ -14,6 +14,7 @@ from tolerances import DIFFERENCE
 import bearingjax as bj
 from bearingjax.decide import CaseModel, predict
 from bearingjax.decide.identify import _read_call
+from bearingjax.numerics.warning import Warning
 from bearingjax.optimise import Variable
 from bearingjax.rotor import rotor_design
 
@@ -333,8 +334,20 @@ def test_a_system_without_warnings_of_its_own_is_not_solved_for_them(monkeypatch
     def solve(*_):
         raise AssertionError("nothing is to be solved")
 
-    monkeypatch.setattr("bearingjax.decide.predict._solve_system", solve)
-    assert spindle().warnings((), bj.rotor.RotorCases([0.0, 500.0])) == []
+    monkeypatch.setattr(predict, "_solve_system", solve)
+    model, cases = spindle(), bj.rotor.RotorCases([0.0, 500.0])
+    assert model.warnings((), cases) == []
+    # One that looks at its solved cases gets them once, and has those of their loads.
+    own, of_loads = Warning("own", "of the system"), Warning("loads", "of the loads")
+    solved = iter([SimpleNamespace(solution=[of_loads], own=own)])
+    monkeypatch.setattr(predict, "_solve_system", lambda *_: next(solved))
+    monkeypatch.setattr(predict, "solution_warnings", lambda loads: loads)
+    monkeypatch.setattr(
+        bj.rotor.RotorDesign,
+        "warnings",
+        lambda self, cases, solved: [solved().own, solved().own],
+    )
+    assert model.warnings((), cases) == [of_loads, own, own]
 
 
 def test_preload_pushes_along_the_shaft_and_fits_turn_with_it(monkeypatch):
