@@ -20,10 +20,10 @@ from jaxtyping import Float, Int
 from ..cases.cases import Cases
 from ..design.checks import all_of_class, count, must_be
 from ..element import RINGS
+from ..life import LifeConditions
 from ..numerics.compiled.programs import program
 from ..numerics.result import Result, SolveError
 from ..numerics.shown import Shown
-from ..numerics.types import with_fields
 from ..numerics.units import unit
 from ..numerics.warning import Warning, warnings_of
 from ..optimise import Constraint
@@ -184,7 +184,8 @@ def tolerances(
             (none); `support`: support of the rings, with displacements by the cases
             (`statics.Support()`); `solve`: `SolveOptions`; `build`: function from the
             changed design to that which is solved; `progress`: function called between
-            batches with the share done.
+            batches with the share done; `life`: conditions of the rating life for the
+            warnings, by default those of a measure.
 
     Returns:
         Tolerances. Unsolved samples count as failing, and in no other statistic.
@@ -226,7 +227,7 @@ def tighten(
         most_misses: Largest probability of failing a requirement [1].
         narrowest: Smallest width over the given width [1].
         max_steps: Step limit of the search.
-        **options: As of `tolerances`.
+        **options: The options of `tolerances`.
 
     Raises:
         TypeError, ValueError, SolveError: As `tolerances`; ValueError also without
@@ -319,6 +320,7 @@ class Sampled:
         solve: SolveOptions | None = None,
         build: Callable[[Any], Any] | None = None,
         progress: Callable[[float], Any] | None = None,
+        life: LifeConditions | None = None,
     ):
         owner = "tolerances"
         count(owner, "samples", samples)
@@ -340,9 +342,8 @@ class Sampled:
             root, fits = np.eye(n), False
         allowed = f"({n}, {n}), 1 along the diagonal and positive definite"
         must_be(owner, "correlation", correlation, fits, allowed)
-        drawn = self.scatters, root, samples
-        self._draw = lambda more: draw_samples(*drawn, seed + more)
-        self._progress = progress
+        self._draw = lambda k: draw_samples(self.scatters, root, samples, seed + k)
+        self._progress, self._life = progress, life
         self.bounds, self.measures = [], ()
         for k, one in enumerate(measures):
             if isinstance(one, Constraint):
@@ -445,10 +446,10 @@ class Sampled:
         element, cases, measures, (paths, factors), solves, build = self._given
         middle = dict(zip(paths, np.asarray(factors) @ self.centre, strict=True))
         design = with_numbers(element, middle)
-        lives = [one.conditions for one in measures if isinstance(one, OfLife)]
-        model = CaseModel(design if build is None else build(design), *solves)
-        found = with_fields(model, life=(*lives, None)[0]).warnings((), cases)
-        return warnings_of("at the mean", found)
+        own = (one.conditions for one in measures if isinstance(one, OfLife))
+        life = next(own, None) if self._life is None else self._life
+        model = CaseModel(design if build is None else build(design), *solves, life)
+        return warnings_of("at the mean", model.warnings((), cases))
 
     def _spread(self, k, samples, values, middle, slope) -> Spread:
         measure, column = self.measures[k], values[:, k]

@@ -18,6 +18,7 @@ from bearingjax.decide import (
     tolerances,
     truncated_normal,
 )
+from bearingjax.decide.predict import CaseModel
 from bearingjax.decide.scatter import draw_samples
 from bearingjax.decide.tolerance_effects import (
     QUANTILES,
@@ -26,6 +27,7 @@ from bearingjax.decide.tolerance_effects import (
     _variance_shares,
 )
 from bearingjax.fits import Limits, SizeLimits
+from bearingjax.numerics.warning import Warning
 from bearingjax.optimise import Constraint, OperatingClearance, PeakPressure, RatingLife
 from bearingjax.statics import Installed
 
@@ -185,13 +187,35 @@ def test_misses_and_their_derivatives(element, closed_form):
 
 @pytest.mark.parametrize("samples", [512, 8192])
 def test_errors_of_derivatives_are_their_scatter(element, closed_form, samples):
-    """Of 60 seeds, whose scatter is known to a tenth, over the errors of each."""
+    """Of 60 seeds, whose scatter is known to a tenth (1/√118); three of these are
+    allowed for it over the errors that each seed states."""
     given = element, bj.Cases([np.zeros(6)]), numbers(), [Constraint(linear, upper=2.0)]
     each = [Sampled(*given, samples=samples, seed=1000 * k) for k in range(60)]
     found = [one.misses(*one.run()) for one in each]
     scatter = np.std([one.by_width for one in found], axis=0)
     stated = np.sqrt(np.mean([one.errors**2 for one in found], axis=0))
     assert scatter / stated == pytest.approx([1.0, 1.0], abs=0.3)
+
+
+def test_warnings_have_the_life_that_is_given_or_measured(element, monkeypatch):
+    """At the mean of all numbers, in the design that is built from it."""
+
+    def told(self, values, cases):
+        play, life = self.design.bearing.radial_internal_clearance, self.life
+        return [Warning("made", f"{play:.3g} {life and life.reliability}")]
+
+    monkeypatch.setattr(CaseModel, "warnings", told)
+    scatters = [Scatter(f"bearing.{PLAY}", truncated_normal(1e-5, 3e-5))]
+    given, measured = (bj.LifeConditions(reliability=x) for x in (0.95, 0.98))
+    cases = bj.Cases([[0.0, -1e3, 0.0, 0.0, 0.0, 0.0]])
+    for measures, more, text in (
+        ([linear], {}, "2e-05 None"),
+        ([linear, RatingLife(measured)], {}, "2e-05 0.98"),
+        ([linear, RatingLife(measured)], {"life": given}, "2e-05 0.95"),
+        ([linear], {"build": lambda one: element}, f"{1.25e-5:.3g} None"),
+    ):
+        sampled = Sampled(element, cases, scatters, measures, samples=8, **more)
+        assert sampled._warnings() == [f"at the mean: {text}"]
 
 
 def test_misses_of_two_requirements(element, closed_form):

@@ -64,7 +64,7 @@ max_steps = 1
 """
 SCATTERED = """[tolerances]
 samples = 8
-measures = [{ measure = "rating_life" }]
+measures = [{ measure = "mean_pressure" }]
 """
 NUMBERS = """[tolerances.numbers]
 "bearing.radial_internal_clearance" = {{ mean = "{}", deviation = "1 nm" }}

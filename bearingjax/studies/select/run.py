@@ -31,7 +31,7 @@ def run_select(
 
     Args:
         choice: From `read_select`.
-        progress: As of `select`.
+        progress: Function called with a text and the share done.
 
     Returns:
         `Selection`; of a system of shafts `PositionSelection`.

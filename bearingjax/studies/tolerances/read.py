@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from ...cases.spectrum import relative_speed
 from ...decide import NoiseLevel, Scatter, class_scatters, truncated_normal
 from ...decide.noise_design import TOTAL
 from ...decide.scatter import SIZES
@@ -21,6 +22,7 @@ from ...optimise.measure import label_of
 from ...optimise.smooth import SMOOTHING_EXPONENT
 from ...optimise.variable import with_numbers
 from ...statics.support import Support
+from ..bearing.life_ratings import life_conditions
 from ..bearing.read_scene import Scene
 from ..optimise.noise_numbers import noise_design
 from ..optimise.read_optimise import (
@@ -159,7 +161,8 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
             shaft_measure(one, "measure", scene, SMOOTHING_EXPONENT)
             for one in keys.measures
         ]
-        design, cases = design_in_cases(scene, has_power(measures), table)
+        whole: Any = design_in_cases(scene, has_power(measures), table)
+        design, cases = whole
         numbers = shaft_numbers(scene)
         places = [
             (f"bearings.{seat.name}.", f"system.seats.{k}.installed.", seat.installed)
@@ -224,12 +227,13 @@ def read_tolerances(source: str | Path, settings: Iterable[str] = ()) -> Toleran
         if all(one.cost is None for one in scatters):
             problem = "needs `narrowing = { by, costs }` of one number at least"
             raise table.error("tighten", problem)
-    names = [one.name for one in scatters]
     options: dict[str, Any] = {"samples": keys.samples, "seed": keys.seed}
-    options["correlation"] = _correlation(keys.correlations, names)
+    options["correlation"] = _correlation(keys.correlations, [s.name for s in scatters])
     if isinstance(scene, Scene):
         options["support"] = Support(scene.free, fixed_ring=scene.fixed_ring)
         options["solve"] = scene.solve_options
+        if scene.life is not None:
+            options["life"] = life_conditions(scene, bool(relative_speed(cases).any()))
     table.finish()
     return ToleranceTask(
         scene,

@@ -162,10 +162,8 @@ def _requirements(task, found) -> list[Part]:
         Column("middle", _STEP * misses.by_middle, "", "+.2g", _PERCENT),
         Column("saved by a unit of cost", saved, "", ".2g", _PERCENT),
     ]
-    title = (
-        "change of that share with a tolerance a tenth narrower, and with its middle a"
-    )
-    parts += ["", Grid(columns, f"{title} tenth of the width higher")]
+    title = "change of that share with a tolerance a tenth narrower, and with its"
+    parts += ["", Grid(columns, f"{title} middle a tenth of the width higher")]
     for words, gain in (("", misses.by_width), (" for its cost", np.nan_to_num(saved))):
         if gain.max(initial=0.0) > 0.0:
             first = names[gain.argmax()]

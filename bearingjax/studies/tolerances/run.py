@@ -27,7 +27,7 @@ def run_tolerances(
 
     Args:
         task: From `read_tolerances`.
-        progress: As of `tolerances`.
+        progress: Function called between batches with the share done.
 
     Raises:
         SolveError: If the design at the mean of all numbers does not solve.
