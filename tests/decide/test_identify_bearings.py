@@ -330,6 +330,28 @@ def test_preload_housing_and_unbalance_of_a_rotor():
         np.testing.assert_allclose(slopes[name][:, k], change, rtol=DIFFERENCE)
 
 
+def test_warnings_have_the_oil_that_may_be_unknown(monkeypatch):
+    """Its viscosity, in place of that of the life."""
+    place = bj.Installed(bj.BearingElement(bj.load_bearing("6205")))
+    life = bj.LifeConditions(viscosity=1e-5, contamination=0.5)
+    oiled = predict.Oiled(**vars(place), viscosity=3e-5)
+
+    def task(support, options, keep, warn, lives, life):
+        sizes = {"warning_oil": life.viscosity, "oil": 1.0}
+        return SimpleNamespace(outputs=lambda *_: sizes if warn else {})
+
+    monkeypatch.setattr(predict, "Task", task)
+    monkeypatch.setattr(CaseModel, "_in_cases", lambda self, f, *_: f(oiled, 0, 0))
+
+    def told(sizes, kinds):
+        return [Warning(name, f"{float(size):.3g}") for name, size in sizes.items()]
+
+    monkeypatch.setattr(predict, "warnings_of_cases", told)
+    model = CaseModel(oiled, life=life)
+    (one,) = model.warnings((), bj.Cases(np.zeros((1, 6))))
+    assert one.kind == "oil" and one == "3e-05"
+
+
 def test_a_system_without_warnings_of_its_own_is_not_solved_for_them(monkeypatch):
     def solve(*_):
         raise AssertionError("nothing is to be solved")

@@ -218,6 +218,22 @@ def test_warnings_have_the_life_that_is_given_or_measured(element, monkeypatch):
         assert sampled._warnings() == [f"at the mean: {text}"]
 
 
+def test_derivatives_of_a_bent_measure(element, closed_form, monkeypatch):
+    """y = exp(a) > e² where a > 2: the slope is 7.4 there, and 1 at the mean, so that
+    most of the change is what the gradient at the mean lacks."""
+
+    def solve(self, samples, slopes):
+        y, zero = np.exp(samples[:, 0]), np.zeros(len(samples))
+        gradient = np.stack([y, zero], axis=1)[:, None]
+        return y[:, None], zero.astype(int), gradient if slopes else None
+
+    monkeypatch.setattr(Sampled, "solve", solve)
+    found = solved(element, limit=np.exp(2.0), samples=60_000).misses
+    density = stats.norm.pdf(2.0)
+    assert found.by_width == pytest.approx([2.0 * density, 0.0], rel=0.03)
+    assert found.by_middle == pytest.approx([6.0 * density, 0.0], rel=0.03)
+
+
 def test_misses_of_two_requirements(element, closed_form):
     asked = [Constraint(linear, lower=-2.0, upper=2.0)]
     given = element, bj.Cases([np.zeros(6)]), numbers()

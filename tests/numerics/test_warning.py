@@ -46,3 +46,4 @@ def test_kind_shows_size_and_limit_in_its_unit():
     worst = in_cases(one, 2, 9, 4)
     assert worst == "5 µm over 2 (row 1), in 2 of 9 cases, worst case 4"
     assert worst.size == one.size and in_cases(one, 1, 1, 0) == one
+    assert in_cases(one, 1, 2, 0).endswith(", in 1 of 2 cases, worst case 0")

@@ -516,3 +516,18 @@ to = "90 degC"
 prior = "60 degC"
 prior_error = "2 K"
 """
+
+
+def test_speeds_of_the_rows_are_warned_of(tmp_path):
+    """Of 6205 the catalogue has 18 000 rpm; the scene itself is slow."""
+    text = (
+        '[bearing]\ndesignation = "6205"\n'
+        '[operating]\nload = { Fy = "-1 kN" }\nfree = ["ux", "uy", "uz"]\n'
+        'inner_speed = "100 rpm"\n[identify]\ndata = "read.csv"\n[identify.unknowns]\n'
+        '"bearing.radial_internal_clearance" = { from = "1 um", to = "50 um" }\n'
+    )
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    table = "operating.inner_speed [rpm],displacement_uy [um]\n100,-5\n30000,-5\n"
+    (tmp_path / "read.csv").write_text(table, encoding="utf-8")
+    told = read_identification(tmp_path / "scene.toml").subject.scene.warnings
+    assert any("speed of 30000 rpm, above the limiting" in text for text in told)

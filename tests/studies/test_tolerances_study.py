@@ -41,6 +41,16 @@ def test_sizes_of_classes_add_to_the_fits_of_their_limits(place, side):
         assert value == pytest.approx(kept, rel=ROUNDING, abs=1e-18)
 
 
+def test_a_life_of_the_scene_counts_for_warnings_whatever_is_measured():
+    oil = ["life.viscosity=20 mm^2/s", "life.contamination=0.5"]
+    asked = "tolerances.measures=[{measure='clearance'}]"
+    assert "life" not in read_tolerances("tolerances_seats").options
+    task = read_tolerances("tolerances_seats", [*oil, asked])
+    assert task.options["life"].viscosity == pytest.approx(20e-6)
+    task = read_tolerances("tolerances_seats", ["life.reliability=0.95", asked])
+    assert task.options["life"].reliability == pytest.approx(0.95)
+
+
 def test_numbers_that_take_published_ratings_away_are_told(tmp_path):
     task = read_tolerances("tolerances_seats")
     design = task.given[0]
