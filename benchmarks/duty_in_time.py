@@ -11,22 +11,22 @@ lives or warnings: the baseline of the ratio, 1 of it in 20 from first contact.
 The error is that of the damage of some rows against `solve_load` and `rating_life` one
 by one. Memory is the most that the process had.
 
-README: 20 years of ten minutes, 1.05 million rows, all different: 157 s of one core,
-and 12 s to read; damage within 3e-11 of single solves; 1.9 GiB | 2 minutes | **missed**
-1.3-fold
+README: 20 years of ten minutes, 1.05 million rows, all different: 150 s of one core,
+and 10 s to read; damage within 3e-11 of single solves; 1.9 GiB | 2 minutes | **missed**
+1.25-fold
 
-Last run, others working on the second core:
+Last run, on an idle machine:
 
                 CPU s  clock s  CPU µs a row     ratio
-read and merge   11.9       12          11.3    0.0688
-solve and rate    157      218           149     0.907
-sum            0.0955   0.0957        0.0908  0.000551
-plain solves      173        -           165         1
+read and merge   10.3     10.4          9.79    0.0589
+solve and rate    150      150           143     0.858
+sum              0.18   0.0923         0.171   0.00103
+plain solves      175        -           166         1
 
 1051920 rows, 1051917 of them different, 1051917 solved; damage 12.2846, within 2.8e-11
 of single solves; 1.87 GiB
 
-AMD EPYC, 2 cores, load average 4.4; devices: 1 cpu; jax 0.10.1
+AMD EPYC, 2 cores, load average 1.5; devices: 1 cpu; jax 0.10.1
 """
 
 import os
